@@ -1,0 +1,77 @@
+#include "sim/robot.h"
+
+#include <cmath>
+
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr float farthest = 1e6f;  // [m]
+
+std::string place(const char* list, std::size_t index) { return std::string(list) + std::to_string(index); }
+
+void validate_mass_index(std::size_t mass, const Robot& robot, const std::string& where) {
+  if (mass >= robot.masses.size())
+    throw InputError(where, "mass " + std::to_string(mass) + " is out of range, the robot has " +
+                                std::to_string(robot.masses.size()));
+}
+
+void validate_masses(const Robot& robot) {
+  if (robot.masses.empty()) throw InputError("/masses", "a robot needs at least one mass");
+  if (robot.masses.size() > max_masses)
+    throw InputError("/masses", std::to_string(robot.masses.size()) + " masses, at most 65535 are accepted");
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const Vec3 x = robot.masses[i];
+    if (!(std::abs(x.x) <= farthest && std::abs(x.y) <= farthest && std::abs(x.z) <= farthest))
+      throw InputError(place("/masses/", i), "a position must be finite and within 1e6 m of the origin");
+  }
+}
+
+void validate_spring(const Robot& robot, std::size_t index) {
+  const Spring& spring = robot.springs[index];
+  const std::string where = place("/springs/", index);
+  validate_mass_index(spring.a, robot, where);
+  validate_mass_index(spring.b, robot, where);
+  if (spring.a == spring.b) throw InputError(where, "joins mass " + std::to_string(spring.a) + " to itself");
+  const std::size_t materials = materials_of(robot).size();
+  if (spring.material == air) throw InputError(where, "material 0 is air, a spring needs another");
+  if (spring.material >= materials)
+    throw InputError(where, "material " + std::to_string(spring.material) + " is out of range, the table has " +
+                                std::to_string(materials));
+  if (!(spring.rest_length >= min_rest_length && spring.rest_length <= farthest))
+    throw InputError(where, "rest length " + std::to_string(spring.rest_length) + " m, at least 0.001 m is accepted");
+}
+
+void validate_face(const Robot& robot, std::size_t index) {
+  const Face& face = robot.faces[index];
+  const std::string where = place("/faces/", index);
+  validate_mass_index(face.a, robot, where);
+  validate_mass_index(face.b, robot, where);
+  validate_mass_index(face.c, robot, where);
+  if (face.a == face.b || face.b == face.c || face.c == face.a)
+    throw InputError(where, "a face needs three different masses");
+}
+
+}  // namespace
+
+std::span<const Material> materials_of(const Robot& robot) {
+  return robot.materials.empty() ? default_materials() : std::span<const Material>(robot.materials);
+}
+
+float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b) {
+  return length(robot.masses[b] - robot.masses[a]);
+}
+
+void validate(const Robot& robot) {
+  if (robot.materials.size() > max_materials)
+    throw InputError("/materials", std::to_string(robot.materials.size()) + " materials, at most 256 are accepted");
+  if (!robot.material_names.empty() && robot.material_names.size() != robot.materials.size())
+    throw InputError("/materials", "every material needs a name, or none");
+  for (std::size_t i = 0; i < robot.materials.size(); ++i) validate(robot.materials[i], place("/materials/", i));
+  validate_masses(robot);
+  for (std::size_t i = 0; i < robot.springs.size(); ++i) validate_spring(robot, i);
+  for (std::size_t i = 0; i < robot.faces.size(); ++i) validate_face(robot, i);
+}
+
+}  // namespace mercury
