@@ -89,6 +89,11 @@ BasePair base_materials_of(MaterialId id) {
   return defaults.pairs[id];
 }
 
+bool is_valid(const Material& material) {
+  return std::isfinite(material.stiffness) && material.stiffness >= 0 && std::abs(material.amplitude) < 1 &&
+         std::isfinite(material.frequency) && std::isfinite(material.phase);
+}
+
 void validate(const Material& material, const std::string& where) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds) throw InputError(where, what);

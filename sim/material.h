@@ -44,7 +44,9 @@ struct BasePair {
 };
 BasePair base_materials_of(MaterialId id);
 
-// Throws InputError("<where>", ...) unless every value is finite, stiffness >= 0 and |amplitude| < 1.
+// Every value finite, stiffness >= 0 and |amplitude| < 1.
+bool is_valid(const Material& material);
+// Throws InputError("<where>", ...) unless is_valid.
 void validate(const Material& material, const std::string& where);
 
 }  // namespace mercury

@@ -1,0 +1,62 @@
+// What Simulation asks of whatever does the stepping. One file a backend; a backend that was not built is a file that
+// was not compiled.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/configuration.h"
+#include "sim/muscle.h"
+#include "sim/robot.h"
+#include "sim/simulation.h"
+#include "sim/telemetry.h"
+
+namespace mercury {
+
+inline constexpr std::uint32_t no_mass = 0xffffffffu;
+
+struct RobotStatus {
+  std::int64_t exploded_step = -1;   // -1 = not exploded
+  std::uint32_t bad_mass = no_mass;  // lowest mass that left the finite, if one did
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  virtual std::string device_name() const = 0;
+  virtual std::vector<std::string> notes() const = 0;
+
+  // Takes these robots in place of all before, at rest in their files' positions, with their own materials. `robots`
+  // outlives the backend.
+  virtual void load(std::span<const Robot* const> robots, const Configuration& configuration) = 0;
+  virtual void configure(const Configuration& configuration) = 0;
+  virtual void step(const Clock& clock, std::int64_t steps) = 0;
+
+  // One element a mass.
+  virtual void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const = 0;
+  virtual void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
+  // All robots' masses one after the other.
+  virtual void read_positions(std::span<Vec3> out) const = 0;
+  virtual void read_velocities(std::span<Vec3> out) const = 0;
+
+  virtual RobotStatus status(std::size_t robot) const = 0;
+  virtual void set_status(std::size_t robot, const RobotStatus& status) = 0;
+
+  // size * max_materials elements, robot-major.
+  virtual void write_materials(std::span<const Material> tables) = 0;
+  virtual void write_materials(std::size_t robot, std::span<const Material> table) = 0;
+
+  virtual void set_pulls(std::span<const Pull> pulls) = 0;
+  // Everything but exploded_at and first_bad_spring.
+  virtual std::vector<Telemetry> telemetry(const Clock& clock) const = 0;
+};
+
+std::unique_ptr<Backend> make_cpu_backend(const Device& device);
+// Throws DeviceError in a build without CUDA or when the device is not there.
+std::unique_ptr<Backend> make_cuda_backend(const Device& device);
+
+}  // namespace mercury

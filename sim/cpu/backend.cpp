@@ -1,0 +1,113 @@
+// The CPU backend: robots are shared out over the cores, each stepped by one of them.
+#include "sim/backend.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "sim/cpu/step.h"
+#include "sim/cpu/telemetry.h"
+
+namespace mercury {
+namespace {
+
+using namespace cpu;
+
+class CpuBackend final : public Backend {
+ public:
+  explicit CpuBackend(const Device& device)
+      : arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {}
+
+  std::string device_name() const override {
+    const int threads = arena_.max_concurrency();
+    return "CPU, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  }
+  std::vector<std::string> notes() const override { return {}; }
+
+  void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
+    bodies_.clear();
+    bodies_.resize(robots.size());
+    for_each_body([&](std::size_t i) { bodies_[i] = make_body(*robots[i]); });
+    configure(configuration);
+  }
+
+  void configure(const Configuration& configuration) override {
+    configuration_ = configuration;
+    setting_ = setting_of(configuration);
+    for_each_body([&](std::size_t i) { update_laws(bodies_[i], configuration_); });
+  }
+
+  void step(const Clock& clock, std::int64_t steps) override {
+    for_each_body([&](std::size_t i) {
+      update_phases(bodies_[i], clock);
+      advance(bodies_[i], setting_, clock, steps);
+    });
+  }
+
+  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
+    const Body& body = bodies_[robot];
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = body.x[i];
+    for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = body.v[i];
+  }
+
+  void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
+    Body& body = bodies_[robot];
+    for (std::size_t i = 0; i < positions.size(); ++i) body.x.set(i, positions[i]);
+    for (std::size_t i = 0; i < velocities.size(); ++i) body.v.set(i, velocities[i]);
+  }
+
+  void read_positions(std::span<Vec3> out) const override {
+    for (const Body& body : bodies_)
+      for (std::size_t i = 0; i < body.x.x.size(); ++i, out = out.subspan(1)) out.front() = body.x[i];
+  }
+
+  void read_velocities(std::span<Vec3> out) const override {
+    for (const Body& body : bodies_)
+      for (std::size_t i = 0; i < body.v.x.size(); ++i, out = out.subspan(1)) out.front() = body.v[i];
+  }
+
+  RobotStatus status(std::size_t robot) const override { return bodies_[robot].status; }
+  void set_status(std::size_t robot, const RobotStatus& status) override { bodies_[robot].status = status; }
+
+  void write_materials(std::span<const Material> tables) override {
+    for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });
+  }
+  void write_materials(std::size_t robot, std::span<const Material> table) override { replace_table(robot, table); }
+
+  void set_pulls(std::span<const Pull> pulls) override {
+    for (Body& body : bodies_) body.pulls.clear();
+    for (const Pull& pull : pulls) bodies_[pull.robot].pulls.push_back(pull);
+  }
+
+  std::vector<Telemetry> telemetry(const Clock& clock) const override {
+    std::vector<Telemetry> all(bodies_.size());
+    for_each_body([&](std::size_t i) { all[i] = measure_state(bodies_[i], configuration_, clock); });
+    return all;
+  }
+
+ private:
+  template <class Work>
+  void for_each_body(const Work& work) const {
+    arena_.execute([&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); });
+    });
+  }
+
+  void replace_table(std::size_t robot, std::span<const Material> table) {
+    std::ranges::copy(table, bodies_[robot].materials.begin());
+    update_laws(bodies_[robot], configuration_);
+  }
+
+  mutable oneapi::tbb::task_arena arena_;
+  std::vector<Body> bodies_;
+  Configuration configuration_;
+  StepSetting setting_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_cpu_backend(const Device& device) { return std::make_unique<CpuBackend>(device); }
+
+}  // namespace mercury

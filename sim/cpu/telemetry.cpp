@@ -1,0 +1,51 @@
+#include "sim/cpu/telemetry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mercury::cpu {
+namespace {
+
+struct Sum {
+  double x = 0, y = 0, z = 0;
+  void add(Vec3 a) {
+    x += static_cast<double>(a.x);
+    y += static_cast<double>(a.y);
+    z += static_cast<double>(a.z);
+  }
+  Vec3 over(std::size_t n) const {
+    const auto count = static_cast<double>(n);
+    return {static_cast<float>(x / count), static_cast<float>(y / count), static_cast<float>(z / count)};
+  }
+};
+
+}  // namespace
+
+Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock) {
+  Telemetry result;
+  Sum position, velocity;
+  const std::size_t masses = body.x.x.size();
+  for (std::size_t i = 0; i < masses; ++i) {
+    const Vec3 v = body.v[i];
+    position.add(body.x[i]);
+    velocity.add(v);
+    result.kinetic_energy += 0.5 * (static_cast<double>(v.x) * static_cast<double>(v.x) +
+                                    static_cast<double>(v.y) * static_cast<double>(v.y) +
+                                    static_cast<double>(v.z) * static_cast<double>(v.z));
+  }
+  result.center_of_mass = position.over(masses);
+  result.velocity = velocity.over(masses);
+  const float scale = stiffness_scale_of(configuration.environment);
+  std::array<float, max_materials> factor{};
+  for (std::size_t id = 0; id < max_materials; ++id) factor[id] = muscle_factor(body.materials[id], clock);
+  for (const Spring& spring : body.robot->springs) {
+    const float distance = length(body.x[spring.b] - body.x[spring.a]);
+    const float rest = spring.rest_length;
+    const auto stretch = static_cast<double>(distance - rest * factor[spring.material]);
+    result.elastic_energy += 0.5 * static_cast<double>(scale * body.materials[spring.material].stiffness) * stretch * stretch;
+    result.largest_strain = std::max(result.largest_strain, std::abs(distance - rest) / rest);
+  }
+  return result;
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,14 @@
+// Stands in for the CUDA backend in a build without nvcc.
+#include "sim/backend.h"
+#include "sim/error.h"
+
+namespace mercury {
+
+std::unique_ptr<Backend> make_cuda_backend(const Device&) {
+  throw DeviceError("this build has no CUDA backend: build with nvcc on PATH, or use --device cpu");
+}
+int cuda_device_count() { return 0; }
+std::string cuda_device_name(int) { return {}; }
+bool built_with_cuda() { return false; }
+
+}  // namespace mercury

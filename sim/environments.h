@@ -1,0 +1,87 @@
+// The three environments as the solvers see them. A new one is one struct with these hooks:
+//   has_faces, has_contacts, has_floor       what a step has to do, known at compile time
+//   on_mass(v)                               force on a unit mass of velocity v [N]
+//   on_face(area_normal, v)                  force on a face, if has_faces
+//   floor(x, displacement)                   resolves the end of a step on positions, if has_floor
+#pragma once
+
+#include "sim/configuration.h"
+#include "sim/springs.h"
+
+namespace mercury {
+
+struct OceanHooks {
+  static constexpr bool has_faces = true, has_contacts = false, has_floor = false;
+  Vec3 gravity, flow;
+  float half_density = 0, drag_minus_lift = 0, lift = 0;
+
+  explicit OceanHooks(const Ocean& ocean)
+      : gravity(ocean.gravity), flow(ocean.flow), half_density(ocean.density / 2),
+        drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient) {}
+
+  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3) const { return gravity; }
+
+  // Eq. 1 with the flow relative to the face, u = flow - v, and the normal turned to the side that u leaves by, so that
+  // drag never adds energy. As printed (v itself, the normal as it is) the sum over a closed rigid body is zero.
+  // `area_normal` is A n; either orientation gives the same force.
+  MERCURY_HOST_DEVICE Vec3 on_face(Vec3 area_normal, Vec3 velocity) const {
+    const Vec3 u = flow - velocity;
+    const float flux = multiply_add(area_normal.z, u.z, multiply_add(area_normal.y, u.y, area_normal.x * u.x));
+    const float speed_squared = multiply_add(u.z, u.z, multiply_add(u.y, u.y, u.x * u.x));
+    const float along_flow = half_density * drag_minus_lift * std::fabs(flux);
+    const float along_normal = half_density * lift * (flux < 0 ? -speed_squared : speed_squared);
+    return {multiply_add(along_flow, u.x, along_normal * area_normal.x),
+            multiply_add(along_flow, u.y, along_normal * area_normal.y),
+            multiply_add(along_flow, u.z, along_normal * area_normal.z)};
+  }
+};
+
+struct OceanSimpleHooks {
+  static constexpr bool has_faces = false, has_contacts = false, has_floor = false;
+  Vec3 gravity, flow;
+  float drag = 0;
+
+  explicit OceanSimpleHooks(const OceanSimple& ocean)
+      : gravity(ocean.gravity), flow(ocean.flow), drag(ocean.point_drag) {}
+
+  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3 v) const {
+    return {multiply_add(drag, flow.x - v.x, gravity.x), multiply_add(drag, flow.y - v.y, gravity.y),
+            multiply_add(drag, flow.z - v.z, gravity.z)};
+  }
+};
+
+struct LandHooks {
+  static constexpr bool has_faces = false, has_contacts = true, has_floor = true;
+  Vec3 gravity;
+  float friction = 0;
+
+  explicit LandHooks(const Land& land) : gravity(land.gravity), friction(land.friction) {}
+
+  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3) const { return gravity; }
+
+  // A mass that would end below the floor ends on it, and moves along it less by at most friction times its depth.
+  // `x` is where the step ends and `displacement` what it moved; both are mended. True if the mass touched.
+  MERCURY_HOST_DEVICE bool floor(Vec3& x, Vec3& displacement) const {
+    const float depth = -x.z;
+    if (!(depth > 0)) return false;
+    const float moved = std::sqrt(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
+    const float held = friction * depth;
+    const float undone = moved > held ? held / moved : 1.0f;
+    x = {multiply_add(-undone, displacement.x, x.x), multiply_add(-undone, displacement.y, x.y), 0.0f};
+    displacement = {multiply_add(-undone, displacement.x, displacement.x),
+                    multiply_add(-undone, displacement.y, displacement.y), displacement.z + depth};
+    return true;
+  }
+};
+
+inline OceanHooks hooks_of(const Ocean& ocean) { return OceanHooks(ocean); }
+inline OceanSimpleHooks hooks_of(const OceanSimple& ocean) { return OceanSimpleHooks(ocean); }
+inline LandHooks hooks_of(const Land& land) { return LandHooks(land); }
+
+// Repulsion of two masses that no spring joins: the force on the first is this times d = x_second - x_first, pointing
+// away from the second, k_c (distance - |d|) / |d|; zero at and beyond the distance.
+MERCURY_HOST_DEVICE float repulsion(float squared, float distance, float stiffness) {
+  return squared < distance * distance ? stiffness * multiply_add(-distance, inverse_sqrt(squared), 1.0f) : 0.0f;
+}
+
+}  // namespace mercury

@@ -1,0 +1,273 @@
+#include "sim/simulation.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <stdexcept>
+
+#include "sim/backend.h"
+#include "sim/error.h"
+#include "sim/measures.h"
+
+namespace mercury {
+namespace {
+
+std::unique_ptr<Backend> make_backend(const Device& device) {
+  const bool cuda = device.kind == DeviceKind::cuda ||
+                    (device.kind == DeviceKind::automatic && cuda_device_count() > device.index);
+  return cuda ? make_cuda_backend(device) : make_cpu_backend(device);
+}
+
+void validate_named(const Robot& robot, std::size_t index) {
+  try {
+    validate(robot);
+  } catch (const InputError& error) {
+    const std::string name = robot.name.empty() ? "" : " (" + robot.name + ")";
+    throw InputError("robot " + std::to_string(index) + name, error.what());
+  }
+}
+
+// On land a robot starts with its lowest mass at z = 0.
+float set_down(std::span<const Vec3> positions, const Environment& environment) {
+  if (!std::holds_alternative<Land>(environment)) return 0;
+  return -std::ranges::min(positions, {}, &Vec3::z).z;
+}
+
+std::uint64_t fnv1a(std::span<const Vec3> values, std::uint64_t hash) {
+  const auto add = [&](float value) {
+    auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int byte = 0; byte < 4; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 0x100000001b3u;
+  };
+  for (const Vec3 value : values) {
+    add(value.x);
+    add(value.y);
+    add(value.z);
+  }
+  return hash;
+}
+
+struct Snapshot {
+  std::vector<State> states;
+  std::vector<RobotStatus> statuses;
+};
+
+}  // namespace
+
+struct Simulation::Parts {
+  Configuration configuration;
+  Clock clock;
+  std::vector<std::unique_ptr<Robot>> robots;
+  std::vector<std::size_t> offsets{0};
+  std::vector<Material> materials;
+  std::unique_ptr<Backend> backend;
+
+  std::size_t size() const { return robots.size(); }
+  std::size_t masses(std::size_t robot) const { return offsets[robot + 1] - offsets[robot]; }
+  void require(std::size_t robot) const {
+    if (robot >= size())
+      throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
+  }
+  void require_material(std::size_t robot, MaterialId id) const {
+    require(robot);
+    const std::size_t count = materials_of(*robots[robot]).size();
+    if (id >= count)
+      throw std::out_of_range("material " + std::to_string(id) + ", the robot has " + std::to_string(count));
+  }
+  std::span<Material> table(std::size_t robot) {
+    return std::span(materials).subspan(robot * max_materials, max_materials);
+  }
+
+  State state(std::size_t robot) const {
+    State state{std::vector<Vec3>(masses(robot)), std::vector<Vec3>(masses(robot))};
+    backend->read(robot, state.positions, state.velocities);
+    return state;
+  }
+
+  Snapshot take_snapshot() const {
+    Snapshot snapshot;
+    for (std::size_t i = 0; i < size(); ++i) {
+      snapshot.states.push_back(state(i));
+      snapshot.statuses.push_back(backend->status(i));
+    }
+    return snapshot;
+  }
+
+  void put_at_rest(std::size_t robot) {
+    std::vector<Vec3> positions = robots[robot]->masses;
+    const Vec3 up{0, 0, set_down(positions, configuration.environment)};
+    for (Vec3& x : positions) x += up;
+    const std::vector<Vec3> velocities(positions.size());
+    backend->write(robot, positions, velocities);
+    backend->set_status(robot, {});
+  }
+
+  void load() {
+    std::vector<const Robot*> pointers;
+    pointers.reserve(size());
+    for (const auto& robot : robots) pointers.push_back(robot.get());
+    backend->load(pointers, configuration);
+  }
+
+  void complete(Telemetry& telemetry, std::size_t robot) const {
+    const RobotStatus status = backend->status(robot);
+    if (status.exploded_step < 0) return;
+    Clock clock_then = clock;
+    clock_then.step = status.exploded_step;
+    telemetry.exploded = true;
+    telemetry.exploded_at = time_of(clock_then);
+    telemetry.first_bad_spring = first_bad_spring(*robots[robot], state(robot).positions, status.bad_mass);
+  }
+};
+
+Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots)
+    : parts_(std::make_unique<Parts>()) {
+  validate(configuration);
+  parts_->configuration = configuration;
+  parts_->clock.dt = configuration.dt;
+  parts_->backend = make_backend(configuration.device);
+  parts_->load();
+  if (!robots.empty()) add(robots);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+std::size_t Simulation::add(std::span<const Robot> robots) {
+  const std::size_t first = size();
+  for (std::size_t i = 0; i < robots.size(); ++i) validate_named(robots[i], first + i);
+  const Snapshot before = parts_->take_snapshot();
+  for (const Robot& robot : robots) {
+    parts_->robots.push_back(std::make_unique<Robot>(robot));
+    parts_->offsets.push_back(parts_->offsets.back() + robot.masses.size());
+    parts_->materials.resize(parts_->robots.size() * max_materials);
+    std::ranges::copy(materials_of(robot), parts_->table(size() - 1).begin());
+  }
+  parts_->load();
+  parts_->backend->write_materials(parts_->materials);
+  for (std::size_t i = 0; i < first; ++i) {
+    parts_->backend->write(i, before.states[i].positions, before.states[i].velocities);
+    parts_->backend->set_status(i, before.statuses[i]);
+  }
+  for (std::size_t i = first; i < size(); ++i) parts_->put_at_rest(i);
+  return first;
+}
+
+std::size_t Simulation::size() const { return parts_->size(); }
+const Robot& Simulation::robot(std::size_t index) const {
+  parts_->require(index);
+  return *parts_->robots[index];
+}
+const Configuration& Simulation::configuration() const { return parts_->configuration; }
+double Simulation::time() const { return time_of(parts_->clock); }
+std::int64_t Simulation::steps() const { return parts_->clock.step; }
+std::string Simulation::device_name() const { return parts_->backend->device_name(); }
+std::vector<std::string> Simulation::notes() const { return parts_->backend->notes(); }
+
+void Simulation::step(std::int64_t steps) {
+  if (steps < 0) throw std::invalid_argument("a number of steps is at least 0");
+  if (steps > 0 && size() > 0) parts_->backend->step(parts_->clock, steps);
+  parts_->clock.step += steps;
+}
+
+void Simulation::reset() {
+  parts_->clock = Clock{.dt = parts_->configuration.dt};
+  for (std::size_t i = 0; i < size(); ++i) parts_->put_at_rest(i);
+}
+
+void Simulation::configure(const Configuration& configuration) {
+  validate(configuration);
+  if (configuration.device != parts_->configuration.device)
+    throw std::invalid_argument("the device of a simulation cannot change");
+  if (configuration.dt != parts_->clock.dt) {
+    Clock& clock = parts_->clock;
+    clock = {.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step};
+  }
+  const bool lands = std::holds_alternative<Land>(configuration.environment) &&
+                     !std::holds_alternative<Land>(parts_->configuration.environment);
+  parts_->configuration = configuration;
+  parts_->backend->configure(configuration);
+  if (!lands) return;
+  for (std::size_t i = 0; i < size(); ++i) {
+    State now = state(i);
+    const Vec3 up{0, 0, set_down(now.positions, configuration.environment)};
+    for (Vec3& x : now.positions) x += up;
+    parts_->backend->write(i, now.positions, now.velocities);
+  }
+}
+
+State Simulation::state(std::size_t robot) const {
+  parts_->require(robot);
+  return parts_->state(robot);
+}
+std::vector<Vec3> Simulation::positions(std::size_t robot) const { return state(robot).positions; }
+
+void Simulation::read_positions(std::span<Vec3> out) const {
+  if (out.size() != mass_count()) throw std::invalid_argument("one position a mass is needed");
+  parts_->backend->read_positions(out);
+}
+void Simulation::read_velocities(std::span<Vec3> out) const {
+  if (out.size() != mass_count()) throw std::invalid_argument("one velocity a mass is needed");
+  parts_->backend->read_velocities(out);
+}
+std::size_t Simulation::mass_count() const { return parts_->offsets.back(); }
+std::span<const std::size_t> Simulation::mass_offsets() const { return parts_->offsets; }
+
+void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  parts_->require(robot);
+  const std::size_t masses = parts_->masses(robot);
+  if (positions.size() != masses || velocities.size() != masses)
+    throw std::invalid_argument("one position and one velocity a mass are needed");
+  parts_->backend->write(robot, positions, velocities);
+  parts_->backend->set_status(robot, {});
+}
+
+std::vector<Telemetry> Simulation::telemetry() const {
+  std::vector<Telemetry> all = parts_->backend->telemetry(parts_->clock);
+  for (std::size_t i = 0; i < all.size(); ++i) parts_->complete(all[i], i);
+  return all;
+}
+Telemetry Simulation::telemetry(std::size_t robot) const {
+  parts_->require(robot);
+  return telemetry()[robot];
+}
+
+std::uint64_t Simulation::hash(std::size_t robot) const {
+  const State now = state(robot);
+  constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
+  return fnv1a(now.velocities, fnv1a(now.positions, offset_basis));
+}
+
+Material Simulation::material(std::size_t robot, MaterialId id) const {
+  parts_->require_material(robot, id);
+  return parts_->table(robot)[id];
+}
+
+void Simulation::set_material(std::size_t robot, MaterialId id, const Material& material) {
+  parts_->require_material(robot, id);
+  validate(material, "material " + std::to_string(id));
+  parts_->table(robot)[id] = material;
+  parts_->backend->write_materials(robot, parts_->table(robot));
+}
+
+void Simulation::set_materials(std::span<const Material> tables) {
+  if (tables.size() != size() * max_materials)
+    throw std::invalid_argument("a table of 256 materials a robot is needed");
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    if (!is_valid(tables[i]))
+      validate(tables[i], "robot " + std::to_string(i / max_materials) + ", material " + std::to_string(i % max_materials));
+  std::ranges::copy(tables, parts_->materials.begin());
+  parts_->backend->write_materials(parts_->materials);
+}
+
+std::vector<Material> Simulation::materials() const { return parts_->materials; }
+
+void Simulation::set_pulls(std::span<const Pull> pulls) {
+  for (const Pull& pull : pulls) {
+    parts_->require(pull.robot);
+    if (pull.mass >= parts_->masses(pull.robot)) throw std::out_of_range("a pull on a mass that the robot lacks");
+  }
+  parts_->backend->set_pulls(pulls);
+}
+
+}  // namespace mercury
