@@ -1,0 +1,88 @@
+# What scripts/demo, scripts/test and scripts/bundle share; they source it. Debian 12 and Ubuntu 24.04.
+# Leaves the shell in the repository's root.
+
+unset CDPATH
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+packages_to_build=(
+  cmake ninja-build g++ pkg-config
+  libtbb-dev libhwy-dev                                                  # sim
+  nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev            # robots
+  libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev   # render
+  libcli11-dev libfmt-dev libhdf5-dev libimgui-dev                       # app
+)
+packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6)
+packages_to_test=(libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
+
+fail() {
+  echo "$(basename "$0"): $*" >&2
+  exit 1
+}
+
+# install_missing PACKAGE...: installs by apt what dpkg does not list as installed. Silent, and without touching the
+# network, when nothing is missing.
+install_missing() {
+  command -v dpkg-query >/dev/null ||
+    fail "this machine has no dpkg; install what scripts/setup.sh lists under its own names, then use cmake (docs/building.md)"
+  local missing=() package
+  for package in "$@"; do
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || missing+=("$package")
+  done
+  ((${#missing[@]})) || return 0
+
+  local as_root=()
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; } ||
+      fail "packages are missing; as root: apt-get install --no-install-recommends ${missing[*]}"
+    as_root=(sudo)
+  fi
+  echo "Installing ${missing[*]}" >&2
+  mkdir -p build
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+  if ! { "${apt[@]}" update && "${apt[@]}" install --no-install-recommends "${missing[@]}"; } </dev/null >build/apt.log 2>&1; then
+    tail -n 20 build/apt.log >&2
+    fail "apt-get could not install ${missing[*]} (all of its output: build/apt.log)"
+  fi
+}
+
+# logged FILE COMMAND...: the command's output goes to build/FILE, and its end to the terminal if it fails.
+logged() {
+  local log=build/$1
+  shift
+  if ! "$@" </dev/null >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    fail "this command failed: $* (all of its output: $log)"
+  fi
+}
+
+# One compiler a core, but no more than memory holds: CGAL takes up to 2 GB each.
+build_jobs() {
+  local cores gigabytes
+  cores=$(nproc)
+  gigabytes=$(awk '/^MemAvailable/ { print int($2 / 2e6) }' /proc/meminfo)
+  ((gigabytes < 1)) && gigabytes=1
+  echo $((cores < gigabytes ? cores : gigabytes))
+}
+
+# configure CMAKE-OPTION...: configures build/, for this machine where it is new, else as it was with the options on top.
+configure() {
+  mkdir -p build
+  if [[ -e build/CMakeCache.txt ]]; then
+    logged configure.log cmake -B build "$@"
+  else
+    logged configure.log cmake --preset default -DCMAKE_CUDA_ARCHITECTURES="$(cuda_architectures)" "$@"
+  fi
+}
+
+# This machine's GPU, or a Hopper where there is none to ask: every further architecture is another compilation.
+cuda_architectures() {
+  if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then echo native; else echo 90; fi
+}
+
+# build_targets TARGET...: builds them in build/.
+build_targets() {
+  local cuda=without
+  grep -q '^CMAKE_CUDA_COMPILER:' build/CMakeCache.txt && cuda=with
+  echo "Building $cuda CUDA; log: build/build.log" >&2
+  logged build.log cmake --build build --parallel "$(build_jobs)" --target "$@"
+}
