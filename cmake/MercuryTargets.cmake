@@ -1,11 +1,20 @@
 # What every target of Mercury's own shares.
+set(mercury_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers)
+list(JOIN mercury_warnings "," mercury_warnings_from_nvcc)
+
 add_library(mercury_build_flags INTERFACE)
 target_compile_features(mercury_build_flags INTERFACE cxx_std_20)
 target_compile_options(mercury_build_flags INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers>
+  "$<$<COMPILE_LANGUAGE:CXX>:${mercury_warnings}>"
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${mercury_warnings_from_nvcc}>"
   # One rounding for an equation on every machine: products and sums are fused only where the source says so.
   $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
-  $<$<AND:$<BOOL:${MERCURY_WERROR}>,$<COMPILE_LANGUAGE:CXX>>:-Werror>)
+  $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+if(MERCURY_WERROR)
+  target_compile_options(mercury_build_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Werror>
+    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Werror;-Werror=all-warnings>")
+endif()
 if(MERCURY_SANITIZE)
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${MERCURY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
@@ -19,7 +28,14 @@ function(mercury_add_library name)
   set_target_properties(mercury_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(mercury_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mercury>)
+  target_compile_features(mercury_${name} PUBLIC cxx_std_20)
   target_link_libraries(mercury_${name} PRIVATE $<BUILD_INTERFACE:mercury_build_flags>)
+endfunction()
+
+# mercury_public_headers(NAME header...): the headers of mercury_add_library(NAME ...) that are installed, and so may
+# be included by a program outside this repository. They include no header that is not in the list.
+function(mercury_public_headers name)
+  target_sources(mercury_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARGN})
 endfunction()
 
 # mercury_add_executable(NAME source...)
