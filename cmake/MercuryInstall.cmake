@@ -9,6 +9,19 @@ install(DIRECTORY robots/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mercury/r
   OPTIONAL FILES_MATCHING PATTERN "*.json" PATTERN "*.cbor")
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# The headers that a program outside this repository may include. They include no others of ours.
+target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
+  sim/configuration.h
+  sim/error.h
+  sim/host_device.h
+  sim/material.h
+  sim/robot.h
+  sim/simulation.h
+  sim/telemetry.h
+  sim/vec3.h)
+file(GLOB robot_headers CONFIGURE_DEPENDS robots/*.h)
+target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${robot_headers})
+
 set(mercury_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mercury)
 install(TARGETS mercury_sim mercury_robots EXPORT mercury
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -32,12 +32,6 @@ function(mercury_add_library name)
   target_link_libraries(mercury_${name} PRIVATE $<BUILD_INTERFACE:mercury_build_flags>)
 endfunction()
 
-# mercury_public_headers(NAME header...): the headers of mercury_add_library(NAME ...) that are installed, and so may
-# be included by a program outside this repository. They include no header that is not in the list.
-function(mercury_public_headers name)
-  target_sources(mercury_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARGN})
-endfunction()
-
 # mercury_add_executable(NAME source...)
 function(mercury_add_executable name)
   add_executable(${name} ${ARGN})
