@@ -1,0 +1,42 @@
+// All bodies on the card: one buffer for each kind of thing, so that a pass draws every body with one call.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/gl_objects.h"
+#include "render/scene.h"
+
+namespace mercury::render {
+
+class Bodies {
+ public:
+  Bodies();
+  // See Renderer::set_bodies.
+  void set(std::span<const Body> bodies);
+
+  std::size_t body_count() const { return mass_offsets_.size() - 1; }
+  std::size_t mass_count() const { return mass_offsets_.back(); }
+  std::size_t face_count() const { return face_count_; }
+  std::size_t spring_count() const { return spring_count_; }
+  std::span<const std::uint32_t> mass_offsets() const { return mass_offsets_; }
+  float typical_spring() const { return typical_spring_; }  // median rest length of the springs [m]
+
+  // One after the other, with indices counted over all bodies.
+  Buffer positions;       // float[3] a mass
+  Buffer mass_bodies;     // uint a mass
+  Buffer faces;           // uint[3] a face
+  Buffer face_records;    // FaceRecord a face
+  Buffer springs;         // uint[2] a spring
+  Buffer spring_looks;    // uint a spring
+  Buffer mass_face_ends;  // uint a mass: end of its part of mass_faces
+  Buffer mass_faces;      // faces at each mass
+
+ private:
+  std::vector<std::uint32_t> mass_offsets_{0};
+  std::size_t face_count_ = 0, spring_count_ = 0;
+  float typical_spring_ = 0.1f;
+};
+
+}  // namespace mercury::render

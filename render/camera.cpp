@@ -1,0 +1,164 @@
+#include "render/camera.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Matrix4f;
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+constexpr float steepest = 1.5533f;  // [rad], 89 degrees
+
+struct Axes {
+  Vector3f right, up, back;
+};
+
+Axes axes_of(const Camera& camera) {
+  const Vector3f back = (camera.eye - camera.target).normalized();
+  Vector3f right = camera.up.cross(back);
+  if (right.norm() < 1e-4f) right = Vector3f::UnitY().cross(back);
+  right.normalize();
+  return {right, back.cross(right), back};
+}
+
+}  // namespace
+
+void Bounds::extend(const Vector3f& point) {
+  low = low.cwiseMin(point);
+  high = high.cwiseMax(point);
+}
+
+void Bounds::extend(const Bounds& other) {
+  low = low.cwiseMin(other.low);
+  high = high.cwiseMax(other.high);
+}
+
+Bounds Bounds::moved(const Vector3f& offset) const { return empty() ? *this : Bounds{low + offset, high + offset}; }
+
+Bounds bounds_of(std::span<const float> points) {
+  Bounds bounds;
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+    const Vector3f point(points[i], points[i + 1], points[i + 2]);
+    if (point.allFinite()) bounds.extend(point);
+  }
+  return bounds;
+}
+
+Matrix4f Camera::view() const {
+  const Axes axes = axes_of(*this);
+  Matrix4f m = Matrix4f::Identity();
+  m.block<1, 3>(0, 0) = axes.right.transpose();
+  m.block<1, 3>(1, 0) = axes.up.transpose();
+  m.block<1, 3>(2, 0) = axes.back.transpose();
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * eye;
+  return m;
+}
+
+Matrix4f Camera::projection(float aspect) const {
+  const float scale = 1 / std::tan(0.5f * field_of_view);
+  Matrix4f m = Matrix4f::Zero();
+  m(0, 0) = scale / aspect;
+  m(1, 1) = scale;
+  m(2, 2) = near / (far - near);
+  m(2, 3) = near * far / (far - near);
+  m(3, 2) = -1;
+  return m;
+}
+
+Vector3f Camera::project(const Vector3f& point, int width, int height) const {
+  const Vector4f seen = view() * point.homogeneous();
+  const Vector4f clip = projection(float(width) / float(height)) * seen;
+  return {float(width) * 0.5f * (1 + clip.x() / clip.w()), float(height) * 0.5f * (1 - clip.y() / clip.w()), -seen.z()};
+}
+
+Ray Camera::ray(float x, float y, int width, int height) const {
+  const Axes axes = axes_of(*this);
+  const float half = std::tan(0.5f * field_of_view);
+  const float across = (2 * x / float(width) - 1) * half * float(width) / float(height);
+  const float upward = (1 - 2 * y / float(height)) * half;
+  return {eye, (across * axes.right + upward * axes.up - axes.back).normalized()};
+}
+
+Camera Orbit::camera() const {
+  const Vector3f direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                           std::sin(elevation));
+  Camera camera;
+  camera.target = target;
+  camera.eye = target + distance * direction;
+  // Derivative of `direction` by the elevation: upright even when looking straight down.
+  camera.up = Vector3f(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth),
+                       std::cos(elevation));
+  camera.field_of_view = field_of_view;
+  camera.near = std::max(1e-3f, 0.01f * distance);
+  camera.far = 200 * distance;
+  return camera;
+}
+
+void Orbit::turn(float azimuth_change, float elevation_change) {
+  azimuth = std::remainder(azimuth + azimuth_change, 2 * std::numbers::pi_v<float>);
+  elevation = std::clamp(elevation + elevation_change, -steepest, steepest);
+}
+
+void Orbit::pan(float right, float up) {
+  const Axes axes = axes_of(camera());
+  const float height = 2 * distance * std::tan(0.5f * field_of_view);
+  target += height * (right * axes.right + up * axes.up);
+}
+
+void Orbit::zoom(float factor) { distance = std::clamp(distance * factor, 1e-3f, 1e5f); }
+
+void Orbit::frame(const Bounds& bounds, float aspect, float margin) {
+  if (bounds.empty()) return;
+  target = bounds.center();
+  distance = 1;
+  const Axes axes = axes_of(camera());
+  const float tan_up = std::tan(0.5f * field_of_view);
+  const float tan_across = tan_up * aspect;
+  // A corner at (x, y, z) from the target, in the picture's axes, is inside if |x| <= (d - z) tan and likewise y.
+  // Moving the target sideways balances the margins left over on both sides.
+  Vector3f shift = Vector3f::Zero();
+  for (int pass = 0; pass < 8; ++pass) {
+    float needed = 0, left = 0, right = 0, below = 0, above = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3f point((corner & 1) ? bounds.high.x() : bounds.low.x(),
+                           (corner & 2) ? bounds.high.y() : bounds.low.y(),
+                           (corner & 4) ? bounds.high.z() : bounds.low.z());
+      const Vector3f p = point - target - shift;
+      const float x = p.dot(axes.right), y = p.dot(axes.up), z = p.dot(axes.back);
+      right = std::max(right, x / tan_across + z);
+      left = std::max(left, -x / tan_across + z);
+      above = std::max(above, y / tan_up + z);
+      below = std::max(below, -y / tan_up + z);
+      needed = std::max({right, left, above, below});
+    }
+    distance = std::max(1e-3f, needed * margin);
+    shift += 0.5f * (right - left) * tan_across * axes.right + 0.5f * (above - below) * tan_up * axes.up;
+  }
+  target += shift;
+}
+
+Orbit top_view(const Bounds& bounds, float aspect) {
+  Orbit orbit;
+  orbit.azimuth = -0.5f * std::numbers::pi_v<float>;
+  orbit.elevation = 0.5f * std::numbers::pi_v<float>;
+  orbit.frame(bounds, aspect);
+  return orbit;
+}
+
+Orbit turntable(Orbit start, double time, double period) {
+  start.azimuth += float(2 * std::numbers::pi * std::remainder(time / period, 1.0));
+  return start;
+}
+
+void follow(Orbit& orbit, const Vector3f& target, double dt, double lag) {
+  orbit.target += float(1 - std::exp(-dt / lag)) * (target - orbit.target);
+}
+
+}  // namespace mercury::render

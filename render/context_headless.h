@@ -1,0 +1,14 @@
+// The ways to a context without a window, tried by make_context() in this order. All throw ContextError.
+#pragma once
+
+#include <memory>
+
+#include "render/context.h"
+
+namespace mercury::render {
+
+std::unique_ptr<Context> make_egl_card_context(const ContextOptions& options);
+std::unique_ptr<Context> make_egl_mesa_context(const ContextOptions& options);
+std::unique_ptr<Context> make_osmesa_context(const ContextOptions& options);
+
+}  // namespace mercury::render

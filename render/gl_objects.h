@@ -1,0 +1,98 @@
+// Owners of OpenGL objects: made with the direct-state-access calls of OpenGL 4.5, deleted with the owner.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace mercury::render {
+
+// A name that is released once. `Release` is a stateless function object.
+template <typename Release>
+class GlName {
+ public:
+  GlName() = default;
+  explicit GlName(GLuint name) : name_(name) {}
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_) Release{}(name_);
+  }
+  GLuint get() const { return name_; }
+  explicit operator bool() const { return name_ != 0; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+struct ReleaseTexture {
+  void operator()(GLuint name) const { glDeleteTextures(1, &name); }
+};
+struct ReleaseFramebuffer {
+  void operator()(GLuint name) const { glDeleteFramebuffers(1, &name); }
+};
+struct ReleaseBuffer {
+  void operator()(GLuint name) const { glDeleteBuffers(1, &name); }
+};
+struct ReleaseVertexArray {
+  void operator()(GLuint name) const { glDeleteVertexArrays(1, &name); }
+};
+struct ReleaseProgram {
+  void operator()(GLuint name) const { glDeleteProgram(name); }
+};
+
+using Texture = GlName<ReleaseTexture>;
+using Framebuffer = GlName<ReleaseFramebuffer>;
+using VertexArray = GlName<ReleaseVertexArray>;
+using Program = GlName<ReleaseProgram>;
+
+// A buffer that grows when more is written to it than it holds.
+class Buffer {
+ public:
+  Buffer();
+  GLuint get() const { return name_.get(); }
+  std::size_t size() const { return size_; }  // bytes written or reserved last
+
+  // At least that many bytes, contents undefined; never empty, so that it can always be bound.
+  void reserve(std::size_t bytes);
+  // Replaces the contents.
+  void write(const void* data, std::size_t bytes);
+  template <typename T>
+  void write(std::span<const T> values) {
+    write(values.data(), values.size_bytes());
+  }
+  template <typename T>
+  void write(const std::vector<T>& values) {
+    write(values.data(), values.size() * sizeof(T));
+  }
+  // As storage or uniform block at that binding.
+  void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get()); }
+  void bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, name_.get()); }
+
+ private:
+  GlName<ReleaseBuffer> name_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+// A texture of one level; samples = 0 for an ordinary one. Clamped to its edge, bilinear unless it is multisampled.
+Texture make_texture(GLenum format, int width, int height, int samples = 0);
+
+// A framebuffer of those colour textures and an optional depth texture.
+Framebuffer make_framebuffer(std::initializer_list<GLuint> colors, GLuint depth = 0);
+
+VertexArray make_vertex_array();
+
+// Compiles and links shaders/<name> for each name; the ending (.vert, .frag, .comp) tells the stage.
+// `defines` are lines put below #version, as "#define SAMPLES 4\n".
+// Throws ContextError with the shader's name and the driver's words.
+Program make_program(std::initializer_list<std::string_view> names, const std::string& defines = "");
+
+}  // namespace mercury::render

@@ -1,0 +1,58 @@
+#include "render/png.h"
+
+#include <png.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace mercury::render {
+namespace {
+
+std::uint32_t png_format(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::rgb: return PNG_FORMAT_RGB;
+    case PixelFormat::rgba: return PNG_FORMAT_RGBA;
+    default: throw std::invalid_argument("a PNG is written from rgb or rgba");
+  }
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) { throw std::runtime_error(path + ": " + why); }
+
+}  // namespace
+
+void write_png(const std::string& path, const Image& image) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = png_uint_32(image.width);
+  png.height = png_uint_32(image.height);
+  png.format = png_format(image.format);
+  const std::string temporary = path + ".part";
+  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  if (!file) fail(path, std::strerror(errno));
+  errno = 0;
+  const bool written = png_image_write_to_stdio(&png, file, 0, image.bytes.data(), 0, nullptr) != 0;
+  const int error = errno;
+  const bool closed = std::fclose(file) == 0;
+  if (written && closed && std::rename(temporary.c_str(), path.c_str()) == 0) return;
+  const std::string why = error ? std::strerror(error) : !written ? png.message : std::strerror(errno);
+  std::remove(temporary.c_str());
+  fail(path, why);
+}
+
+Image read_png(const std::string& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&png, path.c_str())) fail(path, png.message);
+  Image image;
+  image.format = (png.format & PNG_FORMAT_FLAG_ALPHA) ? PixelFormat::rgba : PixelFormat::rgb;
+  png.format = png_format(image.format);
+  image.width = int(png.width);
+  image.height = int(png.height);
+  image.bytes.resize(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, image.bytes.data(), 0, nullptr)) fail(path, png.message);
+  return image;
+}
+
+}  // namespace mercury::render

@@ -1,0 +1,75 @@
+// Draws a scene into a picture of its own, from which it can be read back, shown in a window or filmed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/context.h"
+#include "render/scene.h"
+
+namespace mercury::render {
+
+// automatic: high on a card, low where the processor draws.
+enum class Quality { automatic, low, medium, high };
+
+// "auto", "low", "medium", "high".
+std::string_view name_of(Quality quality);
+// Throws std::invalid_argument that lists them.
+Quality quality_named(std::string_view name);
+
+struct RendererOptions {
+  int width = 1280, height = 720;  // pixels
+  Quality quality = Quality::automatic;
+  float text_size = 0;             // height of a line of text in pixels; 0 = from the picture's height
+};
+
+// All members need the context that was current at construction to be current.
+class Renderer {
+ public:
+  // Throws ContextError when the driver refuses a shader or the picture is larger than it can draw.
+  explicit Renderer(const Context& context, const RendererOptions& options = {});
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  void resize(int width, int height);
+  void set_quality(Quality quality);
+  int width() const;
+  int height() const;
+  Quality quality() const;  // never automatic
+
+  // Replaces all bodies; positions are those at rest until told otherwise.
+  // Throws std::invalid_argument for an index out of range or a length that does not fit.
+  void set_bodies(std::span<const Body> bodies);
+  std::size_t body_count() const;
+  std::size_t mass_count() const;    // of all bodies together
+  std::size_t face_count() const;
+  std::size_t spring_count() const;
+  // Body i's masses are those from mass_offsets()[i] to mass_offsets()[i + 1].
+  std::span<const std::uint32_t> mass_offsets() const;
+
+  // The GL buffer of 3 * mass_count() floats from which everything is drawn: fill it with CUDA, glNamedBufferSubData or
+  // Scene::positions. It changes only in set_bodies().
+  unsigned position_buffer() const;
+
+  // The box around each body in its own coordinates, as position_buffer() stands now. Waits for the card.
+  std::vector<Bounds> body_bounds();
+
+  // Draws the picture.
+  void draw(const Scene& scene, const Camera& camera);
+
+  // The finished picture: an sRGB8_ALPHA8 texture, lower row first as OpenGL has it. Changes in resize().
+  unsigned picture() const;
+  // Copies the picture into a framebuffer (0 = the window's), scaled to the rectangle.
+  void present(unsigned framebuffer, int x, int y, int width, int height) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury::render

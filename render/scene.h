@@ -1,0 +1,130 @@
+// What is to be drawn, as plain numbers: bodies that deform, what they look like now, and what is written beside them.
+//
+// Lengths in metres, axes right-handed with z up. Each body lives in its own coordinates and is set into the picture by
+// a placement. Spans are read during the call they are given to and not kept.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "render/colormap.h"
+
+namespace mercury::render {
+
+// The parts of a body that stay while it moves. Indices count the body's own masses.
+struct Body {
+  std::span<const float> rest_positions;      // 3 a mass; tells which edges of the skin are sharp
+  std::span<const std::uint32_t> faces;       // 3 masses a face, counter-clockwise seen from outside
+  std::span<const std::uint32_t> springs;     // 2 masses a spring
+  std::span<const std::uint32_t> face_looks;    // one a face, index into Scene::looks; empty = all 0
+  std::span<const std::uint32_t> spring_looks;  // one a spring, the same
+};
+
+// What the faces and springs of one material look like at this moment.
+struct Look {
+  Color color;
+  float activation = 0;  // of a muscle, -1 stretched to +1 contracted; it lights up as it contracts
+};
+
+// Where a body stands in the picture, and how.
+struct Placement {
+  Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
+  bool hidden = false;
+  bool selected = false;            // drawn with a bright rim
+  bool faulty = false;              // drawn grey, with a red rim: it has exploded
+  bool smooth = false;              // skin rounded rather than with its edges
+};
+
+// How numbers become colours.
+struct Scale {
+  float low = 0, high = 1;
+  Colormap map = Colormap::viridis;
+};
+
+enum class Surroundings {
+  none,   // a plain backdrop
+  water,  // light from above, fog, drifting particles, sand far below
+  land,   // ground at z = 0 with a metric grid
+};
+
+enum class Theme { dark, light };
+
+// An arrow fixed to a body's coordinates.
+struct Arrow {
+  std::uint32_t body = 0;
+  Eigen::Vector3f from{0, 0, 0};
+  Eigen::Vector3f vector{0, 0, 0};  // from tail to tip [m]
+  Color color;
+};
+
+// A line through a body's coordinates, such as the way of its centre of mass.
+struct Path {
+  std::uint32_t body = 0;
+  std::span<const float> points;  // 3 a point, oldest first; older points fade
+  Color color;
+};
+
+// Text that hovers above a body; '\n' begins a new, smaller line.
+struct Label {
+  std::uint32_t body = 0;
+  std::string text;
+};
+
+// Explains the colours, at the right edge of the picture: a bar for a scale, or swatches with names.
+struct Legend {
+  std::string title;           // "strain"
+  std::string unit;            // "m/s"; empty = none
+  std::optional<Scale> scale;  // a bar with numbers
+  std::vector<std::pair<Color, std::string>> swatches;
+};
+
+// Everything on the side of normal . x > offset is cut away, in the picture's coordinates.
+struct CutPlane {
+  Eigen::Vector3f normal{1, 0, 0};
+  float offset = 0;  // [m]
+};
+
+struct Show {
+  bool skin = true;
+  bool springs = false;
+  bool masses = false;
+};
+
+struct Scene {
+  // 3 floats a mass of all bodies, one body after the other, in each body's own coordinates.
+  // Empty = Renderer::position_buffer() holds them already.
+  std::span<const float> positions;
+  std::span<const Placement> placements;  // one a body; empty = all at their own coordinates
+  std::span<const Look> looks;            // by Body::face_looks and spring_looks; empty = one neutral look
+
+  // Numbers to colour by, through `scale`, one a face / mass / spring of all bodies; empty = looks.
+  // Skin takes face_values, else mass_values; springs take spring_values, else mass_values; masses take mass_values.
+  std::span<const float> face_values, mass_values, spring_values;
+  Scale scale;
+
+  Show show;
+  std::optional<CutPlane> cut;
+  float spring_radius = 0;       // [m]; 0 = chosen from the springs' lengths
+  float mass_radius = 0;         // [m]; 0 = chosen from the springs' lengths
+
+  Surroundings surroundings = Surroundings::water;
+  Theme theme = Theme::dark;
+  float floor = 0;               // height of the ground or sand [m]
+  Eigen::Vector3f flow{0, 0, 0};  // of the water, seen in drifting particles [m/s]
+  double time = 0;               // drives caustics and particles [s]
+
+  std::span<const Arrow> arrows;
+  std::span<const Path> paths;
+  std::span<const Label> labels;
+  std::optional<Legend> legend;
+  std::string clock;             // text in the lower left corner, as "12.3 s   x4"; empty = none
+  std::string caption;           // text in the upper left corner; empty = none
+  bool scale_bar = false;        // a length in metres, at the depth of the camera's target
+};
+
+}  // namespace mercury::render

@@ -1,0 +1,36 @@
+// Bodies to draw without a simulator: blobs of voxels that swim in place.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/scene.h"
+
+namespace mercury::render {
+
+struct WobblingBody {
+  std::vector<float> rest;
+  std::vector<std::uint32_t> faces, springs, face_looks, spring_looks;
+
+  Body body() const { return {rest, faces, springs, face_looks, spring_looks}; }
+  // Masses at a time [s]: stretched and bent by travelling waves, smooth in space.
+  std::vector<float> positions(double time, float phase) const;
+};
+
+// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; every voxel one of 22 looks.
+WobblingBody make_wobbling_body(int side, std::uint32_t seed);
+
+// The 22 looks: muscles at their activation, tissue, bone.
+std::vector<Look> wobbling_looks(double time);
+
+// `count` bodies and where they stand: in rows that fill a picture of that aspect.
+struct WobblingGroup {
+  std::vector<WobblingBody> bodies;
+  std::vector<Placement> placements;
+
+  std::vector<Body> views() const;
+  std::vector<float> positions(double time) const;
+};
+WobblingGroup make_wobbling_group(int count, int side, std::uint32_t seed, float spacing);
+
+}  // namespace mercury::render
