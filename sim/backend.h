@@ -44,6 +44,7 @@ class Backend {
   virtual void read_velocities(std::span<Vec3> out) const = 0;
 
   virtual RobotStatus status(std::size_t robot) const = 0;
+  virtual std::vector<RobotStatus> statuses() const = 0;
   virtual void set_status(std::size_t robot, const RobotStatus& status) = 0;
 
   // size * max_materials elements, robot-major.

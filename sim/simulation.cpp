@@ -108,8 +108,7 @@ struct Simulation::Parts {
     backend->load(pointers, configuration);
   }
 
-  void complete(Telemetry& telemetry, std::size_t robot) const {
-    const RobotStatus status = backend->status(robot);
+  void complete(Telemetry& telemetry, std::size_t robot, const RobotStatus& status) const {
     if (status.exploded_step < 0) return;
     Clock clock_then = clock;
     clock_then.step = status.exploded_step;
@@ -224,7 +223,8 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
 
 std::vector<Telemetry> Simulation::telemetry() const {
   std::vector<Telemetry> all = parts_->backend->telemetry(parts_->clock);
-  for (std::size_t i = 0; i < all.size(); ++i) parts_->complete(all[i], i);
+  const std::vector<RobotStatus> statuses = parts_->backend->statuses();
+  for (std::size_t i = 0; i < all.size(); ++i) parts_->complete(all[i], i, statuses[i]);
   return all;
 }
 Telemetry Simulation::telemetry(std::size_t robot) const {

@@ -69,6 +69,11 @@ class CpuBackend final : public Backend {
   }
 
   RobotStatus status(std::size_t robot) const override { return bodies_[robot].status; }
+  std::vector<RobotStatus> statuses() const override {
+    std::vector<RobotStatus> all;
+    for (const Body& body : bodies_) all.push_back(body.status);
+    return all;
+  }
   void set_status(std::size_t robot, const RobotStatus& status) override { bodies_[robot].status = status; }
 
   void write_materials(std::span<const Material> tables) override {

@@ -1,0 +1,209 @@
+// The CUDA backend.
+#include "sim/backend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cuda/batch.h"
+#include "sim/cuda/block.cuh"
+#include "sim/cuda/step.h"
+#include "sim/cuda/telemetry.h"
+
+namespace mercury {
+namespace {
+
+using namespace cuda;
+
+// A launch stays short enough for a display to be served by the same GPU.
+constexpr std::int64_t most_steps_a_launch = 2000;
+
+class CudaBackend final : public Backend {
+ public:
+  explicit CudaBackend(const Device& device) : device_(device.index) {
+    const int count = cuda_device_count();
+    if (count == 0) throw DeviceError("no CUDA device was found: use --device cpu");
+    if (device_ >= count)
+      throw DeviceError("CUDA device " + std::to_string(device_) + " is not there, the last one is " + std::to_string(count - 1));
+    use_device();
+    name_ = cuda_device_name(device_);
+  }
+
+  std::string device_name() const override { return name_; }
+
+  std::vector<std::string> notes() const override {
+    if (batch_.size() == 0 || shape_.on_chip) return {};
+    return {"the largest robot does not fit on the chip of " + name_ + ": it is stepped in device memory, more slowly"};
+  }
+
+  void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
+    use_device();
+    batch_ = Batch();
+    batch_ = Batch(robots);
+    configure(configuration);
+  }
+
+  void configure(const Configuration& configuration) override {
+    use_device();
+    configuration_ = configuration;
+    batch_.configure(configuration);
+    hooks_ = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+    constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
+                  static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
+    choose();
+  }
+
+  void step(const Clock& clock, std::int64_t steps) override {
+    if (batch_.size() == 0) return;
+    use_device();
+    batch_.update_phases(clock);
+    StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
+    if (const Land* land = std::get_if<Land>(&configuration_.environment))
+      arguments.contact_stiffness = land->contact_stiffness * land->stiffness_scale;
+    for (std::int64_t done = 0; done < steps; done += arguments.steps) {
+      arguments.clock.step = clock.step + done;
+      arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));
+      launch_steps(configuration_.solver, hooks_, arguments, nullptr);
+    }
+    check(cudaDeviceSynchronize(), "stepping");
+  }
+
+  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
+    use_device();
+    std::vector<float> groups(std::size_t{batch_.groups()} * state_rows * lanes);
+    batch_.read_state(robot, groups);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(groups, i, 0);
+    for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(groups, i, 3);
+  }
+
+  void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
+    use_device();
+    std::vector<float> groups(std::size_t{batch_.groups()} * state_rows * lanes);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      put_vector(groups, i, 0, positions[i]);
+      put_vector(groups, i, 3, velocities[i]);
+    }
+    batch_.write_state(robot, groups);
+  }
+
+  void read_positions(std::span<Vec3> out) const override { gather(out, 0); }
+  void read_velocities(std::span<Vec3> out) const override { gather(out, 3); }
+
+  RobotStatus status(std::size_t robot) const override {
+    use_device();
+    const DeviceStatus status = batch_.status(robot);
+    return {status.exploded_step, status.bad_mass};
+  }
+  std::vector<RobotStatus> statuses() const override {
+    use_device();
+    std::vector<RobotStatus> all;
+    for (const DeviceStatus& status : batch_.statuses()) all.push_back({status.exploded_step, status.bad_mass});
+    return all;
+  }
+  void set_status(std::size_t robot, const RobotStatus& status) override {
+    use_device();
+    batch_.set_status(robot, {status.exploded_step, status.bad_mass});
+  }
+
+  void write_materials(std::span<const Material> tables) override {
+    use_device();
+    batch_.set_materials(0, tables, configuration_);
+    choose();
+  }
+  void write_materials(std::size_t robot, std::span<const Material> table) override {
+    use_device();
+    batch_.set_materials(robot, table, configuration_);
+    choose();
+  }
+
+  void set_pulls(std::span<const Pull> pulls) override {
+    use_device();
+    batch_.set_pulls(pulls);
+  }
+
+  std::vector<Telemetry> telemetry(const Clock& clock) const override {
+    std::vector<Telemetry> all(batch_.size());
+    if (all.empty()) return all;
+    use_device();
+    const_cast<Batch&>(batch_).update_phases(clock);
+    DeviceArray<DeviceTelemetry> device(all.size());
+    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment),
+                     working_rows(configuration_.solver), device.data());
+    std::vector<DeviceTelemetry> sums(all.size());
+    device.read(0, sums);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto masses = static_cast<double>(batch_.robots()[i]->masses.size());
+      const auto mean = [&](const double* sum) {
+        return Vec3{static_cast<float>(sum[0] / masses), static_cast<float>(sum[1] / masses), static_cast<float>(sum[2] / masses)};
+      };
+      all[i].center_of_mass = mean(sums[i].position);
+      all[i].velocity = mean(sums[i].velocity);
+      all[i].kinetic_energy = sums[i].kinetic_energy;
+      all[i].elastic_energy = sums[i].elastic_energy;
+      all[i].largest_strain = sums[i].largest_strain;
+    }
+    return all;
+  }
+
+ private:
+  void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
+
+  void choose() {
+    if (batch_.size() == 0) return;
+    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.groups(), batch_.size(), batch_.same_laws());
+    std::size_t workspace = 0;
+    if (!shape_.on_chip) workspace += std::size_t{batch_.groups()} * working_rows(configuration_.solver) * row_bytes;
+    if (!shape_.contacts_on_chip) workspace += contact_bytes(shape_.contact_buckets, batch_.groups());
+    batch_.reserve_workspace(workspace);
+  }
+
+  void gather(std::span<Vec3> out, std::uint32_t first_row) const {
+    if (out.empty()) return;
+    use_device();
+    DeviceArray<float> packed(3 * out.size());
+    batch_.gather(packed.data(), first_row);
+    static_assert(sizeof(Vec3) == 3 * sizeof(float));
+    packed.read(0, std::span(&out.front().x, 3 * out.size()));
+  }
+
+  static Vec3 vector_at(std::span<const float> groups, std::size_t mass, std::uint32_t row) {
+    const float* at = groups.data() + (mass / lanes * state_rows + row) * lanes + mass % lanes;
+    return {at[0], at[lanes], at[2 * lanes]};
+  }
+  static void put_vector(std::span<float> groups, std::size_t mass, std::uint32_t row, Vec3 value) {
+    float* at = groups.data() + (mass / lanes * state_rows + row) * lanes + mass % lanes;
+    at[0] = value.x;
+    at[lanes] = value.y;
+    at[2 * lanes] = value.z;
+  }
+
+  int device_;
+  std::string name_;
+  Batch batch_;
+  Configuration configuration_;
+  AnyHooks hooks_ = OceanHooks(Ocean{});
+  StepConstants constants_;
+  Shape shape_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return std::make_unique<CudaBackend>(device); }
+
+int cuda_device_count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess) {
+    (void)cudaGetLastError();
+    return 0;
+  }
+  return count;
+}
+
+std::string cuda_device_name(int index) {
+  cudaDeviceProp properties{};
+  check(cudaGetDeviceProperties(&properties, index), "asking for a device's name");
+  return properties.name;
+}
+
+bool built_with_cuda() { return true; }
+
+}  // namespace mercury

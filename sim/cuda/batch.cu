@@ -1,0 +1,230 @@
+#include "sim/cuda/batch.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "sim/cuda/step.h"
+
+namespace mercury::cuda {
+namespace {
+
+constexpr unsigned threads = 256;
+
+// What one robot adds to the buffers.
+struct Prepared {
+  Schedule schedule;
+  std::vector<FacePair> pairs;
+};
+
+Prepared prepare(const Robot& robot) { return {schedule_springs(robot), pair_faces(robot)}; }
+
+// Turns the partner of every record from one unit into another: mass index (rows 0) or byte offset among groups of
+// so many rows.
+__global__ void place_partners(SpringRecord* records, std::size_t count, std::uint32_t old_rows, std::uint32_t new_rows) {
+  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count; i += std::size_t{gridDim.x} * blockDim.x) {
+    const std::uint32_t where = records[i].where, place = where >> 8;
+    std::uint32_t mass = place;
+    if (old_rows > 0) mass = place / (old_rows * row_bytes) * lanes + place % (old_rows * row_bytes) / 4;
+    records[i].where = (mass / lanes * new_rows * row_bytes + mass % lanes * 4) << 8 | (where & 0xff);
+  }
+}
+
+__global__ void compute_phases(const Material* materials, MusclePhase* phases, std::size_t count, Clock clock) {
+  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
+  if (i < count) phases[i] = muscle_phase(materials[i], clock);
+}
+
+__global__ void gather_rows(const float* state, const std::uint64_t* first_mass, std::uint32_t group_stride,
+                            std::uint32_t first_row, float* out) {
+  const std::uint32_t robot = blockIdx.x;
+  const std::uint64_t first = first_mass[robot], masses = first_mass[robot + 1] - first;
+  const float* groups = state + std::size_t{robot} * group_stride * state_rows * lanes + first_row * lanes;
+  for (std::uint64_t k = threadIdx.x; k < 3 * masses; k += blockDim.x) {
+    const std::uint64_t mass = k / 3, axis = k % 3;
+    out[3 * first + k] = groups[(mass / lanes * state_rows + axis) * lanes + mass % lanes];
+  }
+}
+
+unsigned blocks_for(std::size_t count) { return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536)); }
+
+std::size_t state_index(std::size_t mass, std::uint32_t row) { return (mass / lanes * state_rows + row) * lanes + mass % lanes; }
+
+}  // namespace
+
+Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), robots.end()) {
+  measures_.resize(size());
+  oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(), [&](std::size_t i) { measures_[i] = measure(*robots_[i]); });
+  for (const Robot* robot : robots_) {
+    first_mass_.push_back(first_mass_.back() + robot->masses.size());
+    group_stride_ = std::max(group_stride_, static_cast<std::uint32_t>((robot->masses.size() + lanes - 1) / lanes));
+  }
+  if (size() > 0) upload(measures_);
+}
+
+// Robots are prepared on all cores and uploaded a portion at a time, so that the host never holds all of the device's
+// layout.
+void Batch::upload(std::span<const RobotMeasures> measures) {
+  const std::size_t count = robots_.size();
+  constexpr std::size_t portion = 512;
+  // Rows and pairs are known only once a robot is prepared; an upper bound comes from a first pass over the counts.
+  std::vector<std::uint32_t> rows(count), pairs(count);
+  std::vector<Prepared> kept;
+  const bool keep = count <= portion;
+  if (keep) kept.resize(count);
+  oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    Prepared prepared = prepare(*robots_[i]);
+    rows[i] = prepared.schedule.rows();
+    pairs[i] = static_cast<std::uint32_t>(prepared.pairs.size());
+    if (keep) kept[i] = std::move(prepared);
+  });
+  row_stride_ = std::ranges::max(rows);
+  face_stride_ = std::ranges::max(pairs);
+
+  device_records_ = DeviceArray<RobotRecord>(count);
+  device_statuses_ = DeviceArray<DeviceStatus>(count);
+  state_ = DeviceArray<float>(count * group_stride_ * state_rows * lanes);
+  splits_ = DeviceArray<float>(count * group_stride_ * lanes);
+  springs_ = DeviceArray<SpringRecord>(count * row_stride_ * lanes);
+  row_start_ = DeviceArray<std::uint32_t>(count * (group_stride_ + 1));
+  face_pairs_ = DeviceArray<FacePair>(count * face_stride_);
+  device_materials_ = DeviceArray<Material>(count * max_materials);
+  phases_ = DeviceArray<MusclePhase>(count * max_materials);
+  device_first_mass_ = DeviceArray<std::uint64_t>(first_mass_.size());
+  device_first_mass_.write(0, first_mass_);
+  const std::vector<DeviceStatus> fresh(count, DeviceStatus{-1, no_mass});
+  device_statuses_.write(0, fresh);
+
+  records_.resize(count);
+  materials_.assign(count * max_materials, {});
+  for (std::size_t first = 0; first < count; first += portion) {
+    const std::size_t n = std::min(portion, count - first);
+    std::vector<float> state(n * group_stride_ * state_rows * lanes), splits(n * group_stride_ * lanes);
+    std::vector<SpringRecord> springs(n * row_stride_ * lanes);
+    std::vector<std::uint32_t> row_start(n * (group_stride_ + 1));
+    std::vector<FacePair> face_pairs(n * face_stride_);
+    oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
+      const std::size_t i = first + k;
+      const Robot& robot = *robots_[i];
+      const Prepared prepared = keep ? std::move(kept[i]) : prepare(robot);
+      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()), prepared.schedule.groups(), pairs[i],
+                     static_cast<std::uint32_t>(robot.springs.size()), 1, 1, measures[i].squared_stretch_limit(),
+                     measures[i].contact_distance()};
+      float* groups = state.data() + k * group_stride_ * state_rows * lanes;
+      for (std::size_t m = 0; m < robot.masses.size(); ++m) {
+        groups[state_index(m, 0)] = robot.masses[m].x;
+        groups[state_index(m, 1)] = robot.masses[m].y;
+        groups[state_index(m, 2)] = robot.masses[m].z;
+      }
+      const std::vector<std::uint32_t> at = springs_at_masses(robot);
+      std::ranges::copy(at, splits.begin() + static_cast<std::ptrdiff_t>(k * group_stride_ * lanes));
+      SpringRecord* to = springs.data() + k * row_stride_ * lanes;
+      for (const ScheduledSpring& spring : prepared.schedule.places)
+        *to++ = {static_cast<std::uint32_t>(spring.partner) << 8 | spring.material, spring.rest_length};
+      std::ranges::copy(prepared.schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
+      std::ranges::copy(prepared.pairs, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
+      std::ranges::copy(materials_of(robot), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
+    });
+    state_.write(first * group_stride_ * state_rows * lanes, state);
+    splits_.write(first * group_stride_ * lanes, splits);
+    springs_.write(first * row_stride_ * lanes, springs);
+    row_start_.write(first * (group_stride_ + 1), row_start);
+    face_pairs_.write(first * face_stride_, face_pairs);
+  }
+  device_materials_.write(0, materials_);
+}
+
+void Batch::configure(const Configuration& configuration) {
+  if (size() == 0) return;
+  update_scales(configuration);
+  place_records(working_rows(configuration.solver));
+}
+
+void Batch::update_scales(const Configuration& configuration) {
+  oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(), [&](std::size_t i) {
+    const FixedPointScale scale =
+        fixed_point_scale(measures_[i], std::span(materials_).subspan(i * max_materials, max_materials), configuration);
+    records_[i].force_scale = scale.force;
+    records_[i].correction_scale = scale.correction;
+  });
+  device_records_.write(0, records_);
+  const auto first_table = materials_.begin();
+  same_laws_ = std::ranges::all_of(records_, [&](const RobotRecord& record) {
+    const auto i = &record - records_.data();
+    return record.force_scale == records_[0].force_scale && record.correction_scale == records_[0].correction_scale &&
+           std::equal(first_table, first_table + max_materials, first_table + i * max_materials);
+  });
+}
+
+void Batch::place_records(std::uint32_t rows) {
+  if (rows == rows_placed_) return;
+  place_partners<<<blocks_for(springs_.size()), threads>>>(springs_.data(), springs_.size(), rows_placed_, rows);
+  check(cudaGetLastError(), "placing springs");
+  rows_placed_ = rows;
+}
+
+void Batch::set_materials(std::size_t first_robot, std::span<const Material> tables, const Configuration& configuration) {
+  std::ranges::copy(tables, materials_.begin() + static_cast<std::ptrdiff_t>(first_robot * max_materials));
+  device_materials_.write(first_robot * max_materials, tables);
+  phases_stale_ = true;
+  update_scales(configuration);
+}
+
+void Batch::update_phases(const Clock& clock) {
+  const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
+  if (size() == 0 || (!phases_stale_ && same_base)) return;
+  const auto blocks = static_cast<unsigned>((phases_.size() + threads - 1) / threads);
+  compute_phases<<<blocks, threads>>>(device_materials_.data(), phases_.data(), phases_.size(), clock);
+  check(cudaGetLastError(), "computing muscle phases");
+  phase_clock_ = clock;
+  phases_stale_ = false;
+}
+
+void Batch::set_pulls(std::span<const Pull> pulls) {
+  std::vector<DevicePull> converted;
+  for (const Pull& pull : pulls)
+    converted.push_back({static_cast<std::uint32_t>(pull.robot), pull.mass, pull.target, pull.stiffness});
+  pulls_ = DeviceArray<DevicePull>(converted.size());
+  pulls_.write(0, converted);
+}
+
+void Batch::reserve_workspace(std::size_t bytes_a_robot) {
+  if (bytes_a_robot == workspace_stride_) return;
+  workspace_ = DeviceArray<char>();
+  workspace_ = DeviceArray<char>(bytes_a_robot * robots_.size());
+  workspace_stride_ = bytes_a_robot;
+}
+
+BatchView Batch::view() const {
+  return {device_records_.data(), device_statuses_.data(), state_.data(), springs_.data(), row_start_.data(),
+          face_pairs_.data(), splits_.data(), device_materials_.data(), phases_.data(), pulls_.data(), workspace_.data(),
+          size(), group_stride_, row_stride_, face_stride_, static_cast<std::uint32_t>(pulls_.size()),
+          static_cast<std::uint32_t>(workspace_stride_)};
+}
+
+void Batch::read_state(std::size_t robot, std::span<float> groups) const {
+  state_.read(robot * group_stride_ * state_rows * lanes, groups);
+}
+void Batch::write_state(std::size_t robot, std::span<const float> groups) {
+  state_.write(robot * group_stride_ * state_rows * lanes, groups);
+}
+
+DeviceStatus Batch::status(std::size_t robot) const {
+  DeviceStatus status{};
+  device_statuses_.read(robot, std::span(&status, 1));
+  return status;
+}
+std::vector<DeviceStatus> Batch::statuses() const {
+  std::vector<DeviceStatus> all(size());
+  device_statuses_.read(0, all);
+  return all;
+}
+void Batch::set_status(std::size_t robot, DeviceStatus status) { device_statuses_.write(robot, std::span(&status, 1)); }
+
+void Batch::gather(float* device_out, std::uint32_t first_row) const {
+  if (size() == 0) return;
+  gather_rows<<<size(), threads>>>(state_.data(), device_first_mass_.data(), group_stride_, first_row, device_out);
+  check(cudaGetLastError(), "gathering masses");
+}
+
+}  // namespace mercury::cuda

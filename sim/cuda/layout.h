@@ -1,0 +1,68 @@
+// How robots lie in device memory. Every robot has a chunk of each buffer, sized by the largest robot (paper, II.D).
+//
+// Masses stand in groups of 32. A group is a stack of rows of 32 floats, one row a quantity, so that a mass is one
+// offset, every quantity of it lies a constant further, and a mass's bank is its index mod 32 in every row.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/cuda/schedule.h"
+#include "sim/material.h"
+#include "sim/muscle.h"
+#include "sim/vec3.h"
+
+namespace mercury::cuda {
+
+inline constexpr std::uint32_t row_bytes = lanes * 4;
+
+// Rows of a group in global memory: positions and velocities.
+inline constexpr std::uint32_t state_rows = 6;
+
+// Rows of a group while it is stepped: positions, velocities, sums, and for XPBD the number of springs at a mass.
+enum Row : std::uint32_t { row_x = 0, row_v = 3, row_sum = 6, row_splits = 9 };
+inline constexpr std::uint32_t working_rows_force = 9;
+inline constexpr std::uint32_t working_rows_xpbd = 10;
+
+// A scheduled spring in 8 bytes. `where` = partner << 8 | material, the partner as a mass index or, once `rows` is
+// chosen, as byte offset into the working memory.
+struct SpringRecord {
+  std::uint32_t where;
+  float rest_length;
+};
+
+struct RobotRecord {
+  std::uint32_t masses, groups, face_pairs, springs;
+  float force_scale, correction_scale;   // FixedPointScale
+  float squared_stretch_limit;           // [m2]
+  float contact_distance;                // [m]
+};
+
+// What became of a robot: the step is counted from the start of the simulation, -1 = has not exploded.
+struct DeviceStatus {
+  long long exploded_step;
+  std::uint32_t bad_mass;
+};
+
+struct DevicePull {
+  std::uint32_t robot, mass;
+  Vec3 target;
+  float stiffness;
+};
+
+// Pointers and strides of a batch in device memory; strides in elements, one chunk a robot.
+struct BatchView {
+  const RobotRecord* robots;
+  DeviceStatus* statuses;
+  float* state;                    // [robot][group][state_rows][32]
+  const SpringRecord* springs;     // [robot][row][32]
+  const std::uint32_t* row_start;  // [robot][group + 1]
+  const FacePair* face_pairs;      // [robot][pair]
+  const float* splits;             // [robot][mass], springs at a mass
+  const Material* materials;       // [robot][max_materials]
+  MusclePhase* phases;             // [robot][max_materials], for the present clock base
+  const DevicePull* pulls;
+  char* workspace;                 // [robot], what does not fit on the chip: contact lists, working memory
+  std::uint32_t robot_count, group_stride, row_stride, face_stride, pull_count, workspace_stride;
+};
+
+}  // namespace mercury::cuda

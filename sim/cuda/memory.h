@@ -1,0 +1,64 @@
+// Owners of device memory, and errors.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "sim/error.h"
+
+namespace mercury::cuda {
+
+// Throws DeviceError saying what was tried.
+inline void check(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+}
+
+// An array in device memory.
+template <class T>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  explicit DeviceArray(std::size_t size) : size_(size) {
+    if (size == 0) return;
+    const cudaError_t error = cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T));
+    if (error == cudaErrorMemoryAllocation) {
+      (void)cudaGetLastError();
+      throw DeviceError("the GPU has not enough memory left for " + std::to_string(size * sizeof(T) >> 20) +
+                        " MiB: give it fewer or smaller robots");
+    }
+    check(error, "allocating device memory");
+  }
+  ~DeviceArray() { cudaFree(data_); }
+  DeviceArray(DeviceArray&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+  void write(std::size_t first, std::span<const T> values) {
+    if (!values.empty())
+      check(cudaMemcpy(data_ + first, values.data(), values.size_bytes(), cudaMemcpyHostToDevice), "writing to the device");
+  }
+  void read(std::size_t first, std::span<T> values) const {
+    if (!values.empty())
+      check(cudaMemcpy(values.data(), data_ + first, values.size_bytes(), cudaMemcpyDeviceToHost), "reading from the device");
+  }
+  void clear() {
+    if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "clearing device memory");
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace mercury::cuda

@@ -1,0 +1,194 @@
+#include "sim/cuda/schedule.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace mercury::cuda {
+namespace {
+
+struct Edge {
+  std::uint16_t owner, partner;
+  std::uint32_t spring;
+};
+
+// Which mass owns each spring, and how busy that makes lanes and banks.
+class Ownership {
+ public:
+  explicit Ownership(const Robot& robot)
+      : springs_(robot.springs), lane_load_(robot.masses.size()),
+        bank_load_((robot.masses.size() + lanes - 1) / lanes * lanes), owned_by_b_(robot.springs.size()) {
+    for (std::size_t s = 0; s < springs_.size(); ++s) {
+      const auto [a, b] = ends(s);
+      owned_by_b_[s] = rank(b, a) < rank(a, b);
+      change(s, 1);
+    }
+    for (int pass = 0; pass < 4 && improve(); ++pass) {}
+  }
+
+  std::uint16_t owner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].b : springs_[s].a; }
+  std::uint16_t partner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].a : springs_[s].b; }
+
+ private:
+  struct Ends {
+    std::uint16_t a, b;
+  };
+  Ends ends(std::size_t s) const { return {springs_[s].a, springs_[s].b}; }
+
+  std::uint32_t& bank_load(std::uint16_t owner, std::uint16_t partner) {
+    return bank_load_[owner / lanes * lanes + partner % lanes];
+  }
+  std::uint32_t busiest(std::uint16_t owner, std::uint16_t partner) {
+    return std::max(lane_load_[owner], bank_load(owner, partner));
+  }
+  // First the larger load, then the sum.
+  std::uint32_t rank(std::uint16_t owner, std::uint16_t partner) {
+    return busiest(owner, partner) * 0x10000 + lane_load_[owner] + bank_load(owner, partner);
+  }
+  void change(std::size_t s, std::uint32_t by) {
+    lane_load_[owner(s)] += by;
+    bank_load(owner(s), partner(s)) += by;
+  }
+
+  // Hands springs to their other end where that is less busy. False if none was.
+  bool improve() {
+    bool improved = false;
+    for (std::size_t s = 0; s < springs_.size(); ++s) {
+      if (busiest(partner(s), owner(s)) + 1 >= busiest(owner(s), partner(s))) continue;
+      change(s, static_cast<std::uint32_t>(-1));
+      owned_by_b_[s] = !owned_by_b_[s];
+      change(s, 1);
+      improved = true;
+    }
+    return improved;
+  }
+
+  const std::vector<Spring>& springs_;
+  std::vector<std::uint32_t> lane_load_, bank_load_;
+  std::vector<std::uint8_t> owned_by_b_;
+};
+
+// Colours the edges between 32 lanes and 32 banks; edges of one colour share neither lane nor bank.
+class EdgeColouring {
+ public:
+  explicit EdgeColouring(std::span<const Edge> edges) : edges_(edges) {
+    std::array<std::uint32_t, lanes> lane_degree{}, bank_degree{};
+    for (const Edge& edge : edges) {
+      colours_ = std::max(colours_, ++lane_degree[lane(edge)]);
+      colours_ = std::max(colours_, ++bank_degree[bank(edge)]);
+    }
+    at_lane_.assign(std::size_t{lanes} * colours_, none);
+    at_bank_.assign(std::size_t{lanes} * colours_, none);
+    for (std::uint32_t e = 0; e < edges.size(); ++e) colour(e);
+  }
+
+  std::uint32_t colours() const { return colours_; }
+  // The edge of a lane in a colour, or none.
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::uint32_t edge_at(std::uint32_t lane, std::uint32_t colour) const { return at_lane_[lane * colours_ + colour]; }
+
+ private:
+  static std::uint32_t lane(const Edge& edge) { return edge.owner % lanes; }
+  static std::uint32_t bank(const Edge& edge) { return edge.partner % lanes; }
+  std::uint32_t& at_lane(std::uint32_t lane, std::uint32_t colour) { return at_lane_[lane * colours_ + colour]; }
+  std::uint32_t& at_bank(std::uint32_t bank, std::uint32_t colour) { return at_bank_[bank * colours_ + colour]; }
+
+  std::uint32_t free_colour(const std::vector<std::uint32_t>& at, std::uint32_t vertex) const {
+    const auto first = at.begin() + static_cast<std::ptrdiff_t>(vertex * colours_);
+    return static_cast<std::uint32_t>(std::find(first, first + colours_, none) - first);
+  }
+
+  void colour(std::uint32_t e) {
+    const std::uint32_t u = lane(edges_[e]), v = bank(edges_[e]);
+    for (std::uint32_t c = 0; c < colours_; ++c)
+      if (at_lane(u, c) == none && at_bank(v, c) == none) return place(e, c);
+    const std::uint32_t free_at_lane = free_colour(at_lane_, u), free_at_bank = free_colour(at_bank_, v);
+    swap_path(v, free_at_lane, free_at_bank);
+    place(e, free_at_lane);
+  }
+
+  void place(std::uint32_t e, std::uint32_t c) {
+    at_lane(lane(edges_[e]), c) = e;
+    at_bank(bank(edges_[e]), c) = e;
+  }
+
+  // Exchanges two colours along the path that leaves bank `v` by `wanted`; that frees `wanted` at v. The path cannot
+  // end at the lane of the new edge, where `wanted` is free already: it reaches lanes by `wanted` only.
+  void swap_path(std::uint32_t v, std::uint32_t wanted, std::uint32_t other) {
+    path_.clear();
+    bool from_bank = true;
+    for (std::uint32_t vertex = v, c = wanted;; c = c == wanted ? other : wanted, from_bank = !from_bank) {
+      const std::uint32_t e = from_bank ? at_bank(vertex, c) : at_lane(vertex, c);
+      if (e == none) break;
+      path_.push_back(e);
+      vertex = from_bank ? lane(edges_[e]) : bank(edges_[e]);
+    }
+    std::uint32_t c = wanted;
+    for (const std::uint32_t e : path_) {
+      if (at_lane(lane(edges_[e]), c) == e) at_lane(lane(edges_[e]), c) = none;
+      if (at_bank(bank(edges_[e]), c) == e) at_bank(bank(edges_[e]), c) = none;
+      c = c == wanted ? other : wanted;
+    }
+    c = other;
+    for (const std::uint32_t e : path_) {
+      place(e, c);
+      c = c == wanted ? other : wanted;
+    }
+  }
+
+  std::span<const Edge> edges_;
+  std::uint32_t colours_ = 0;
+  std::vector<std::uint32_t> at_lane_, at_bank_, path_;
+};
+
+// Springs by their owner's group.
+struct Grouped {
+  std::vector<std::uint32_t> start;
+  std::vector<Edge> edges;
+};
+
+Grouped group_by_owner(const Robot& robot, std::uint32_t groups) {
+  const Ownership ownership(robot);
+  Grouped grouped;
+  grouped.start.assign(groups + 1, 0);
+  for (std::size_t s = 0; s < robot.springs.size(); ++s) ++grouped.start[ownership.owner(s) / lanes + 1];
+  for (std::uint32_t g = 0; g < groups; ++g) grouped.start[g + 1] += grouped.start[g];
+  grouped.edges.resize(robot.springs.size());
+  std::vector<std::uint32_t> next(grouped.start.begin(), grouped.start.end() - 1);
+  for (std::size_t s = 0; s < robot.springs.size(); ++s)
+    grouped.edges[next[ownership.owner(s) / lanes]++] = {ownership.owner(s), ownership.partner(s),
+                                                         static_cast<std::uint32_t>(s)};
+  return grouped;
+}
+
+void append_group(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, std::uint32_t group) {
+  const EdgeColouring colouring(edges);
+  for (std::uint32_t c = 0; c < colouring.colours(); ++c)
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+      const std::uint32_t e = colouring.edge_at(lane, c);
+      // Lanes past the last mass belong to no mass; their places point at memory that is there but unused.
+      const auto self = static_cast<std::uint16_t>(group * lanes + lane);
+      if (e == EdgeColouring::none) {
+        schedule.places.push_back({self, air, 0});
+      } else {
+        const Spring& spring = robot.springs[edges[e].spring];
+        schedule.places.push_back({edges[e].partner, spring.material, spring.rest_length});
+      }
+    }
+  schedule.row_start.push_back(schedule.row_start.back() + colouring.colours());
+}
+
+}  // namespace
+
+Schedule schedule_springs(const Robot& robot) {
+  const auto groups = static_cast<std::uint32_t>((robot.masses.size() + lanes - 1) / lanes);
+  const Grouped grouped = group_by_owner(robot, groups);
+  Schedule schedule;
+  schedule.row_start.push_back(0);
+  schedule.places.reserve(robot.springs.size() * 5 / 4);
+  for (std::uint32_t g = 0; g < groups; ++g)
+    append_group(schedule, robot, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]), g);
+  return schedule;
+}
+
+}  // namespace mercury::cuda

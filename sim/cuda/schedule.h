@@ -1,0 +1,45 @@
+// The order in which a warp meets its springs, so that its 32 lanes never want the same bank of shared memory.
+//
+// Masses stand in groups of 32, one a lane. Each spring is owned by one of its two masses, whose lane computes it; the
+// other mass is its partner. In one row every lane of a group has at most one spring, and no two partners share a bank
+// (mass index mod 32). Rows are found by colouring the edges of the bipartite graph of lanes and banks, which takes
+// exactly as many rows as the busiest lane or bank has springs (Koenig's theorem); owners are chosen to keep that small.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/robot.h"
+
+namespace mercury::cuda {
+
+inline constexpr std::uint32_t lanes = 32;
+
+// A spring as its owner's lane sees it. An empty place has material air, rest length 0 and the owner itself as partner:
+// it has no length and no stiffness, so it adds nothing.
+struct ScheduledSpring {
+  std::uint16_t partner = 0;
+  MaterialId material = air;
+  float rest_length = 0;
+};
+
+struct Schedule {
+  // Rows of group g are [row_start[g], row_start[g + 1]); a row has 32 places.
+  std::vector<std::uint32_t> row_start;
+  std::vector<ScheduledSpring> places;
+  std::uint32_t groups() const { return static_cast<std::uint32_t>(row_start.size() - 1); }
+  std::uint32_t rows() const { return row_start.back(); }
+};
+
+Schedule schedule_springs(const Robot& robot);
+
+// Two triangles (a, b, c) and (a, c, d) that share an edge, so that their common masses are read once. A triangle
+// without a neighbour left has d = a: its second triangle has no area and no force.
+struct FacePair {
+  std::uint16_t a = 0, b = 0, c = 0, d = 0;
+};
+
+// Every face once, in an order in which the masses of 32 pairs in a row seldom share a bank.
+std::vector<FacePair> pair_faces(const Robot& robot);
+
+}  // namespace mercury::cuda

@@ -1,0 +1,45 @@
+// Launching the step kernels.
+#pragma once
+
+#include <variant>
+
+#include "sim/cuda/layout.h"
+#include "sim/environments.h"
+#include "sim/integration.h"
+
+namespace mercury::cuda {
+
+// What a block has and does.
+struct Shape {
+  std::uint32_t robots_per_block = 1;
+  std::uint32_t warps_per_robot = 1;
+  std::uint32_t table_copies = 1;   // of the material table: 1, 2, 4, 8 or 16
+  bool shared_table = false;        // all robots of the batch have the same materials
+  bool on_chip = true;              // masses in shared memory, else in the workspace
+  std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
+  bool contacts_on_chip = true;       // else behind the working memory in the workspace
+  std::size_t shared_bytes = 0;
+};
+
+struct StepArguments {
+  BatchView batch;
+  Clock clock;              // of the first step
+  StepConstants constants;
+  float stiffness_scale = 1;
+  float contact_stiffness = 0;  // [N/m], times the stiffness scale
+  std::uint32_t steps = 0;
+  Shape shape;
+};
+
+using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
+
+std::uint32_t working_rows(Solver solver);
+
+// The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
+Shape choose_shape(Solver solver, const Environment& environment, std::uint32_t groups, std::uint32_t robots,
+                   bool same_materials);
+
+// Asynchronous; errors through cudaGetLastError.
+void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream);
+
+}  // namespace mercury::cuda

@@ -1,0 +1,19 @@
+// Telemetry reduced on the device.
+#pragma once
+
+#include "sim/cuda/layout.h"
+
+namespace mercury::cuda {
+
+struct DeviceTelemetry {
+  double position[3], velocity[3];  // sums over the masses
+  double kinetic_energy, elastic_energy;
+  float largest_strain;
+};
+
+// One block a robot; the order of every sum is fixed by the robot alone. `rows` = working rows that the records are
+// placed for.
+void launch_telemetry(const BatchView& batch, const Clock& clock, float stiffness_scale, std::uint32_t rows,
+                      DeviceTelemetry* out);
+
+}  // namespace mercury::cuda
