@@ -3,11 +3,16 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 if(TARGET mercury)
-  install(TARGETS mercury RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # Libraries that scripts/bundle packs beside the program, for what these libraries load, too (RPATH, not RUNPATH).
+  set_target_properties(mercury PROPERTIES INSTALL_RPATH $ORIGIN/../lib/mercury)
+  target_link_options(mercury PRIVATE LINKER:--disable-new-dtags)
+  install(TARGETS mercury RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
-install(DIRECTORY robots/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mercury/robots
-  OPTIONAL FILES_MATCHING PATTERN "*.json" PATTERN "*.cbor")
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(EXISTS ${PROJECT_SOURCE_DIR}/robots/library)
+  install(DIRECTORY robots/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mercury/robots COMPONENT program
+    FILES_MATCHING PATTERN "*.json" PATTERN "*.cbor")
+endif()
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 # The headers that a program outside this repository may include. They include no others of ours.
 target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES

@@ -11,12 +11,23 @@ packages_to_build=(
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev   # render
   libcli11-dev libfmt-dev libhdf5-dev libimgui-dev                       # app
 )
-packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6)
+packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
+packages_welcome=(libosmesa6)  # drawing where EGL is missing; newer distributions have it no more
 packages_to_test=(libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
 
 fail() {
   echo "$(basename "$0"): $*" >&2
   exit 1
+}
+
+# logged FILE COMMAND...: the command's output goes to build/FILE, and its end to the terminal if it fails.
+logged() {
+  local log=build/$1
+  shift
+  if ! "$@" </dev/null >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    fail "this command failed: $* (all of its output: $log)"
+  fi
 }
 
 # install_missing PACKAGE...: installs by apt what dpkg does not list as installed. Silent, and without touching the
@@ -39,20 +50,11 @@ install_missing() {
   echo "Installing ${missing[*]}" >&2
   mkdir -p build
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
-  if ! { "${apt[@]}" update && "${apt[@]}" install --no-install-recommends "${missing[@]}"; } </dev/null >build/apt.log 2>&1; then
-    tail -n 20 build/apt.log >&2
-    fail "apt-get could not install ${missing[*]} (all of its output: build/apt.log)"
-  fi
-}
-
-# logged FILE COMMAND...: the command's output goes to build/FILE, and its end to the terminal if it fails.
-logged() {
-  local log=build/$1
-  shift
-  if ! "$@" </dev/null >"$log" 2>&1; then
-    tail -n 60 "$log" >&2
-    fail "this command failed: $* (all of its output: $log)"
-  fi
+  logged apt-update.log "${apt[@]}" update
+  for package in "${packages_welcome[@]}"; do
+    if apt-get -s install "$package" >/dev/null 2>&1; then missing+=("$package"); fi
+  done
+  logged apt-install.log "${apt[@]}" install --no-install-recommends "${missing[@]}"
 }
 
 # One compiler a core, but no more than memory holds: CGAL takes up to 2 GB each.
