@@ -1,0 +1,119 @@
+// A JSON or CBOR document as a stream of events, read and written without holding it as a tree.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mercury {
+
+// A number of a document: a whole number that fits 64 bits, else a real one.
+struct Number {
+  enum class Kind { natural, negative, real };
+  Kind kind = Kind::natural;
+  std::uint64_t natural = 0;   // if natural
+  std::int64_t negative = 0;   // if negative, below 0
+  double real = 0;             // the value, whatever the kind; infinite where a JSON number is too large for a double
+  std::string_view text;       // as it stood in a JSON text, else empty; valid during the event only
+};
+
+// The nearest float, read from the number's text where there is one, so that a float's shortest form comes back
+// exactly. Nothing if it is not finite as a float; a number too small for a float is 0.
+std::optional<float> to_float(const Number& number);
+
+// The number as JSON writes it: its own text, else its shortest form. It must be finite.
+std::string to_text(const Number& number);
+
+inline constexpr std::size_t unknown_length = static_cast<std::size_t>(-1);
+inline constexpr int max_depth = 64;  // arrays and objects within each other
+
+// What a document holds, in its order. `announced` is the number of elements that the document says will follow; they
+// may not be there.
+class DocumentEvents {
+ public:
+  virtual ~DocumentEvents() = default;
+  virtual void null() = 0;
+  virtual void boolean(bool value) = 0;
+  virtual void number(const Number& value) = 0;
+  virtual void text(std::string_view value) = 0;   // UTF-8 in a JSON document, unchecked in CBOR
+  virtual void bytes(std::string_view value) = 0;  // CBOR only
+  virtual void begin_array(std::size_t announced) = 0;
+  virtual void end_array() = 0;
+  virtual void begin_object(std::size_t announced) = 0;
+  virtual void key(std::string_view name) = 0;
+  virtual void end_object() = 0;
+};
+
+// Sends the whole document's events. Throw InputError ("line 3, column 7: not valid JSON: ...", "byte 17: ...") for a
+// document that breaks off, is no such document, is followed by more, or nests deeper than max_depth. Memory follows
+// what the document holds, not what it announces; the stack does not grow with its depth. Exceptions of `events` pass
+// through.
+void read_json(std::string_view document, DocumentEvents& events);
+void read_cbor(std::string_view document, DocumentEvents& events);
+
+// Writes events as JSON text without spaces. Throws InputError for text that is not UTF-8, numbers that are not
+// finite, and bytes, which JSON lacks.
+class JsonWriter : public DocumentEvents {
+ public:
+  enum class Layout { compact, rows };  // rows: each key of the outermost object on a line of its own, its lists broken
+                                        // into lines of about 100 characters
+  explicit JsonWriter(std::string& out, Layout layout = Layout::compact) : out_(out), layout_(layout) {}
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view name) override;
+  void end_object() override;
+
+ private:
+  void before_value();
+  void begin(char bracket);
+  void end(char bracket);
+
+  std::string& out_;
+  Layout layout_;
+  int depth_ = 0;
+  bool first_ = true;       // no element yet in the array or object that is open
+  bool after_key_ = false;
+  std::size_t line_ = 0;    // where the present line begins in out_
+};
+
+// Writes events as CBOR (RFC 8949): floats where they hold the number exactly, else doubles.
+class CborWriter : public DocumentEvents {
+ public:
+  explicit CborWriter(std::string& out) : out_(out) {}
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view name) override;
+  void end_object() override;
+
+ private:
+  void head(unsigned major_type, std::uint64_t value);
+  void begin(unsigned major_type, std::size_t announced);
+  void end();
+
+  std::string& out_;
+  std::uint64_t open_ended_ = 0;  // a bit for each open array or object, set where its length was not announced
+};
+
+// Numbers for the writers.
+Number natural_number(std::uint64_t value);
+Number real_number(float value, std::span<char> room);  // `room` keeps its text, at least 32 characters
+
+// A JSON string with its quotes. Throws InputError for text that is not UTF-8.
+std::string json_text(std::string_view text);
+
+}  // namespace mercury

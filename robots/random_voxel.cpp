@@ -1,0 +1,215 @@
+#include "robots/random_voxel.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "robots/random.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr int phases = 4;                                // of the base muscles
+constexpr int most_frequencies = muscle_count / phases;
+
+// A box of random numbers in [0, 1), read between its points by linear interpolation: smooth noise.
+class Noise {
+ public:
+  Noise(Random& random, const VoxelGrid& grid, int spacing)
+      : spacing_(spacing), nx_(grid.nx / spacing + 2), ny_(grid.ny / spacing + 2),
+        values_(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_) *
+                static_cast<std::size_t>(grid.nz / spacing + 2)) {
+    for (double& value : values_) value = random.uniform();
+  }
+
+  double operator()(int x, int y, int z) const {
+    const auto [i, u] = split(x);
+    const auto [j, v] = split(y);
+    const auto [k, w] = split(z);
+    const auto along_x = [&, i = i, u = u](int b, int c) { return mix(at(i, b, c), at(i + 1, b, c), u); };
+    const auto along_y = [&, j = j, v = v](int c) { return mix(along_x(j, c), along_x(j + 1, c), v); };
+    return mix(along_y(k), along_y(k + 1), w);
+  }
+
+ private:
+  struct Place {
+    int cell;
+    double rest;
+  };
+  Place split(int x) const { return {x / spacing_, (x % spacing_ + 0.5) / spacing_}; }
+  static double mix(double a, double b, double t) { return a + t * (b - a); }
+  double at(int i, int j, int k) const {
+    return values_[static_cast<std::size_t>(i) +
+                   static_cast<std::size_t>(nx_) *
+                       (static_cast<std::size_t>(j) + static_cast<std::size_t>(ny_) * static_cast<std::size_t>(k))];
+  }
+
+  int spacing_, nx_, ny_;
+  std::vector<double> values_;
+};
+
+// Draws the materials of one robot.
+class Palette {
+ public:
+  Palette(Random& random, const RandomVoxelOptions& options) : options_(options) {
+    std::iota(frequencies_.begin(), frequencies_.end(), 0);
+    for (std::size_t i = frequencies_.size() - 1; i > 0; --i)
+      std::swap(frequencies_[i], frequencies_[static_cast<std::size_t>(random.below(i + 1))]);
+  }
+
+  MaterialId draw(Random& random) const {
+    double at = random.uniform() * (options_.muscle + options_.tissue + options_.bone);
+    const auto frequency = frequencies_[static_cast<std::size_t>(random.below(static_cast<std::uint64_t>(options_.frequencies)))];
+    const auto phase = static_cast<int>(random.below(phases));
+    if ((at -= options_.muscle) < 0) return static_cast<MaterialId>(frequency * phases + phase + 1);
+    if ((at -= options_.tissue) < 0) return tissue;
+    return options_.bone > 0 ? bone : options_.tissue > 0 ? tissue : MaterialId{1};
+  }
+
+ private:
+  const RandomVoxelOptions& options_;
+  std::array<int, most_frequencies> frequencies_{};
+};
+
+// Regions of one material: each voxel takes that of the nearest of the sites, one a block of patch^3 voxels.
+class Patches {
+ public:
+  Patches(Random& random, const Palette& palette, const VoxelGrid& grid, int patch)
+      : patch_(patch), nx_((grid.nx - 1) / patch + 1), ny_((grid.ny - 1) / patch + 1), nz_((grid.nz - 1) / patch + 1) {
+    sites_.reserve(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_) * static_cast<std::size_t>(nz_));
+    const auto draw = [&](int block) { return (block + random.uniform()) * patch_; };
+    for (int k = 0; k < nz_; ++k)
+      for (int j = 0; j < ny_; ++j)
+        for (int i = 0; i < nx_; ++i) {
+          const double x = draw(i), y = draw(j), z = draw(k);
+          sites_.push_back({x, y, z, palette.draw(random)});
+        }
+  }
+
+  MaterialId at(int x, int y, int z) const {
+    const int i = x / patch_, j = y / patch_, k = z / patch_;
+    if (patch_ == 1) return site(i, j, k).material;
+    double nearest = std::numeric_limits<double>::infinity();
+    MaterialId material = air;
+    for (int c = std::max(k - 1, 0); c <= std::min(k + 1, nz_ - 1); ++c)
+      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, ny_ - 1); ++b)
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, nx_ - 1); ++a) {
+          const Site& candidate = site(a, b, c);
+          const double dx = candidate.x - x - 0.5, dy = candidate.y - y - 0.5, dz = candidate.z - z - 0.5;
+          const double distance = dx * dx + dy * dy + dz * dz;
+          if (distance >= nearest) continue;
+          nearest = distance;
+          material = candidate.material;
+        }
+    return material;
+  }
+
+ private:
+  struct Site {
+    double x, y, z;
+    MaterialId material;
+  };
+  const Site& site(int i, int j, int k) const {
+    return sites_[static_cast<std::size_t>(i) +
+                  static_cast<std::size_t>(nx_) *
+                      (static_cast<std::size_t>(j) + static_cast<std::size_t>(ny_) * static_cast<std::size_t>(k))];
+  }
+
+  int patch_, nx_, ny_, nz_;
+  std::vector<Site> sites_;
+};
+
+// Which voxels of the drawn part become air: those far from the middle, with dents and bays where the noise is high.
+std::vector<bool> carve(Random& random, const VoxelGrid& grid, const std::array<int, 3>& drawn,
+                        const RandomVoxelOptions& options) {
+  const Noise noise(random, grid, std::max(options.patch, 2));
+  struct Score {
+    double value;
+    std::size_t cell;
+  };
+  std::vector<Score> scores;
+  const auto from_middle = [](int x, int n) {
+    const double d = (2 * x + 1 - n) / static_cast<double>(n);
+    return d * d;
+  };
+  for (int z = 0; z < drawn[2]; ++z)
+    for (int y = 0; y < drawn[1]; ++y)
+      for (int x = 0; x < drawn[0]; ++x)
+        scores.push_back({from_middle(x, grid.nx) + from_middle(y, grid.ny) + from_middle(z, grid.nz) +
+                              2.5 * noise(x, y, z),
+                          grid.index(x, y, z)});
+  const auto removed = std::min(static_cast<std::size_t>(options.air * static_cast<double>(scores.size()) + 0.5),
+                                scores.size() - 1);
+  const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(removed);
+  std::nth_element(scores.begin(), middle, scores.end(), [](const Score& a, const Score& b) {
+    return a.value != b.value ? a.value > b.value : a.cell < b.cell;
+  });
+  std::vector<bool> is_air(grid.cells.size(), false);
+  for (auto score = scores.begin(); score != middle; ++score) is_air[score->cell] = true;
+  return is_air;
+}
+
+}  // namespace
+
+void validate(const RandomVoxelOptions& options) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (options.smallest[axis] < 1 || options.largest[axis] < options.smallest[axis])
+      throw InputError("--size", "voxels " + std::to_string(options.smallest[axis]) + " to " +
+                                     std::to_string(options.largest[axis]) + " are not accepted; give at least 1");
+  if (!(options.air >= 0 && options.air < 1)) throw InputError("--air", "give a share of at least 0 and below 1");
+  if (options.patch < 1) throw InputError("--patch", "give at least 1 voxel");
+  if (options.frequencies < 1 || options.frequencies > most_frequencies)
+    throw InputError("--frequencies", "give 1 to " + std::to_string(most_frequencies));
+  const double sum = options.muscle + options.tissue + options.bone;
+  if (!(options.muscle >= 0 && options.tissue >= 0 && options.bone >= 0 && sum > 0 && std::isfinite(sum)))
+    throw InputError("--muscle, --tissue, --bone", "give shares of at least 0, one of them above");
+}
+
+VoxelGrid random_voxel_grid(const RandomVoxelOptions& options, std::uint64_t seed, std::uint64_t index) {
+  validate(options);
+  Random random(seed_of(seed, index));
+  std::array<int, 3> size;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = options.smallest[axis] +
+                 static_cast<int>(random.below(static_cast<std::uint64_t>(options.largest[axis] - options.smallest[axis]) + 1));
+  VoxelGrid grid(size[0], size[1], size[2]);
+  grid.edge = options.edge;
+  std::array<int, 3> drawn = size;
+  if (options.mirror != Mirror::none) {
+    int& half = drawn[static_cast<std::size_t>(options.mirror) - 1];
+    half = (half + 1) / 2;
+  }
+  const std::vector<bool> is_air = carve(random, grid, drawn, options);
+  const Palette palette(random, options);
+  const Patches patches(random, palette, grid, options.patch);
+  const auto drawn_at = [&](int x, std::size_t axis) { return x < drawn[axis] ? x : size[axis] - 1 - x; };
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      for (int x = 0; x < size[0]; ++x) {
+        const int u = drawn_at(x, 0), v = drawn_at(y, 1), w = drawn_at(z, 2);
+        grid.cell(x, y, z) = is_air[grid.index(u, v, w)] ? air : patches.at(u, v, w);
+      }
+  return grid;
+}
+
+Robot random_voxel_robot(const RandomVoxelOptions& options, std::uint64_t seed, std::uint64_t index) {
+  return make_voxel_robot(random_voxel_grid(options, seed, index),
+                          {.name = "voxel-" + std::to_string(seed) + "-" + std::to_string(index),
+                           .seed = seed,
+                           .index = index});
+}
+
+std::vector<Robot> random_voxel_robots(const RandomVoxelOptions& options, std::uint64_t seed, std::size_t count,
+                                       std::uint64_t first) {
+  validate(options);
+  std::vector<Robot> robots(count);
+  oneapi::tbb::parallel_for(std::size_t{0}, count,
+                            [&](std::size_t i) { robots[i] = random_voxel_robot(options, seed, first + i); });
+  return robots;
+}
+
+}  // namespace mercury

@@ -1,0 +1,204 @@
+#include "robots/file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "robots/random_voxel.h"
+#include "robots/whole_file.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RobotFiles : public testing::Test {
+ protected:
+  RobotFiles() {
+    std::string name = (fs::temp_directory_path() / "mercury-robots-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+  }
+  ~RobotFiles() override { fs::remove_all(folder); }
+
+  void put(const fs::path& name, const std::string& content) { std::ofstream(folder / name) << content; }
+  // The message without the folder's name.
+  std::string message_of(auto&& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      std::string message = error.what();
+      const std::string prefix = folder.string() + "/";
+      for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) message.erase(at, prefix.size());
+      return message;
+    }
+    return "no error";
+  }
+  std::vector<std::string> names_in_folder() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  fs::path folder;
+};
+
+Robot robot_with_hard_values() {
+  Robot robot;
+  robot.name = "Zitteraal \"ä\"\n\t\\ \x01 鰻";
+  robot.materials = {{}, {50, 0.14f, 1, std::nextafter(1.f, 2.f)}, {1e-30f, -0.5f, -3, 7e7f}};
+  robot.material_names = {"air", "", "µ"};
+  robot.masses = {{0.1f, -0.f, 1e-45f}, {1.f / 3, 999999.94f, 16777216.f / 32}, {-1.17549435e-38f, 5, 3e-5f}};
+  robot.springs = {{0, 1, 1, 0.001f}, {2, 1, 2, 1e6f}};
+  robot.faces = {{0, 1, 2}, {2, 1, 0}};
+  robot.origin = R"({"kind":"test","seed":18446744073709551615,"a":[-9223372036854775808,0.1,1e+300,null,true,"x\u0000"],"b":{}})";
+  return robot;
+}
+
+TEST_F(RobotFiles, EveryValueComesBackBitForBit) {
+  for (const char* name : {"a.json", "a.cbor"}) {
+    const Robot robot = robot_with_hard_values();
+    save_robot(folder / name, robot);
+    const Robot loaded = load_robot(folder / name);
+    EXPECT_EQ(loaded, robot) << name;
+    EXPECT_TRUE(std::signbit(loaded.masses[0].y)) << name;
+  }
+}
+
+TEST_F(RobotFiles, VoxelRobotsComeBackWithTheirGrid) {
+  for (std::uint64_t i = 0; i < 20; ++i)
+    for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
+      const Robot robot = random_voxel_robot({}, 11, i);
+      const Robot loaded = parse_robot(serialize_robot(robot, format), format);
+      ASSERT_EQ(loaded, robot);
+      ASSERT_EQ(voxel_grid_of(loaded), voxel_grid_of(robot));
+    }
+}
+
+TEST_F(RobotFiles, RestLengthsAreLeftOutWhereAllAreTheDistancesAtRest) {
+  Robot robot{.masses = {{0, 0, 0}, {0, 3, 4}}, .springs = {{0, 1, 21, 5}}};
+  EXPECT_THAT(serialize_robot(robot, RobotFormat::json), testing::HasSubstr("\"springs\":[[0,1,21]]"));
+  EXPECT_EQ(parse_robot(serialize_robot(robot, RobotFormat::json), RobotFormat::json), robot);
+  EXPECT_EQ(parse_robot(serialize_robot(robot, RobotFormat::cbor), RobotFormat::cbor), robot);
+  robot.springs[0].rest_length = 4.5f;
+  EXPECT_THAT(serialize_robot(robot, RobotFormat::json), testing::HasSubstr("\"springs\":[[0,1,21,4.5]]"));
+}
+
+TEST_F(RobotFiles, LinesOfAFileAreShort) {
+  const Robot robot = random_voxel_robot({}, 1);
+  std::istringstream lines(serialize_robot(robot, RobotFormat::json));
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(line.size() < 160 || line.starts_with("\"origin\"")) << line;
+}
+
+TEST_F(RobotFiles, UnknownKeysAreIgnored) {
+  const std::string document = R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
+    "materials": [{"stiffness": 1}, {"stiffness": 2, "colour": {"r": [1]}, "name": "m"}],
+    "version": 1, "masses": [[0, 0, 0], [1, 0, 0]], "faces": [], "x": 1e99})";
+  const Robot robot = parse_robot(document, RobotFormat::json);
+  EXPECT_EQ(robot.springs, (std::vector<Spring>{{0, 1, 1, 1}}));
+  EXPECT_EQ(robot.materials, (std::vector<Material>{{1, 0, 0, 0}, {2, 0, 0, 0}}));
+  EXPECT_EQ(robot.material_names, (std::vector<std::string>{"", "m"}));
+}
+
+TEST_F(RobotFiles, ARobotWithoutANameIsNamedByItsFile) {
+  put("ray.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})");
+  EXPECT_EQ(load_robot(folder / "ray.json").name, "ray");
+}
+
+TEST_F(RobotFiles, FoldersAreReadByName) {
+  const Robot robot{.masses = {{0, 0, 0}}};
+  fs::create_directory(folder / "b");
+  fs::create_directory(folder / "b" / "inner.json");
+  for (const char* name : {"b/2.json", "b/10.cbor", "b/1.json", "z.cbor"}) {
+    Robot named = robot;
+    named.name = name;
+    save_robot(folder / name, named);
+  }
+  put("b/readme.txt", "no robot");
+  const std::vector<fs::path> paths{folder / "z.cbor", folder / "b"};
+  std::vector<std::string> names;
+  for (const Robot& loaded : load_robots(paths)) names.push_back(loaded.name);
+  EXPECT_THAT(names, testing::ElementsAre("z.cbor", "b/1.json", "b/10.cbor", "b/2.json"));
+}
+
+TEST_F(RobotFiles, WhatCannotBeReadIsNamed) {
+  const auto load = [&](const char* name) { return message_of([&] { load_robots(std::vector{folder / name}); }); };
+  fs::create_directory(folder / "empty");
+  EXPECT_EQ(load("empty"), "empty: the folder holds no robot, neither *.json nor *.cbor");
+  EXPECT_EQ(load("missing.json"), "missing.json: No such file or directory");
+  EXPECT_EQ(load("eel.txt"), "eel.txt: extension .txt is not a robot's; give .json or .cbor");
+  EXPECT_EQ(load("eel"), "eel: a robot file needs an extension; give .json or .cbor");
+  ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+  EXPECT_EQ(load("pipe.json"), "pipe.json: not a regular file");
+}
+
+TEST_F(RobotFiles, FilesAreWrittenWholeOrNotAtAll) {
+  const Robot robot = random_voxel_robot({}, 1);
+  save_robot(folder / "a.json", robot);
+  const std::string before = read_whole_file(folder / "a.json");
+
+  // A full disk: the process may not write files of more than 1,000 bytes.
+  rlimit old{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, old.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message = message_of([&] { save_robot(folder / "a.json", random_voxel_robot({}, 2)); });
+  ::setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+
+  EXPECT_EQ(message, "a.json: File too large");
+  EXPECT_EQ(read_whole_file(folder / "a.json"), before);
+  EXPECT_THAT(names_in_folder(), testing::ElementsAre("a.json"));
+  EXPECT_EQ(message_of([&] { save_robot(folder / "no" / "b.json", robot); }), "no/b.json: No such file or directory");
+  fs::create_directory(folder / "c.json");
+  put("c.json/x", "");
+  EXPECT_EQ(message_of([&] { save_robot(folder / "c.json", robot); }), "c.json: Is a directory");
+  EXPECT_THAT(names_in_folder(), testing::ElementsAre("a.json", "c.json"));
+}
+
+TEST_F(RobotFiles, ALinkIsFollowed) {
+  fs::create_directory(folder / "real");
+  fs::create_symlink("real/eel.json", folder / "link.json");
+  const Robot robot{.name = "eel", .masses = {{0, 0, 0}}};
+  save_robot(folder / "link.json", robot);
+  save_robot(folder / "link.json", robot);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
+  EXPECT_EQ(load_robot(folder / "real" / "eel.json"), robot);
+}
+
+TEST_F(RobotFiles, WhatCannotBeSavedLeavesNoFile) {
+  Robot robot{.name = "a", .masses = {{0, 0, 0}}};
+  const auto save = [&](const char* name) { return message_of([&] { save_robot(folder / name, robot); }); };
+  EXPECT_EQ(save("a.obj"), "a.obj: extension .obj is not a robot's; give .json or .cbor");
+  robot.origin = "{\"kind\": ";
+  EXPECT_EQ(save("a.json"), "a.json: /origin: line 1, column 9: not valid JSON: unexpected end of input");
+  robot.origin = "[1]";
+  EXPECT_EQ(save("a.cbor"), "a.cbor: /origin: must be an object");
+  robot.origin = "{\"a\":" + std::string(63, '[') + std::string(63, ']') + "}";
+  EXPECT_EQ(save("a.cbor"), "a.cbor: /origin: nested deeper than 63 levels");
+  robot.origin = "{\"a\":" + std::string(61, '[') + std::string(61, ']') + "}";
+  EXPECT_EQ(save("deep.cbor"), "no error");
+  EXPECT_EQ(load_robot(folder / "deep.cbor"), robot);
+  fs::remove(folder / "deep.cbor");
+  robot.origin.clear();
+  robot.name = "\xff";
+  EXPECT_EQ(save("a.json"), "a.json: a text is not valid UTF-8");
+  EXPECT_EQ(save("a.cbor"), "a.cbor: a text is not valid UTF-8");
+  robot = {.springs = {{0, 1, 1, 1}}};
+  EXPECT_EQ(save("a.json"), "a.json: /masses: a robot needs at least one mass");
+  EXPECT_TRUE(names_in_folder().empty());
+}
+
+}  // namespace
+}  // namespace mercury
