@@ -2,10 +2,13 @@
 #include "sim/backend.h"
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "sim/cpu/step.h"
 #include "sim/cpu/telemetry.h"
@@ -18,7 +21,11 @@ using namespace cpu;
 class CpuBackend final : public Backend {
  public:
   explicit CpuBackend(const Device& device)
-      : arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {}
+      : arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
+    // Without this, more threads than cores are refused, with a warning on stderr.
+    if (device.threads > oneapi::tbb::info::default_concurrency())
+      allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(device.threads));
+  }
 
   std::string device_name() const override {
     const int threads = arena_.max_concurrency();
@@ -105,6 +112,7 @@ class CpuBackend final : public Backend {
     update_laws(bodies_[robot], configuration_);
   }
 
+  std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
   Configuration configuration_;
