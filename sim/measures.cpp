@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "sim/integration.h"
 #include "sim/telemetry.h"
 
 namespace mercury {
@@ -52,6 +54,23 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
       static_cast<float>(1 / (static_cast<double>(stiffness) * configuration.dt * configuration.dt));
   const float longest = std::max(measures.longest, min_rest_length);
   return {power_of_two_within(range), power_of_two_within(reach * longest / (2 + compliance))};
+}
+
+std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted) {
+  if (noted >= state.positions.size()) return noted;
+  const auto blame = [&](std::uint32_t mass) {
+    const Vec3 v = state.velocities[mass];
+    const float squared = dot(v, v);
+    const bool sound = within_reach(state.positions[mass]) && std::isfinite(squared);
+    return sound ? squared : std::numeric_limits<float>::infinity();
+  };
+  std::uint32_t worst = noted;
+  for (const Face& face : robot.faces) {
+    if (face.a != noted && face.b != noted && face.c != noted) continue;
+    for (const std::uint32_t mass : {face.a, face.b, face.c})
+      if (blame(mass) > blame(worst)) worst = mass;
+  }
+  return worst;
 }
 
 std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass) {

@@ -114,7 +114,9 @@ struct Simulation::Parts {
     clock_then.step = status.exploded_step;
     telemetry.exploded = true;
     telemetry.exploded_at = time_of(clock_then);
-    telemetry.first_bad_spring = first_bad_spring(*robots[robot], state(robot).positions, status.bad_mass);
+    const State frozen = state(robot);
+    const std::uint32_t bad_mass = mass_to_blame(*robots[robot], frozen, status.bad_mass);
+    telemetry.first_bad_spring = first_bad_spring(*robots[robot], frozen.positions, bad_mass);
   }
 };
 
