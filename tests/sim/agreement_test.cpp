@@ -1,0 +1,86 @@
+// Every pair of solver and environment follows an independent calculation in double precision.
+#include <gtest/gtest.h>
+
+#include "backend.h"
+#include "bodies.h"
+#include "reference.h"
+
+namespace mercury {
+namespace {
+
+using reference::largest_deviation;
+using reference::Reference;
+
+// One second at dt = 1e-3 beside the reference, looked at every 50 ms. Returns the largest distance [m].
+double deviation_over_a_second(const Configuration& configuration, const Robot& robot, const State* start = nullptr) {
+  Simulation simulation(configuration, {&robot, 1});
+  Reference expected(configuration, robot);
+  if (start) {
+    simulation.set_state(0, start->positions, start->velocities);
+    expected.set_state(*start);
+  }
+  double largest = 0;
+  for (int look = 0; look < 20; ++look) {
+    simulation.step(50);
+    expected.step(50);
+    largest = std::max(largest, largest_deviation(expected.positions(), simulation.positions(0)));
+  }
+  return largest;
+}
+
+class Agreement : public EveryPair {
+ protected:
+  bool on_land() const { return std::get<std::string_view>(GetParam()) == Land::name; }
+  double tolerance() const { return on_land() ? 1e-3 : 1e-4; }  // [m]
+};
+
+TEST_P(Agreement, RandomVoxelRobotFollowsTheReferenceFromRest) {
+  EXPECT_LT(deviation_over_a_second(configuration(), bodies::random_voxels({}, 1)), tolerance());
+}
+
+TEST_P(Agreement, ShakenRobotFollowsTheReference) {
+  const Robot robot = bodies::random_voxels({}, 2);
+  State start = bodies::shaken(robot, 0.01f, 0.5f, 3);
+  for (Vec3& x : start.positions) x.z += 0.02f;  // clear of the floor: on land it falls
+  EXPECT_LT(deviation_over_a_second(configuration(), robot, &start), tolerance());
+}
+
+TEST_P(Agreement, TiltedRobotInACurrentOrDroppedFollowsTheReference) {
+  Configuration setting = configuration();
+  if (auto* ocean = std::get_if<Ocean>(&setting.environment)) *ocean = {.lift_coefficient = 0.5f, .flow = {0.3f, -0.2f, 0.1f}};
+  if (auto* simple = std::get_if<OceanSimple>(&setting.environment)) *simple = {.point_drag = 3, .flow = {0.3f, -0.2f, 0.1f}};
+  setting.damping = 0.5;
+  Robot robot = bodies::random_voxels({.x = 3, .y = 4, .z = 5}, 4);
+  bodies::rotate(robot, bodies::random_rotation(5));
+  State start = bodies::moving(robot, {0.5f, 0, -0.5f});
+  if (on_land()) {
+    float lowest = 0;
+    for (const Vec3 x : start.positions) lowest = std::min(lowest, x.z);
+    for (Vec3& x : start.positions) x.z += 0.05f - lowest;
+  }
+  EXPECT_LT(deviation_over_a_second(setting, robot, &start), tolerance());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Agreement, every_pair, EveryPair::name);
+
+TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  for (const Solver solver : {Solver::force, Solver::xpbd})
+    for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name}) {
+      const Robot robot = bodies::random_voxels({}, 6);
+      Configuration configuration{.solver = solver, .environment = environment_named(environment)};
+      configuration.device.kind = DeviceKind::cpu;
+      Simulation cpu(configuration, {&robot, 1});
+      configuration.device.kind = DeviceKind::cuda;
+      Simulation cuda(configuration, {&robot, 1});
+      cpu.step(1000);
+      cuda.step(1000);
+      const auto expected = cpu.positions(0), actual = cuda.positions(0);
+      float largest = 0;
+      for (std::size_t i = 0; i < expected.size(); ++i) largest = std::max(largest, length(expected[i] - actual[i]));
+      EXPECT_LT(largest, 1e-4f) << name_of(solver) << " " << environment;
+    }
+}
+
+}  // namespace
+}  // namespace mercury

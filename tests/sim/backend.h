@@ -1,0 +1,56 @@
+// Every physics test runs on every backend; some on every pair of solver and environment too.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+
+#include "sim/simulation.h"
+
+namespace mercury {
+
+// A test of one backend. On a machine without a CUDA device the CUDA case is skipped.
+class Backend : public testing::TestWithParam<DeviceKind> {
+ protected:
+  void SetUp() override { skip_without(GetParam()); }
+  Device device() const { return {.kind = GetParam()}; }
+
+ public:
+  static void skip_without(DeviceKind kind) {
+    if (kind == DeviceKind::cuda && cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  }
+  static std::string name(const testing::TestParamInfo<DeviceKind>& info) {
+    return name_of(Device{.kind = info.param});
+  }
+};
+
+// A test of one backend, solver and environment, six pairs of the latter two.
+using Pair = std::tuple<DeviceKind, Solver, std::string_view>;
+class EveryPair : public testing::TestWithParam<Pair> {
+ protected:
+  void SetUp() override { Backend::skip_without(std::get<DeviceKind>(GetParam())); }
+  Configuration configuration() const {
+    return {.solver = std::get<Solver>(GetParam()),
+            .environment = environment_named(std::get<std::string_view>(GetParam())),
+            .device = {.kind = std::get<DeviceKind>(GetParam())}};
+  }
+
+ public:
+  static std::string name(const testing::TestParamInfo<Pair>& info) {
+    std::string text = name_of(Device{.kind = std::get<DeviceKind>(info.param)});
+    text.append(1, '_').append(name_of(std::get<Solver>(info.param))).append(1, '_');
+    for (const char letter : std::get<std::string_view>(info.param)) text += letter == '-' ? '_' : letter;
+    return text;
+  }
+};
+
+inline const auto every_device = testing::Values(DeviceKind::cpu, DeviceKind::cuda);
+inline const auto every_pair =
+    testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
+                     testing::Values(Ocean::name, OceanSimple::name, Land::name));
+
+// Empty space: no water, no weight. Nothing acts but springs.
+inline OceanSimple empty_space() { return {.point_drag = 0}; }
+
+}  // namespace mercury

@@ -1,0 +1,120 @@
+// Defaults, names and rules of a configuration.
+#include "sim/configuration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string message_of(const Configuration& configuration) {
+  return message_of([&] { validate(configuration); });
+}
+
+TEST(Configuration, DefaultsAreThoseOfTheDesign) {
+  const Configuration configuration;
+  EXPECT_EQ(configuration.dt, 1e-3);
+  EXPECT_EQ(configuration.damping, 0.1);
+  EXPECT_EQ(configuration.solver, Solver::force);
+  EXPECT_EQ(configuration.environment, Environment(Ocean{}));
+  EXPECT_EQ(configuration.device, (Device{DeviceKind::automatic, 0, 0}));
+
+  const Ocean ocean;
+  EXPECT_EQ(ocean.density, 1000);
+  EXPECT_EQ(ocean.drag_coefficient, 1);
+  EXPECT_EQ(ocean.lift_coefficient, 0.2f);
+  EXPECT_EQ(ocean.flow, Vec3{});
+  EXPECT_EQ(ocean.gravity, Vec3{});
+  EXPECT_EQ(ocean.stiffness_scale, 1);
+
+  const OceanSimple simple;
+  EXPECT_EQ(simple.point_drag, 1);
+  EXPECT_EQ(simple.flow, Vec3{});
+  EXPECT_EQ(simple.gravity, Vec3{});
+  EXPECT_EQ(simple.stiffness_scale, 1);
+
+  const Land land;
+  EXPECT_EQ(land.gravity, (Vec3{0, 0, -9.81f}));
+  EXPECT_EQ(land.friction, 0.8f);
+  EXPECT_TRUE(land.self_collision);
+  EXPECT_EQ(land.contact_stiffness, 100);
+  EXPECT_EQ(land.stiffness_scale, 200);
+}
+
+TEST(Configuration, NamesAndTheirReverse) {
+  for (const Solver solver : {Solver::force, Solver::xpbd}) EXPECT_EQ(solver_named(name_of(solver)), solver);
+  EXPECT_EQ(name_of(Solver::xpbd), "xpbd");
+  for (const Environment& environment : {Environment(Ocean{}), Environment(OceanSimple{}), Environment(Land{})})
+    EXPECT_EQ(environment_named(name_of(environment)), environment);
+  EXPECT_EQ(name_of(Environment(OceanSimple{})), "ocean-simple");
+  EXPECT_EQ(device_named("auto").kind, DeviceKind::automatic);
+  EXPECT_EQ(device_named("cpu").kind, DeviceKind::cpu);
+  EXPECT_EQ(device_named("cuda"), (Device{DeviceKind::cuda, 0, 0}));
+  EXPECT_EQ(device_named("cuda:3"), (Device{DeviceKind::cuda, 3, 0}));
+  for (const char* name : {"auto", "cpu", "cuda", "cuda:1"}) EXPECT_EQ(name_of(device_named(name)), name);
+}
+
+TEST(Configuration, UnknownNamesAreAnsweredWithWhatIsAccepted) {
+  EXPECT_EQ(message_of([] { solver_named("euler"); }), "--solver: \"euler\" is not a solver; give force or xpbd");
+  EXPECT_EQ(message_of([] { environment_named("lava"); }),
+            "--environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
+  for (const char* name : {"gpu", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
+    EXPECT_EQ(message_of([&] { device_named(name); }),
+              "--device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda or cuda:N");
+}
+
+TEST(Configuration, TimeStepAndDampingAreChecked) {
+  EXPECT_EQ(message_of(Configuration{}), "");
+  EXPECT_EQ(message_of(Configuration{.dt = 0}), "--dt: 0 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.dt = -0.5}), "--dt: -0.5 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.dt = std::nan("")}), "--dt: nan is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.damping = -1}), "--damping: -1 is not accepted; give a finite number >= 0 1/s");
+  EXPECT_EQ(message_of(Configuration{.damping = 0}), "");
+  EXPECT_EQ(message_of(Configuration{.device = {.threads = -2}}), "--threads: -2 is not accepted; give 0 or more");
+}
+
+TEST(Configuration, EveryParameterOfEveryEnvironmentIsChecked) {
+  const float nan_value = std::nanf("");
+  const float infinity = std::numeric_limits<float>::infinity();
+  const auto in = [](const Environment& environment) { return message_of(Configuration{.environment = environment}); };
+  EXPECT_EQ(in(Ocean{.density = -1}), "--density: -1 is not accepted; give a finite number >= 0 kg/m3");
+  EXPECT_EQ(in(Ocean{.density = infinity}), "--density: inf is not accepted; give a finite number >= 0 kg/m3");
+  EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}), "--drag-coefficient: -0.5 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.lift_coefficient = nan_value}), "--lift-coefficient: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.flow = {0, nan_value, 1}}), "--flow: 0,nan,1 is not accepted; give three finite numbers of m/s");
+  EXPECT_EQ(in(Ocean{.gravity = {infinity, 0, 0}}), "--gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");
+  EXPECT_EQ(in(Ocean{.stiffness_scale = -2}), "--stiffness-scale: -2 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(OceanSimple{.point_drag = -1}), "--point-drag: -1 is not accepted; give a finite number >= 0 N s/m");
+  EXPECT_EQ(in(OceanSimple{.flow = {0, 0, infinity}}), "--flow: 0,0,inf is not accepted; give three finite numbers of m/s");
+  EXPECT_EQ(in(Land{.friction = -1}), "--friction: -1 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Land{.contact_stiffness = -1}), "--contact-stiffness: -1 is not accepted; give a finite number >= 0 N/m");
+  EXPECT_EQ(in(Land{.stiffness_scale = nan_value}), "--stiffness-scale: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.density = 0, .drag_coefficient = 0, .lift_coefficient = 5}), "");
+  EXPECT_EQ(in(Land{.friction = 0, .contact_stiffness = 0, .stiffness_scale = 0}), "");
+}
+
+TEST(Configuration, GravityAndStiffnessScaleAreThoseOfTheEnvironment) {
+  EXPECT_EQ(gravity_of(Land{}), (Vec3{0, 0, -9.81f}));
+  EXPECT_EQ(gravity_of(Ocean{.gravity = {1, 2, 3}}), (Vec3{1, 2, 3}));
+  EXPECT_EQ(gravity_of(OceanSimple{}), Vec3{});
+  EXPECT_EQ(stiffness_scale_of(Land{}), 200);
+  EXPECT_EQ(stiffness_scale_of(Ocean{}), 1);
+  EXPECT_EQ(stiffness_scale_of(OceanSimple{.stiffness_scale = 3}), 3);
+}
+
+}  // namespace
+}  // namespace mercury

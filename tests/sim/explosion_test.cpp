@@ -1,0 +1,134 @@
+// A robot that leaves the finite is frozen and reported; the others go on untouched.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "backend.h"
+#include "bodies.h"
+
+namespace mercury {
+namespace {
+
+class Explosion : public EveryPair {
+ protected:
+  static std::vector<Robot> three() {
+    return {bodies::random_voxels({}, 1), bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 2),
+            bodies::random_voxels({.x = 4, .y = 2, .z = 3}, 3)};
+  }
+  static constexpr std::uint16_t victim = 20;
+  // The middle robot's state with one mass mistreated.
+  static State mistreated(const Simulation& simulation, Vec3 position, Vec3 velocity) {
+    State state = simulation.state(1);
+    state.positions[victim] = position;
+    state.velocities[victim] = velocity;
+    return state;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, Explosion, every_pair, EveryPair::name);
+
+TEST_P(Explosion, IsReportedWithTimeAndFirstBadSpringAndTheRobotIsFrozenWhileItsNeighboursGoOn) {
+  const auto robots = three();
+  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const Vec3 rest = robots[1].masses[victim];
+  const std::vector<std::pair<Vec3, Vec3>> ways = {{rest, {1e10f, 0, 0}}, {rest, {0, 0, infinity}}, {rest, {0, nan, 0}},
+                                                   {{2e6f, 0, 0}, {}},    {{0, nan, 0}, {}},        {{0, 500, 1}, {}}};
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    Simulation simulation(configuration(), robots), undisturbed(configuration(), robots);
+    simulation.step(50);
+    undisturbed.step(250);
+    const State state = mistreated(simulation, ways[way].first, ways[way].second);
+    simulation.set_state(1, state.positions, state.velocities);
+    EXPECT_FALSE(simulation.telemetry(1).exploded);
+    simulation.step(100);
+    const Telemetry telemetry = simulation.telemetry(1);
+    ASSERT_TRUE(telemetry.exploded) << "way " << way;
+    EXPECT_NEAR(telemetry.exploded_at, 0.05, 1.001e-3) << "way " << way;  // in the very next step
+    ASSERT_LT(telemetry.first_bad_spring, robots[1].springs.size());
+    const Spring& bad = robots[1].springs[telemetry.first_bad_spring];
+    EXPECT_TRUE(bad.a == victim || bad.b == victim) << "way " << way << ": " << bad.a << " - " << bad.b;
+    for (std::uint32_t before = 0; before < telemetry.first_bad_spring; ++before)
+      EXPECT_FALSE(robots[1].springs[before].a == victim || robots[1].springs[before].b == victim) << "not the first";
+
+    const std::uint64_t frozen = simulation.hash(1);
+    simulation.step(100);
+    EXPECT_EQ(simulation.hash(1), frozen) << "way " << way;
+    EXPECT_EQ(simulation.telemetry(1).exploded_at, telemetry.exploded_at);
+    for (const std::size_t neighbour : {0u, 2u}) {
+      EXPECT_FALSE(simulation.telemetry(neighbour).exploded);
+      EXPECT_EQ(simulation.hash(neighbour), undisturbed.hash(neighbour)) << "way " << way;
+    }
+  }
+}
+
+TEST_P(Explosion, IsOverAfterAResetOrANewState) {
+  const auto robots = three();
+  Simulation simulation(configuration(), robots), fresh(configuration(), robots);
+  const State state = mistreated(simulation, {}, {1e10f, 0, 0});
+  simulation.set_state(1, state.positions, state.velocities);
+  simulation.step(10);
+  ASSERT_TRUE(simulation.telemetry(1).exploded);
+  simulation.reset();
+  EXPECT_FALSE(simulation.telemetry(1).exploded);
+  simulation.step(100);
+  fresh.step(100);
+  EXPECT_EQ(simulation.hash(1), fresh.hash(1));
+}
+
+TEST_P(Explosion, SurvivesAddingAnotherRobot) {
+  const auto robots = three();
+  Simulation simulation(configuration(), robots);
+  const State state = mistreated(simulation, {}, {1e10f, 0, 0});
+  simulation.set_state(1, state.positions, state.velocities);
+  simulation.step(10);
+  const Telemetry before = simulation.telemetry(1);
+  const std::uint64_t frozen = simulation.hash(1);
+  simulation.add(robots[0]);
+  simulation.step(10);
+  EXPECT_TRUE(simulation.telemetry(1).exploded);
+  EXPECT_EQ(simulation.telemetry(1).exploded_at, before.exploded_at);
+  EXPECT_EQ(simulation.hash(1), frozen);
+}
+
+// omega_max of the pair is sqrt(2 k); beyond dt = 2 / omega_max the force solver's pair grows without bound.
+class Stability : public Backend {};
+INSTANTIATE_TEST_SUITE_P(All, Stability, every_device, Backend::name);
+
+TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndThatOfXpbdDoesNot) {
+  const Robot pair = bodies::pair({50, 0, 0, 0});
+  const double limit = 2 / std::sqrt(2 * 50.0);
+  const auto explodes = [&](Solver solver, double dt) {
+    Simulation simulation({.dt = dt, .damping = 0, .solver = solver, .environment = empty_space(), .device = device()},
+                          {&pair, 1});
+    simulation.set_state(0, std::vector<Vec3>{{0, 0, 0}, {1.01f, 0, 0}}, std::vector<Vec3>(2));
+    simulation.step(2000);
+    return simulation.telemetry(0).exploded;
+  };
+  EXPECT_FALSE(explodes(Solver::force, 0.98 * limit));
+  EXPECT_TRUE(explodes(Solver::force, 1.02 * limit));
+  for (const double factor : {0.98, 1.02, 2.0, 10.0, 1000.0}) EXPECT_FALSE(explodes(Solver::xpbd, factor * limit)) << factor;
+}
+
+// A batch in which the force solver explodes, and the same with XPBD.
+TEST_P(Stability, XpbdStaysBoundedAtATimeStepWhereTheForceSolverExplodes) {
+  const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 4);
+  for (const auto& [environment, dt] : {std::pair<std::string_view, double>{Ocean::name, 0.1},
+                                        {OceanSimple::name, 0.1},
+                                        {Land::name, 0.01}}) {
+    Configuration configuration{.dt = dt, .environment = environment_named(environment), .device = {.kind = GetParam()}};
+    Simulation force(configuration, {&robot, 1});
+    force.step(std::llround(20 / dt));
+    EXPECT_TRUE(force.telemetry(0).exploded) << environment;
+    configuration.solver = Solver::xpbd;
+    Simulation xpbd(configuration, {&robot, 1});
+    for (int look = 0; look < 20; ++look) {
+      xpbd.step(std::llround(1 / dt));
+      const Telemetry telemetry = xpbd.telemetry(0);
+      EXPECT_FALSE(telemetry.exploded) << environment;
+      EXPECT_LT(telemetry.largest_strain, 1) << environment << " at " << xpbd.time() << " s";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mercury

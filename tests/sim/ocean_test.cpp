@@ -1,0 +1,184 @@
+// Water: surface drag (paper, equation 1) and drag on points.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "backend.h"
+#include "bodies.h"
+#include "reference.h"
+
+namespace mercury {
+namespace {
+
+using reference::Vector;
+using reference::vector_of;
+
+constexpr float edge = 0.1f;                 // [m]
+constexpr Material stiff{5000, 0, 0, 0}, soft{50, 0, 0, 0};
+
+class Water : public Backend {
+ protected:
+  Configuration water(const Ocean& ocean, double dt = 1e-3, Solver solver = Solver::force) const {
+    return {.dt = dt, .damping = 0, .solver = solver, .environment = ocean, .device = device()};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, Water, every_device, Backend::name);
+
+Robot cube(std::uint64_t orientation, const Material& material = stiff) {
+  Robot robot = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, material);
+  bodies::rotate(robot, bodies::random_rotation(orientation));
+  return robot;
+}
+
+// Area of a closed convex body's shadow along the direction [m2]: half of sum A |n.direction|.
+double shadow(const Robot& robot, const Vector& direction) {
+  double sum = 0;
+  for (const Face& face : robot.faces) {
+    const Vector a = vector_of(robot.masses[face.a]), b = vector_of(robot.masses[face.b]),
+                 c = vector_of(robot.masses[face.c]);
+    sum += std::abs((b - a).cross(c - a).dot(direction)) / 2;
+  }
+  return sum / 2;
+}
+
+Vector mean_velocity(const Simulation& simulation, std::size_t robot) {
+  Vector sum = Vector::Zero();
+  const auto velocities = simulation.state(robot).velocities;
+  for (const Vec3 v : velocities) sum += vector_of(v);
+  return sum / static_cast<double>(velocities.size());
+}
+
+// Summed over a body that moves as one, F.u = rho C_D |u|^3 times the shadow, whatever C_L: lift turns, drag brakes.
+TEST_P(Water, DragOnATowedCubeTakesThePowerOfItsShadowAtAnyLift) {
+  std::vector<Robot> robots;
+  for (std::uint64_t orientation = 0; orientation < 60; ++orientation) robots.push_back(cube(orientation, soft));
+  const Vec3 velocity{0.6f, -1.1f, 0.8f};
+  constexpr double dt = 0.02;  // [s], long, so that the change of velocity stands out from float rounding
+  const Vector v = vector_of(velocity);
+  for (const float lift : {0.0f, 0.2f, 0.7f, 1.0f, 1.5f, 3.0f}) {
+    Simulation simulation(water({.drag_coefficient = 1, .lift_coefficient = lift}, dt), robots);
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const State start = bodies::moving(robots[i], velocity);
+      simulation.set_state(i, start.positions, start.velocities);
+    }
+    simulation.step();
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const Vector force = 8 * (mean_velocity(simulation, i) - v) / dt;
+      const double power = force.dot(v);
+      EXPECT_LT(power, 0) << "lift " << lift << ", orientation " << i;
+      const double expected = -1000 * std::pow(v.norm(), 3) * shadow(robots[i], v.normalized());
+      EXPECT_NEAR(power, expected, 1e-3 * std::abs(expected)) << "lift " << lift << ", orientation " << i;
+    }
+  }
+}
+
+TEST_P(Water, TowedCubeIsSlowedAndNeverSpedUpAtAnyLift) {
+  std::vector<Robot> robots;
+  for (std::uint64_t orientation = 0; orientation < 40; ++orientation) robots.push_back(cube(orientation));
+  const Vec3 velocity{1.5f, 0, 0};
+  for (const float lift : {0.0f, 0.2f, 0.5f, 1.0f, 2.0f}) {
+    Simulation simulation(water({.drag_coefficient = 1, .lift_coefficient = lift}), robots);
+    std::vector<double> energy;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const State start = bodies::moving(robots[i], velocity);
+      simulation.set_state(i, start.positions, start.velocities);
+      energy.push_back(8 * 1.5 * 1.5 / 2);
+    }
+    const std::vector<double> first = energy;
+    for (int look = 0; look < 40; ++look) {
+      simulation.step(50);
+      const auto telemetry = simulation.telemetry();
+      for (std::size_t i = 0; i < robots.size(); ++i) {
+        const double now = telemetry[i].kinetic_energy + telemetry[i].elastic_energy;
+        ASSERT_LE(now, energy[i] * (1 + 1e-5)) << "lift " << lift << ", orientation " << i << ", look " << look;
+        energy[i] = now;
+      }
+    }
+    for (std::size_t i = 0; i < robots.size(); ++i) EXPECT_LT(energy[i], 0.2 * first[i]);
+  }
+}
+
+// One plate of 3 masses, no spring: the force is equation 1 itself.
+TEST_P(Water, APlateFeelsDragAcrossAndLiftAlongTheFlow) {
+  Robot plate;
+  plate.masses = {{0, 0, 0}, {0.2f, 0, 0}, {0, 0.3f, 0}};
+  plate.faces = {{0, 1, 2}};
+  const double area = 0.03;
+  const auto force_at = [&](Vec3 flow, bool reversed) {
+    Robot robot = plate;
+    if (reversed) std::swap(robot.faces[0].b, robot.faces[0].c);
+    Simulation simulation(water({.density = 800, .drag_coefficient = 1.2f, .lift_coefficient = 0.3f, .flow = flow}), {&robot, 1});
+    simulation.step();
+    return Vector(3 * mean_velocity(simulation, 0) / 1e-3);
+  };
+  const double scale = 800 * area / 2;
+  for (const bool reversed : {false, true}) {
+    // Across: both terms point down the flow and C_L cancels.
+    EXPECT_LT((force_at({0, 0, 2}, reversed) - Vector(0, 0, scale * 1.2 * 4)).norm(), 1e-2);
+    EXPECT_LT((force_at({0, 0, -2}, reversed) - Vector(0, 0, -scale * 1.2 * 4)).norm(), 1e-2);
+    // Inclined by 45 degrees: u = (1, 0, 1), n = z, u.n = 1, |u|^2 = 2.
+    EXPECT_LT((force_at({1, 0, 1}, reversed) - scale * Vector(0.9, 0, 0.9 + 0.3 * 2)).norm(), 1e-2);
+    EXPECT_LT((force_at({-1, 0, -1}, reversed) + scale * Vector(0.9, 0, 0.9 + 0.3 * 2)).norm(), 1e-2);
+  }
+}
+
+TEST_P(Water, AFlowCarriesACubeUpToItsOwnVelocity) {
+  const Robot robot = cube(3);
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    Simulation simulation(water({.flow = {0.5f, 0.2f, 0}}, 1e-3, solver), {&robot, 1});
+    const Vector flow(0.5f, 0.2f, 0);
+    double along = 0;
+    for (int look = 0; look < 20; ++look) {
+      simulation.step(1000);
+      const double now = mean_velocity(simulation, 0).dot(flow) / flow.norm();
+      EXPECT_GE(now, along - 1e-4);
+      EXPECT_LT(now, flow.norm());
+      along = now;
+    }
+    EXPECT_GT(along, 0.8 * flow.norm());
+  }
+}
+
+// At a steady fall gravity's power is that of drag: M g v = rho C_D |v|^3 times the shadow, of a flat cube rho C_D v^3 A.
+// (A flat fall does not last: turned a little, the shadow grows. It is read off before the cube has turned.)
+TEST_P(Water, TerminalSpeedOfAFallingCubeIsThatOfEquationOne) {
+  const double g = 2, density = 1000, drag = 1.1, mass = 8;
+  const Robot flat = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, stiff);
+  for (const Solver solver : {Solver::force, Solver::xpbd})
+    for (const float lift : {0.0f, 0.2f}) {
+      Simulation simulation(water({.drag_coefficient = 1.1f, .lift_coefficient = lift, .gravity = {0, 0, -2}}, 1e-3, solver),
+                            std::vector<Robot>{flat, cube(1), cube(2), cube(3)});
+      simulation.step(2500);
+      const double expected = std::sqrt(mass * g / (density * double{edge} * double{edge} * drag));
+      EXPECT_NEAR(-mean_velocity(simulation, 0).z(), expected, 0.01 * expected) << name_of(solver) << " lift " << lift;
+      simulation.step(2500);
+      for (std::size_t i = 0; i < simulation.size(); ++i) {
+        Robot now = simulation.robot(i);
+        now.masses = simulation.positions(i);
+        const Vector v = mean_velocity(simulation, i), direction = v.normalized();
+        const double speed = std::sqrt(mass * g * -direction.z() / (density * drag * shadow(now, direction)));
+        EXPECT_NEAR(v.norm(), speed, 0.01 * speed) << name_of(solver) << " lift " << lift << " cube " << i;
+      }
+    }
+}
+
+TEST_P(Water, PointDragSlowsExponentially) {
+  const Robot robot = bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3);
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    Simulation simulation({.damping = 0.1, .solver = solver, .environment = OceanSimple{.point_drag = 0.8f, .flow = {0, 0, 0.5f}}, .device = device()}, {&robot, 1});
+    const State start = bodies::moving(robot, {1, -2, 0.5f});
+    simulation.set_state(0, start.positions, start.velocities);
+    for (int second = 1; second <= 2; ++second) {
+      simulation.step(1000);
+      const Vector v = mean_velocity(simulation, 0);
+      // dv/dt = drag (flow - v) - damping v
+      const double decay = std::exp(-0.9 * second), limit = 0.8 * 0.5 / 0.9;
+      EXPECT_NEAR(v.x(), decay, 1e-3 * decay + 1e-6) << second;
+      EXPECT_NEAR(v.y(), -2 * decay, 2e-3 * decay + 1e-6) << second;
+      EXPECT_NEAR(v.z(), limit + (0.5 - limit) * decay, 1e-3 * 0.5) << second;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mercury

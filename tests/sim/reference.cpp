@@ -1,0 +1,203 @@
+#include "reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mercury::reference {
+
+Vector vector_of(Vec3 v) { return {v.x, v.y, v.z}; }
+
+double rest_length(const Material& material, double rest_length, double time) {
+  const double omega = material.frequency, phi = material.phase, amplitude = material.amplitude;
+  return rest_length * (1 + amplitude * std::sin(omega * time + phi));
+}
+
+Reference::Reference(const Configuration& configuration, const Robot& robot)
+    : configuration_(configuration), robot_(robot), springs_at_(robot.masses.size(), 0.0) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Spring& spring : robot.springs) {
+    joined_.insert({spring.a, spring.b});
+    joined_.insert({spring.b, spring.a});
+    springs_at_[spring.a] += 1;
+    springs_at_[spring.b] += 1;
+    shortest = std::min(shortest, double{spring.rest_length});
+  }
+  if (!robot.springs.empty()) contact_distance_ = shortest / 2;
+  for (const Vec3 mass : robot.masses) x_.push_back(vector_of(mass));
+  v_.assign(x_.size(), Vector::Zero());
+  if (std::holds_alternative<Land>(configuration.environment)) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Vector& x : x_) lowest = std::min(lowest, x.z());
+    for (Vector& x : x_) x.z() -= lowest;
+  }
+}
+
+void Reference::set_state(const State& state) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = vector_of(state.positions[i]);
+    v_[i] = vector_of(state.velocities[i]);
+  }
+}
+
+double Reference::stiffness(const Spring& spring) const {
+  const double scale = std::visit([](const auto& kind) { return kind.stiffness_scale; }, configuration_.environment);
+  return scale * materials_of(robot_)[spring.material].stiffness;
+}
+
+double Reference::length_now(const Spring& spring) const {
+  return rest_length(materials_of(robot_)[spring.material], spring.rest_length, time());
+}
+
+void Reference::step(std::int64_t steps) {
+  const double dt = configuration_.dt;
+  const double zeta = std::exp(-configuration_.damping * dt);
+  for (std::int64_t step = 0; step < steps; ++step, ++steps_) {
+    Field force = environment_forces();
+    if (configuration_.solver == Solver::force) {
+      const Field elastic = spring_forces();
+      for (std::size_t i = 0; i < x_.size(); ++i) force[i] += elastic[i];
+    }
+    Field next(x_.size());
+    for (std::size_t i = 0; i < x_.size(); ++i) next[i] = x_[i] + dt * v_[i] + dt * dt * force[i];
+    if (configuration_.solver == Solver::xpbd) project_springs(next);
+    resolve_contact(next);
+    for (std::size_t i = 0; i < x_.size(); ++i) v_[i] = zeta * (next[i] - x_[i]) / dt;
+    x_ = next;
+  }
+}
+
+// Hooke's law, paper, equation 2.
+Field Reference::spring_forces() const {
+  Field force(x_.size(), Vector::Zero());
+  for (const Spring& spring : robot_.springs) {
+    const Vector d = x_[spring.b] - x_[spring.a];
+    if (d.norm() == 0) continue;
+    const Vector pull = stiffness(spring) * (d.norm() - length_now(spring)) * d.normalized();
+    force[spring.a] += pull;
+    force[spring.b] -= pull;
+  }
+  return force;
+}
+
+// Paper, equations 3 and 4, with - L restored and the masses split among their springs.
+void Reference::project_springs(Field& predicted) const {
+  const double dt = configuration_.dt;
+  Field correction(x_.size(), Vector::Zero());
+  for (const Spring& spring : robot_.springs) {
+    const Vector d = predicted[spring.b] - predicted[spring.a];
+    if (d.norm() == 0) continue;
+    const double constraint = d.norm() - length_now(spring);
+    const double compliance = 1 / (stiffness(spring) * dt * dt);
+    const double lambda = constraint / (springs_at_[spring.a] + springs_at_[spring.b] + compliance);
+    correction[spring.a] += lambda * d.normalized();
+    correction[spring.b] -= lambda * d.normalized();
+  }
+  for (std::size_t i = 0; i < x_.size(); ++i) predicted[i] += correction[i];
+}
+
+Field Reference::environment_forces() const {
+  const auto& environment = configuration_.environment;
+  const Vec3 gravity = std::visit([](const auto& kind) { return kind.gravity; }, environment);
+  Field force(x_.size(), vector_of(gravity));
+  if (const auto* ocean = std::get_if<Ocean>(&environment)) add_surface_drag(*ocean, force);
+  if (const auto* simple = std::get_if<OceanSimple>(&environment))
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      force[i] += double{simple->point_drag} * (vector_of(simple->flow) - v_[i]);
+  if (const auto* land = std::get_if<Land>(&environment); land && land->self_collision) add_repulsion(*land, force);
+  for (const Pull& pull : pulls_)
+    if (pull.robot == 0) force[pull.mass] += double{pull.stiffness} * (vector_of(pull.target) - x_[pull.mass]);
+  return force;
+}
+
+// Paper, equation 1, of the flow relative to the face; the normal looks downstream.
+void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
+  for (const Face& face : robot_.faces) {
+    const Vector u = vector_of(ocean.flow) - (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
+    const Vector twice_area = (x_[face.b] - x_[face.a]).cross(x_[face.c] - x_[face.a]);
+    if (twice_area.norm() == 0) continue;
+    const double area = twice_area.norm() / 2;
+    Vector n = twice_area.normalized();
+    if (n.dot(u) < 0) n = -n;
+    const double drag = ocean.drag_coefficient, lift = ocean.lift_coefficient;
+    const Vector total = 0.5 * ocean.density * area * ((drag - lift) * u.dot(n) * u + lift * u.squaredNorm() * n);
+    for (const int corner : {face.a, face.b, face.c}) force[static_cast<std::size_t>(corner)] += total / 3;
+  }
+}
+
+// Every pair is looked at: slow, but there is no grid to get wrong.
+void Reference::add_repulsion(const Land& land, Field& force) const {
+  const double k = double{land.contact_stiffness} * double{land.stiffness_scale};
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    for (std::size_t j = i + 1; j < x_.size(); ++j) {
+      const Vector d = x_[j] - x_[i];
+      if (d.squaredNorm() >= contact_distance_ * contact_distance_ || d.squaredNorm() == 0) continue;
+      if (joined_.contains({static_cast<int>(i), static_cast<int>(j)})) continue;
+      const Vector push = k * (contact_distance_ - d.norm()) * d.normalized();
+      force[i] -= push;
+      force[j] += push;
+    }
+}
+
+// The floor z = 0: out of it, and the step's tangential move shortened by at most friction times the depth.
+void Reference::resolve_contact(Field& next) const {
+  const auto* land = std::get_if<Land>(&configuration_.environment);
+  if (!land) return;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    if (next[i].z() >= 0) continue;
+    const double depth = -next[i].z();
+    Vector slide = next[i] - x_[i];
+    slide.z() = 0;
+    const double kept = std::max(0.0, slide.norm() - double{land->friction} * depth);
+    if (slide.norm() > 0) slide *= kept / slide.norm();
+    next[i] = {x_[i].x() + slide.x(), x_[i].y() + slide.y(), 0};
+  }
+}
+
+Vector Reference::center_of_mass() const {
+  Vector sum = Vector::Zero();
+  for (const Vector& x : x_) sum += x;
+  return sum / static_cast<double>(x_.size());
+}
+
+Vector Reference::center_velocity() const {
+  Vector sum = Vector::Zero();
+  for (const Vector& v : v_) sum += v;
+  return sum / static_cast<double>(v_.size());
+}
+
+double Reference::kinetic_energy() const {
+  double sum = 0;
+  for (const Vector& v : v_) sum += v.squaredNorm() / 2;
+  return sum;
+}
+
+double Reference::elastic_energy() const {
+  double sum = 0;
+  for (const Spring& spring : robot_.springs) {
+    const double stretch = (x_[spring.b] - x_[spring.a]).norm() - length_now(spring);
+    sum += stiffness(spring) * stretch * stretch / 2;
+  }
+  return sum;
+}
+
+double Reference::largest_strain() const {
+  double largest = 0;
+  for (const Spring& spring : robot_.springs) {
+    const double rest = spring.rest_length;
+    largest = std::max(largest, std::abs((x_[spring.b] - x_[spring.a]).norm() - rest) / rest);
+  }
+  return largest;
+}
+
+double largest_deviation(const Field& expected, const std::vector<Vec3>& actual) {
+  if (expected.size() != actual.size()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double deviation = (expected[i] - vector_of(actual[i])).norm();
+    if (!(deviation <= largest)) largest = std::isnan(deviation) ? std::numeric_limits<double>::infinity() : deviation;
+  }
+  return largest;
+}
+
+}  // namespace mercury::reference

@@ -1,0 +1,69 @@
+// A second opinion on the physics: one robot in double precision, written from the paper and the design for reading,
+// not for speed. It shares no equation with sim/; only the plain data that says what to simulate.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <set>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "sim/configuration.h"
+#include "sim/robot.h"
+#include "sim/simulation.h"
+
+namespace mercury::reference {
+
+using Vector = Eigen::Vector3d;
+using Field = std::vector<Vector>;  // one vector a mass
+
+Vector vector_of(Vec3 v);
+
+// L(t) of a spring [m]: the muscle law of paper, II.A.
+double rest_length(const Material& material, double rest_length, double time);
+
+class Reference {
+ public:
+  // Starts at time 0 at the robot's rest pose; on land, with the lowest mass at z = 0.
+  Reference(const Configuration& configuration, const Robot& robot);
+
+  void set_state(const State& state);
+  void set_pulls(std::vector<Pull> pulls) { pulls_ = std::move(pulls); }
+  void step(std::int64_t steps = 1);
+
+  const Field& positions() const { return x_; }
+  const Field& velocities() const { return v_; }
+  double time() const { return static_cast<double>(steps_) * configuration_.dt; }
+
+  Vector center_of_mass() const;
+  Vector center_velocity() const;
+  double kinetic_energy() const;
+  double elastic_energy() const;  // at the springs' present rest lengths
+  double largest_strain() const;  // against L0
+
+ private:
+  Field environment_forces() const;
+  Field spring_forces() const;
+  void project_springs(Field& predicted) const;
+  void resolve_contact(Field& next) const;
+  double stiffness(const Spring& spring) const;
+  double length_now(const Spring& spring) const;
+  void add_surface_drag(const Ocean& ocean, Field& force) const;
+  void add_repulsion(const Land& land, Field& force) const;
+
+  Configuration configuration_;
+  Robot robot_;
+  std::vector<Pull> pulls_;
+  std::set<std::pair<int, int>> joined_;  // both orders
+  std::vector<double> springs_at_;        // s, one a mass
+  double contact_distance_ = 0;           // [m]
+  Field x_, v_;
+  std::int64_t steps_ = 0;
+};
+
+// The largest distance between two positions of the same mass [m].
+double largest_deviation(const Field& expected, const std::vector<Vec3>& actual);
+
+}  // namespace mercury::reference

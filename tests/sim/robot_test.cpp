@@ -1,0 +1,124 @@
+// The rules of a robot, each with the line that a user reads when it is broken.
+#include "sim/robot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "bodies.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const float nan_value = std::nanf("");
+
+Robot sound() { return bodies::voxels({.x = 2, .y = 1, .z = 1}, {50, 0.1f, 1, 0}); }
+
+// What validate says of the sound robot after `spoil`; empty if nothing.
+std::string message_after(const std::function<void(Robot&)>& spoil) {
+  Robot robot = sound();
+  spoil(robot);
+  try {
+    validate(robot);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RobotRules, ASoundRobotPasses) {
+  EXPECT_EQ(message_after([](Robot&) {}), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs.clear(); }), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.faces.clear(); }), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials.clear(); }), "");  // the 254 defaults
+  EXPECT_EQ(message_after([](Robot& robot) { robot.material_names = {"air", "flesh"}; }), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.masses[0] = {1e6f, -1e6f, 0}; }), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[0].rest_length = min_rest_length; }), "");
+}
+
+TEST(RobotRules, MassesAreOneToSixtyFiveThousandAndFinite) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot = {}; }), "/masses: a robot needs at least one mass");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.masses.resize(65536); }),
+            "/masses: 65536 masses, at most 65535 are accepted");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.masses.resize(65535); }), "");
+  for (const Vec3 bad : {Vec3{nan_value, 0, 0}, Vec3{0, infinity, 0}, Vec3{0, 0, -1.1e6f}})
+    EXPECT_EQ(message_after([&](Robot& robot) { robot.masses[3] = bad; }),
+              "/masses/3: a position must be finite and within 1e6 m of the origin");
+}
+
+TEST(RobotRules, SpringsJoinTwoDifferentMassesOfTheRobot) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[7].a = 912; }),
+            "/springs/7: mass 912 is out of range, the robot has 12");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[7].b = 12; }),
+            "/springs/7: mass 12 is out of range, the robot has 12");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[2].b = robot.springs[2].a = 4; }),
+            "/springs/2: joins mass 4 to itself");
+}
+
+TEST(RobotRules, SpringsHaveAMaterialOfTheTableOtherThanAir) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[1].material = air; }),
+            "/springs/1: material 0 is air, a spring needs another");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[1].material = 2; }),
+            "/springs/1: material 2 is out of range, the table has 2");
+  EXPECT_EQ(message_after([](Robot& robot) {
+              robot.materials.clear();
+              robot.springs[1].material = 254;
+            }),
+            "/springs/1: material 254 is out of range, the table has 254");
+}
+
+TEST(RobotRules, SpringsAreAtLeastAMillimetreLong) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[5].rest_length = 0.0005f; }),
+            "/springs/5: rest length 0.000500 m, at least 0.001 m is accepted");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.springs[5].rest_length = -1; }),
+            "/springs/5: rest length -1.000000 m, at least 0.001 m is accepted");
+  for (const float bad : {nan_value, infinity})
+    EXPECT_TRUE(message_after([&](Robot& robot) { robot.springs[5].rest_length = bad; }).starts_with("/springs/5: rest length "));
+}
+
+TEST(RobotRules, FacesHaveThreeDifferentMassesOfTheRobot) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[3].c = 65535; }),
+            "/faces/3: mass 65535 is out of range, the robot has 12");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {1, 2, 1}; }), "/faces/0: a face needs three different masses");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {1, 1, 2}; }), "/faces/0: a face needs three different masses");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {2, 1, 1}; }), "/faces/0: a face needs three different masses");
+}
+
+TEST(RobotRules, MaterialsAreFewNamedAllOrNoneAndValid) {
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials.resize(257); }),
+            "/materials: 257 materials, at most 256 are accepted");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials.resize(256); }), "");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.material_names = {"air"}; }),
+            "/materials: every material needs a name, or none");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials[1].stiffness = infinity; }),
+            "/materials/1: stiffness must be a finite number >= 0 N/m");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials[1].amplitude = nan_value; }),
+            "/materials/1: amplitude must lie between -1 and 1");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials[1].amplitude = -1; }),
+            "/materials/1: amplitude must lie between -1 and 1");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials[1].frequency = infinity; }),
+            "/materials/1: frequency must be a finite number of rad/s");
+  EXPECT_EQ(message_after([](Robot& robot) { robot.materials[1].phase = nan_value; }),
+            "/materials/1: phase must be a finite number of rad");
+}
+
+TEST(Robots, RestDistanceIsThatOfThePositions) {
+  Robot robot;
+  robot.masses = {{1, 2, 3}, {3, 5, 9}};
+  EXPECT_FLOAT_EQ(rest_distance(robot, 0, 1), 7);
+  EXPECT_FLOAT_EQ(rest_distance(robot, 1, 0), 7);
+}
+
+TEST(Robots, WithoutATableTheMaterialsAreTheDefaults) {
+  Robot robot = sound();
+  EXPECT_EQ(materials_of(robot).size(), 2u);
+  robot.materials.clear();
+  EXPECT_EQ(materials_of(robot).data(), default_materials().data());
+}
+
+}  // namespace
+}  // namespace mercury

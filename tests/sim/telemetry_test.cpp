@@ -1,0 +1,94 @@
+// Telemetry against an independent calculation, and the other ways to read a batch.
+#include "sim/telemetry.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "backend.h"
+#include "bodies.h"
+#include "reference.h"
+
+namespace mercury {
+namespace {
+
+class TelemetryOf : public EveryPair {};
+INSTANTIATE_TEST_SUITE_P(All, TelemetryOf, every_pair, EveryPair::name);
+
+TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
+  const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 2}, 2),
+                                     bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
+  Simulation simulation(configuration(), robots);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const State start = bodies::shaken(robots[i], 0.01f, 0.2f, 3);
+    simulation.set_state(i, start.positions, start.velocities);
+  }
+  for (int look = 0; look < 3; ++look) {
+    simulation.step(100);
+    const auto all = simulation.telemetry();
+    ASSERT_EQ(all.size(), robots.size());
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      reference::Reference expected(configuration(), robots[i]);
+      expected.step(simulation.steps());  // for its clock
+      expected.set_state(simulation.state(i));
+      const Telemetry& telemetry = all[i];
+      EXPECT_LT((reference::vector_of(telemetry.center_of_mass) - expected.center_of_mass()).norm(), 1e-6) << i;
+      EXPECT_LT((reference::vector_of(telemetry.velocity) - expected.center_velocity()).norm(), 1e-6) << i;
+      EXPECT_NEAR(telemetry.kinetic_energy, expected.kinetic_energy(), 1e-5 * expected.kinetic_energy() + 1e-12) << i;
+      EXPECT_NEAR(telemetry.elastic_energy, expected.elastic_energy(), 1e-3 * expected.elastic_energy() + 1e-12) << i;
+      EXPECT_NEAR(telemetry.largest_strain, expected.largest_strain(), 1e-5) << i;
+      EXPECT_FALSE(telemetry.exploded);
+      EXPECT_EQ(telemetry.first_bad_spring, no_spring);
+      const Telemetry one = simulation.telemetry(i);
+      EXPECT_EQ(one.kinetic_energy, telemetry.kinetic_energy);
+      EXPECT_EQ(one.center_of_mass, telemetry.center_of_mass);
+    }
+  }
+}
+
+class Reading : public Backend {};
+INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, Backend::name);
+
+TEST_P(Reading, AllMassesAtOnceAgreesWithRobotByRobot) {
+  const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::point(), bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2)};
+  Simulation simulation({.device = {.kind = GetParam()}}, robots);
+  simulation.step(200);
+  ASSERT_EQ(simulation.mass_count(), 216u + 1 + 8);
+  const auto offsets = simulation.mass_offsets();
+  ASSERT_EQ(offsets.size(), 4u);
+  std::vector<Vec3> x(simulation.mass_count()), v(simulation.mass_count());
+  simulation.read_positions(x);
+  simulation.read_velocities(v);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const State state = simulation.state(i);
+    ASSERT_EQ(state.positions.size(), offsets[i + 1] - offsets[i]);
+    for (std::size_t m = 0; m < state.positions.size(); ++m) {
+      EXPECT_EQ(x[offsets[i] + m], state.positions[m]);
+      EXPECT_EQ(v[offsets[i] + m], state.velocities[m]);
+    }
+    EXPECT_EQ(simulation.positions(i), state.positions);
+  }
+  std::vector<Vec3> wrong(3);
+  EXPECT_THROW(simulation.read_positions(wrong), std::invalid_argument);
+  EXPECT_THROW(simulation.read_velocities(wrong), std::invalid_argument);
+  EXPECT_THROW(simulation.state(3), std::out_of_range);
+}
+
+TEST_P(Reading, TheHashIsFnv1aOverTheBytesOfPositionsAndVelocities) {
+  const Robot robot = bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 5);
+  Simulation simulation({.device = {.kind = GetParam()}}, {&robot, 1});
+  simulation.step(50);
+  const State state = simulation.state(0);
+  std::uint64_t hash = 14695981039346656037u;
+  for (const auto* list : {&state.positions, &state.velocities})
+    for (const Vec3 value : *list)
+      for (const float component : {value.x, value.y, value.z}) {
+        unsigned char bytes[4];  // little-endian machines alone are supported
+        std::memcpy(bytes, &component, 4);
+        for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211u;
+      }
+  EXPECT_EQ(simulation.hash(0), hash);
+}
+
+}  // namespace
+}  // namespace mercury
