@@ -3,11 +3,27 @@
 
 #include <Eigen/Core>
 
+#include "render/camera.h"
+#include "render/scene.h"
+#include "render/style.h"
+
 namespace mercury::render {
 
 struct FrameBlock {
-  Eigen::Matrix4f view_projection, inverse_view_projection, view;
-  Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, cut, screen;
+  Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow;
+  Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color,
+      fog, cut, screen, depth, shadow_size, ground, water;
 };
+
+// The light's view of all that can throw a shadow.
+struct ShadowFit {
+  Eigen::Matrix4f matrix;    // world to texture coordinates and depth, 0 to 1 each
+  float width = 1;           // of the square that the map covers [m]
+  float depth = 1;           // that its depth range covers [m]
+};
+ShadowFit fit_shadow(const Bounds& casters, const Eigen::Vector3f& to_key, int side);
+
+FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, const ShadowFit& shadow,
+                       const Bounds& bodies, int width, int height);
 
 }  // namespace mercury::render

@@ -1,10 +1,25 @@
-// What is seen where nothing stands.
+// What is seen where nothing stands: the floor as far as it is seen, and the distance.
 #include "frame.glsl"
+#include "caustics.glsl"
+#include "floor.glsl"
+#include "occlusion.glsl"
 layout(location = 0) in vec2 place;
 layout(location = 0) out vec4 color;
 
 void main() {
-  vec4 far = frame.inverse_view_projection * vec4(2.0 * place - 1.0, 0.0001, 1.0);
-  vec3 sight = normalize(far.xyz / far.w - frame.eye.xyz);
-  color = vec4(mix(frame.backdrop_low.rgb, frame.backdrop_high.rgb, smoothstep(-0.6, 0.3, sight.z)), 1.0);
+  vec3 across = vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = transpose(mat3(frame.view)) * across;  // length 1 along the line of sight's axis
+  float steps = (frame.ground.w - frame.eye.z) / sight.z;
+  vec3 direction = normalize(sight);
+  bool floor_seen = int(frame.water.x) != AROUND_NONE && steps > 0.0 && steps < 0.5 * frame.depth.y;
+  if (!floor_seen) {
+    color = vec4(backdrop(direction), 0.0);
+    return;
+  }
+  vec3 point = frame.eye.xyz + steps * sight;
+  float range = steps * length(sight);
+  vec2 pixel = max(fwidth(point.xy), vec2(1e-6));
+  float open = openness(gl_FragCoord.xy, steps);
+  vec3 light = int(frame.water.x) == AROUND_LAND ? land(point.xy, pixel, range, open) : sand(point.xy, range, open);
+  color = vec4(through_fog(light, direction, range), 0.0);
 }

@@ -3,13 +3,43 @@ layout(std140, binding = 0) uniform Frame {
   mat4 view_projection;          // world to clip, depth reversed
   mat4 inverse_view_projection;
   mat4 view;                     // world to eye, which looks along -z
+  mat4 shadow;                   // world to shadow map and its depth
   vec4 eye;                      // world; w = time [s]
-  vec4 to_key;                   // direction towards the key light
-  vec4 key_light;                // linear light
+  vec4 to_key;                   // direction towards the key light; w = tangent of its half angle
+  vec4 key_light;                // linear light; w = strength of muscles' glow
   vec4 sky_light;                // from straight above
   vec4 ground_light;             // from straight below
   vec4 backdrop_high;            // what is seen far away, looking up and level
   vec4 backdrop_low;             // the same, looking down
+  vec4 floor_color;
+  vec4 line_color;               // of the grid on land
+  vec4 fog;                      // extinction [1/m]; w = distance where it begins [m]
   vec4 cut;                      // normal, offset; normal 0 = nothing is cut
   vec4 screen;                   // width, height, 1/width, 1/height [pixels]
+  vec4 depth;                    // near, far [m]; half width and height of the picture at distance 1
+  vec4 shadow_size;              // width and depth of what the shadow map covers [m]
+  vec4 ground;                   // corner x, y and side of the floor's map of light, height of the floor [m]
+  vec4 water;                    // Surroundings, strength of caustics, height of the highest body, distance to target
 } frame;
+
+#define AROUND_NONE 0
+#define AROUND_WATER 1
+#define AROUND_LAND 2
+
+// Distance along the line of sight of a depth in the depth buffer; far away for the backdrop.
+float distance_of_depth(float d) {
+  return frame.depth.x * frame.depth.y / (frame.depth.x + d * (frame.depth.y - frame.depth.x));
+}
+
+vec3 backdrop(vec3 sight) {
+  return mix(frame.backdrop_low.rgb, frame.backdrop_high.rgb, smoothstep(-0.75, 0.15, sight.z));
+}
+
+// What is left of light from a point at that distance, and the water's or air's own light in its stead.
+vec3 through_fog(vec3 light, vec3 sight, float range) {
+  vec3 left = exp(-frame.fog.rgb * max(0.0, range - frame.fog.w));
+  return light * left + backdrop(sight) * (1.0 - left);
+}
+
+// Evenly spread over [0, 1) in the neighbourhood of a pixel.
+float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))); }

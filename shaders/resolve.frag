@@ -1,26 +1,32 @@
 // Many samples of linear light to one pixel of the picture: tone-mapped first, so that bright edges stay smooth.
+#include "frame.glsl"
 layout(binding = 0) uniform sampler2DMS samples;
+layout(binding = 8) uniform sampler2D glow;
 layout(location = 0) in vec2 place;
 layout(location = 0) out vec4 color;
+layout(location = 0) uniform float vignette;
 
-// Identity up to `shoulder`, then bends towards 1: colours keep their values where they are not bright.
+// Identity up to `shoulder`, then bends towards 1, brighter colours towards white: as film does, and colours that stand
+// for numbers keep their values where they are not bright.
 vec3 tone_mapped(vec3 light) {
-  const float shoulder = 0.7;
+  const float shoulder = 0.62;
   float peak = max(light.r, max(light.g, light.b));
   if (peak <= shoulder) return light;
-  float room = 1.0 - shoulder;
+  const float room = 1.0 - shoulder;
   float bent = 1.0 - room * room / (peak + room - shoulder);
-  vec3 scaled = light * (bent / peak);
-  return mix(scaled, vec3(bent), 0.4 * (1.0 - 1.0 / (0.6 * (peak - bent) + 1.0)));
+  float bleach = 1.0 - 1.0 / (0.22 * (peak - bent) + 1.0);
+  return mix(light * (bent / peak), vec3(bent), bleach);
 }
 
-// Breaks up the steps of 8-bit gradients.
-float dither(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5; }
-
 void main() {
+  vec3 spread = textureLod(glow, place, 0.0).rgb;
+  vec2 off = (place - 0.5) * vec2(1.0, 0.8);
+  float dim = 1.0 - vignette * smoothstep(0.1, 0.75, dot(off, off) * 2.0);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < SAMPLES; ++i) sum += tone_mapped(max(texelFetch(samples, ivec2(gl_FragCoord.xy), i).rgb, vec3(0.0)));
+  for (int i = 0; i < SAMPLES; ++i)
+    sum += tone_mapped(dim * (max(texelFetch(samples, ivec2(gl_FragCoord.xy), i).rgb, vec3(0.0)) + spread));
   vec3 mapped = sum / float(SAMPLES);
-  // A step of the 8-bit code is worth more light where it is bright.
-  color = vec4(mapped + dither(gl_FragCoord.xy) * (0.0004 + 0.008 * mapped), 1.0);
+  // One step of the 8-bit code, as light: steeper where it is bright.
+  vec3 step_size = (0.08 + 2.2 * sqrt(mapped)) / 255.0;
+  color = vec4(mapped + (pixel_noise(gl_FragCoord.xy) - 0.5) * step_size, 1.0);
 }

@@ -152,7 +152,7 @@ std::vector<float> WobblingGroup::positions(double time) const {
 
 WobblingGroup make_wobbling_group(int count, int side, std::uint32_t seed, float spacing) {
   WobblingGroup group;
-  const int columns = std::max(1, int(std::ceil(std::sqrt(1.4 * count))));
+  const int columns = std::max(1, int(std::lround(std::sqrt(1.4 * count))));
   const int rows = (count + columns - 1) / columns;
   for (int i = 0; i < count; ++i) {
     group.bodies.push_back(make_wobbling_body(side, seed + std::uint32_t(i)));

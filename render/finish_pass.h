@@ -1,0 +1,23 @@
+// From samples of light to the finished picture: glow spread, tone-mapped, averaged.
+#pragma once
+
+#include "render/fullscreen.h"
+#include "render/quality.h"
+
+namespace mercury::render {
+
+class FinishPass {
+ public:
+  explicit FinishPass(const QualitySettings& settings);
+  void resize(int width, int height);
+  // `samples`: multisampled light, its alpha the share that glows. Into an sRGB framebuffer.
+  void draw(GLuint samples, GLuint framebuffer, float vignette) const;
+
+ private:
+  int width_ = 0, height_ = 0, glow_width_ = 0, glow_height_ = 0;
+  Texture glow_, across_;
+  Framebuffer glow_framebuffer_, across_framebuffer_;
+  Fullscreen extract_, blur_, resolve_;
+};
+
+}  // namespace mercury::render

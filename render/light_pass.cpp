@@ -1,0 +1,94 @@
+#include "render/light_pass.h"
+
+#include "render/bindings.h"
+
+namespace mercury::render {
+namespace {
+
+constexpr int sand_side = 512;
+
+Texture make_tile(GLenum format, int side) {
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &name);
+  Texture tile(name);
+  int levels = 1;
+  while ((side >> levels) > 0) ++levels;
+  glTextureStorage2D(name, levels, format, side, side);
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return tile;
+}
+
+Texture make_sand() {
+  Texture sand = make_tile(GL_RGBA8, sand_side);
+  const Framebuffer framebuffer = make_framebuffer({sand.get()});
+  glDisable(GL_BLEND);
+  Fullscreen("sand.frag").draw_into(framebuffer.get(), sand_side, sand_side);
+  glGenerateTextureMipmap(sand.get());
+  return sand;
+}
+
+// The same texels seen through a comparing sampler.
+Texture comparing_view(GLuint depths) {
+  GLuint name = 0;
+  glGenTextures(1, &name);
+  Texture view(name);
+  glTextureView(name, GL_TEXTURE_2D, depths, GL_DEPTH_COMPONENT32F, 0, 1, 0, 1);
+  glTextureParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTextureParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return view;
+}
+
+}  // namespace
+
+LightPass::LightPass(const QualitySettings& settings)
+    : settings_(settings),
+      shadow_depths_(make_texture(GL_DEPTH_COMPONENT32F, settings.shadow_side, settings.shadow_side)),
+      caustics_(make_tile(GL_R16F, settings.caustics_side)),
+      sand_(make_sand()),
+      ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
+      caustics_program_("caustics.frag"),
+      ground_program_("ground_light.frag", settings.defines()) {
+  glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  shadow_ = comparing_view(shadow_depths_.get());
+  shadow_framebuffer_ = make_framebuffer({}, shadow_depths_.get());
+  caustics_framebuffer_ = make_framebuffer({caustics_.get()});
+  ground_framebuffer_ = make_framebuffer({ground_light_.get()});
+}
+
+void LightPass::begin_shadow() {
+  glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
+  glViewport(0, 0, settings_.shadow_side, settings_.shadow_side);
+  const float farthest = 1;
+  glClearNamedFramebufferfv(shadow_framebuffer_.get(), GL_DEPTH, 0, &farthest);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 2.0f);
+}
+
+void LightPass::end_shadow() {
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void LightPass::draw_maps(bool under_water, bool with_floor) {
+  glBindTextureUnit(binding::shadow_map, shadow_.get());
+  glBindTextureUnit(binding::shadow_depths, shadow_depths_.get());
+  if (under_water) {
+    caustics_program_.draw_into(caustics_framebuffer_.get(), settings_.caustics_side, settings_.caustics_side);
+    glGenerateTextureMipmap(caustics_.get());
+  }
+  if (with_floor) ground_program_.draw_into(ground_framebuffer_.get(), settings_.ground_side, settings_.ground_side);
+  glBindTextureUnit(binding::caustics, caustics_.get());
+  glBindTextureUnit(binding::sand, sand_.get());
+  glBindTextureUnit(binding::ground_light, ground_light_.get());
+}
+
+}  // namespace mercury::render

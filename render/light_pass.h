@@ -1,0 +1,36 @@
+// Where the key light falls: the shadow map, its trace on the floor, and under water the pattern of caustics.
+#pragma once
+
+#include "render/bodies.h"
+#include "render/fullscreen.h"
+#include "render/quality.h"
+#include "render/skin_pass.h"
+
+namespace mercury::render {
+
+class LightPass {
+ public:
+  explicit LightPass(const QualitySettings& settings);
+  int shadow_side() const { return settings_.shadow_side; }
+
+  // Binds the textures of what it has drawn. `casting`: draws what throws shadows with the current framebuffer.
+  template <typename Casting>
+  void draw(bool under_water, bool with_floor, Casting casting) {
+    begin_shadow();
+    casting();
+    end_shadow();
+    draw_maps(under_water, with_floor);
+  }
+
+ private:
+  void begin_shadow();
+  void end_shadow();
+  void draw_maps(bool under_water, bool with_floor);
+
+  QualitySettings settings_;
+  Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_;
+  Framebuffer shadow_framebuffer_, caustics_framebuffer_, ground_framebuffer_;
+  Fullscreen caustics_program_, ground_program_;
+};
+
+}  // namespace mercury::render

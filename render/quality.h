@@ -1,0 +1,24 @@
+// What each level of quality spends where.
+#pragma once
+
+#include <string>
+
+#include "render/renderer.h"
+
+namespace mercury::render {
+
+struct QualitySettings {
+  int samples = 4;          // a pixel
+  int shadow_side = 1024;   // texels
+  int ground_side = 512;    // texels of the floor's map of light
+  int caustics_side = 256;  // texels of a tile
+  int shadow_blockers = 5, shadow_taps = 6;
+  int occlusion_taps = 7;
+  int particles = 500;
+  std::string defines() const;  // for the shaders
+};
+
+// Not for Quality::automatic.
+QualitySettings settings_of(Quality quality);
+
+}  // namespace mercury::render

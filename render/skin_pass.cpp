@@ -1,0 +1,87 @@
+#include "render/skin_pass.h"
+
+#include <algorithm>
+
+#include "render/bindings.h"
+
+namespace mercury::render {
+namespace {
+
+constexpr std::size_t face_frame_bytes = 64;  // FaceFrame of shaders/bodies.glsl
+
+}  // namespace
+
+void dispatch(std::size_t count) {
+  if (count == 0) return;
+  const GLuint groups = GLuint((count + 63) / 64);
+  const GLuint across = std::min(groups, 32768u);
+  glDispatchCompute(across, (groups + across - 1) / across, 1);
+}
+
+SkinPass::SkinPass(const std::string& defines)
+    : corners_(make_vertex_array()),
+      face_frames_program_(make_program({"face_frames.comp"})),
+      mass_normals_program_(make_program({"mass_normals.comp"})),
+      skin_(make_program({"skin.vert", "skin.frag"}, defines)),
+      depth_(make_program({"skin.vert", "depth.frag"})),
+      shadow_(make_program({"shadow.vert", "depth.frag"})) {}
+
+void SkinPass::attach(const Bodies& bodies) {
+  const GLuint array = corners_.get();
+  glVertexArrayVertexBuffer(array, 0, bodies.positions.get(), 0, 12);
+  glVertexArrayVertexBuffer(array, 1, bodies.mass_bodies.get(), 0, 4);
+  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribIFormat(array, 1, 1, GL_UNSIGNED_INT, 0);
+  for (GLuint i = 0; i < 2; ++i) {
+    glVertexArrayAttribBinding(array, i, i);
+    glEnableVertexArrayAttrib(array, i);
+  }
+  glVertexArrayElementBuffer(array, bodies.faces.get());
+  face_frames_.reserve(face_frame_bytes * bodies.face_count());
+  mass_normals_.reserve(16 * bodies.mass_count());
+}
+
+void SkinPass::deform(const Bodies& bodies, bool smooth) {
+  face_frames_.bind_storage(binding::face_frames);
+  mass_normals_.bind_storage(binding::mass_normals);
+  bodies.faces.bind_storage(binding::faces);
+  glUseProgram(face_frames_program_.get());
+  glUniform1ui(0, GLuint(bodies.face_count()));
+  dispatch(bodies.face_count());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  if (!smooth) return;
+  bodies.mass_face_ends.bind_storage(binding::first_free);
+  bodies.mass_faces.bind_storage(binding::first_free + 1);
+  glUseProgram(mass_normals_program_.get());
+  glUniform1ui(0, GLuint(bodies.mass_count()));
+  dispatch(bodies.mass_count());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void SkinPass::draw_triangles(const Bodies& bodies) const {
+  glBindVertexArray(corners_.get());
+  glEnable(GL_CLIP_DISTANCE0);
+  glDrawElements(GL_TRIANGLES, GLsizei(3 * bodies.face_count()), GL_UNSIGNED_INT, nullptr);
+  glDisable(GL_CLIP_DISTANCE0);
+}
+
+void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale) const {
+  glUseProgram(skin_.get());
+  glUniform1i(0, int(color_by));
+  const float range = scale.high - scale.low;
+  // An empty range shows the middle of the scale, as color_at() does.
+  glUniform2f(1, range != 0 ? scale.low : scale.low - 0.5f, range != 0 ? 1 / range : 1.0f);
+  draw_triangles(bodies);
+}
+
+void SkinPass::draw_depth(const Bodies& bodies) const {
+  glUseProgram(depth_.get());
+  draw_triangles(bodies);
+}
+
+void SkinPass::draw_shadow(const Bodies& bodies) const {
+  glUseProgram(shadow_.get());
+  draw_triangles(bodies);
+}
+
+}  // namespace mercury::render

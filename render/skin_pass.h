@@ -1,0 +1,34 @@
+// Skins of all bodies: one call for the picture, one for the shadow map, one for depth alone.
+#pragma once
+
+#include "render/bodies.h"
+#include "render/gl_objects.h"
+#include "render/scene.h"
+
+namespace mercury::render {
+
+class SkinPass {
+ public:
+  explicit SkinPass(const std::string& defines);
+  // Call when the bodies have been replaced.
+  void attach(const Bodies& bodies);
+  // Computes what follows from the positions: frames of faces and, if wanted, normals at masses.
+  void deform(const Bodies& bodies, bool smooth);
+
+  enum class ColorBy { looks, face_values, mass_values };
+  void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale) const;
+  void draw_depth(const Bodies& bodies) const;
+  void draw_shadow(const Bodies& bodies) const;
+
+ private:
+  void draw_triangles(const Bodies& bodies) const;
+
+  VertexArray corners_;
+  Program face_frames_program_, mass_normals_program_, skin_, depth_, shadow_;
+  Buffer face_frames_, mass_normals_;
+};
+
+// Runs the current compute program, whose local size is 64, for at least `count` invocations.
+void dispatch(std::size_t count);
+
+}  // namespace mercury::render

@@ -1,0 +1,86 @@
+#include "render/style.h"
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Vector3f;
+
+Style dark_water() {
+  Style s;
+  s.to_key = {0.30f, -0.25f, 0.92f};
+  s.key_light = {1.75f, 2.15f, 2.20f};
+  s.sky_light = {0.16f, 0.36f, 0.48f};
+  s.ground_light = {0.05f, 0.10f, 0.13f};
+  s.key_size = 0.10f;
+  s.backdrop_high = {0.020f, 0.145f, 0.215f};
+  s.backdrop_low = {0.004f, 0.040f, 0.072f};
+  s.floor_color = {0.17f, 0.20f, 0.20f};
+  s.fog = {0.55f, 0.34f, 0.30f};
+  s.caustics = 0.75f;
+  s.glow = 1.5f;
+  s.vignette = 0.45f;
+  return s;
+}
+
+Style light_water() {
+  Style s;
+  s.to_key = {0.30f, -0.25f, 0.92f};
+  s.key_light = {2.25f, 2.30f, 2.10f};
+  s.sky_light = {0.45f, 0.66f, 0.74f};
+  s.ground_light = {0.30f, 0.36f, 0.34f};
+  s.key_size = 0.10f;
+  s.backdrop_high = {0.42f, 0.74f, 0.80f};
+  s.backdrop_low = {0.14f, 0.46f, 0.56f};
+  s.floor_color = {0.62f, 0.58f, 0.47f};
+  s.fog = {0.42f, 0.24f, 0.21f};
+  s.caustics = 0.55f;
+  s.glow = 0.6f;
+  s.vignette = 0.15f;
+  return s;
+}
+
+Style dark_land() {
+  Style s;
+  s.key_light = {2.45f, 2.35f, 2.20f};
+  s.sky_light = {0.34f, 0.38f, 0.46f};
+  s.ground_light = {0.10f, 0.10f, 0.10f};
+  s.key_size = 0.06f;
+  s.backdrop_high = {0.040f, 0.046f, 0.056f};
+  s.backdrop_low = {0.040f, 0.046f, 0.056f};
+  s.floor_color = {0.060f, 0.064f, 0.072f};
+  s.line_color = {0.22f, 0.24f, 0.27f};
+  s.fog = {0.22f, 0.22f, 0.22f};
+  s.glow = 1.4f;
+  s.vignette = 0.35f;
+  return s;
+}
+
+Style light_land() {
+  Style s;
+  s.key_light = {1.90f, 1.85f, 1.76f};
+  s.sky_light = {0.70f, 0.74f, 0.80f};
+  s.ground_light = {0.36f, 0.35f, 0.33f};
+  s.key_size = 0.06f;
+  s.backdrop_high = {0.78f, 0.81f, 0.85f};
+  s.backdrop_low = {0.78f, 0.81f, 0.85f};
+  s.floor_color = {0.40f, 0.405f, 0.41f};
+  s.line_color = {0.22f, 0.23f, 0.25f};
+  s.fog = {0.22f, 0.22f, 0.22f};
+  s.glow = 0.6f;
+  s.vignette = 0.12f;
+  return s;
+}
+
+}  // namespace
+
+Style style_of(Surroundings surroundings, Theme theme) {
+  const bool dark = theme == Theme::dark;
+  Style s = surroundings == Surroundings::water ? (dark ? dark_water() : light_water())
+                                                : (dark ? dark_land() : light_land());
+  if (surroundings == Surroundings::none) s.fog.setZero();
+  s.text = dark ? rgb(0xf2f6f8) : rgb(0x16232c);
+  s.text_edge = dark ? rgb(0x04121c) : rgb(0xffffff);
+  return s;
+}
+
+}  // namespace mercury::render

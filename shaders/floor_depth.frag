@@ -1,0 +1,10 @@
+// The floor's depth, for ambient occlusion.
+#include "frame.glsl"
+layout(location = 0) in vec2 place;
+
+void main() {
+  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
+  float steps = (frame.ground.w - frame.eye.z) / sight.z;
+  bool floor_seen = int(frame.water.x) != AROUND_NONE && steps > frame.depth.x && steps < 0.5 * frame.depth.y;
+  gl_FragDepth = floor_seen ? frame.depth.x * (frame.depth.y / steps - 1.0) / (frame.depth.y - frame.depth.x) : 0.0;
+}

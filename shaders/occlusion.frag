@@ -1,0 +1,50 @@
+// How open each point of the half-size picture is to ambient light: horizon-free obscurance (McGuire et al. 2011).
+#include "frame.glsl"
+layout(binding = 0) uniform sampler2D depths;
+layout(location = 0) in vec2 place;
+layout(location = 0) out vec2 result;  // openness, distance
+
+layout(location = 0) uniform float radius;  // [m]
+
+#ifndef OCCLUSION_TAPS
+#define OCCLUSION_TAPS 8
+#endif
+
+vec3 at(ivec2 texel) {
+  vec2 size = vec2(textureSize(depths, 0));
+  float range = distance_of_depth(texelFetch(depths, clamp(texel, ivec2(0), ivec2(size) - 1), 0).r);
+  return vec3((2.0 * (vec2(texel) + 0.5) / size - 1.0) * frame.depth.zw, -1.0) * range;
+}
+
+// The flatter of two differences: the one that does not cross an edge.
+vec3 flatter(vec3 a, vec3 b) { return abs(a.z) < abs(b.z) ? a : b; }
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  vec3 point = at(texel);
+  float range = -point.z;
+  if (texelFetch(depths, texel, 0).r <= 0.0) {
+    result = vec2(1.0, range);
+    return;
+  }
+  vec3 right = flatter(at(texel + ivec2(1, 0)) - point, point - at(texel - ivec2(1, 0)));
+  vec3 up = flatter(at(texel + ivec2(0, 1)) - point, point - at(texel - ivec2(0, 1)));
+  vec3 normal = normalize(cross(right, up));
+  float reach = radius / (range * frame.depth.w) * 0.5 * float(textureSize(depths, 0).y);  // [texels]
+  // A pattern of 4 x 4, which the blur that follows takes out again.
+  int cell = (texel.x & 3) + 4 * ((texel.y ^ (texel.x << 1)) & 3);
+  float turn = 6.2831853 * (float(cell) + 0.5) / 16.0;
+  float hidden = 0.0;
+  for (int i = 0; i < OCCLUSION_TAPS; ++i) {
+    float far = (float(i) + 0.5) / float(OCCLUSION_TAPS);
+    float angle = turn + 6.2831853 * 0.381966 * float(i) * 1.0;
+    ivec2 offset = ivec2(round(reach * far * vec2(cos(angle), sin(angle))));
+    if (offset == ivec2(0)) continue;
+    vec3 v = at(texel + offset) - point;
+    float squared = dot(v, v);
+    float fade = max(0.0, 1.0 - squared / (radius * radius));
+    hidden += fade * fade * fade * max(0.0, dot(v, normal) - 0.004 * range) * inversesqrt(squared + 1e-8);
+  }
+  float open = max(0.0, 1.0 - 2.6 * hidden / float(OCCLUSION_TAPS));
+  result = vec2(open, range);
+}
