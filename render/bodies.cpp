@@ -96,6 +96,7 @@ void Bodies::set(std::span<const Body> bodies) {
 
   positions.write(rest);
   mass_bodies.write(owners);
+  first_masses.write(offsets);
   faces.write(face_masses);
   face_records.write(records);
   springs.write(spring_masses);

@@ -26,6 +26,7 @@ class Bodies {
   // One after the other, with indices counted over all bodies.
   Buffer positions;       // float[3] a mass
   Buffer mass_bodies;     // uint a mass
+  Buffer first_masses;    // uint a body and one more: its first mass
   Buffer faces;           // uint[3] a face
   Buffer face_records;    // FaceRecord a face
   Buffer springs;         // uint[2] a spring

@@ -51,13 +51,16 @@ LightPass::LightPass(const QualitySettings& settings)
       caustics_(make_tile(GL_R16F, settings.caustics_side)),
       sand_(make_sand()),
       ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
+      ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       caustics_program_("caustics.frag"),
-      ground_program_("ground_light.frag", settings.defines()) {
+      ground_program_("ground_light.frag", settings.defines()),
+      ground_blur_("ground_blur.frag") {
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
   shadow_framebuffer_ = make_framebuffer({}, shadow_depths_.get());
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
+  ground_rough_framebuffer_ = make_framebuffer({ground_rough_.get()});
   ground_framebuffer_ = make_framebuffer({ground_light_.get()});
 }
 
@@ -85,7 +88,12 @@ void LightPass::draw_maps(bool under_water, bool with_floor) {
     caustics_program_.draw_into(caustics_framebuffer_.get(), settings_.caustics_side, settings_.caustics_side);
     glGenerateTextureMipmap(caustics_.get());
   }
-  if (with_floor) ground_program_.draw_into(ground_framebuffer_.get(), settings_.ground_side, settings_.ground_side);
+  if (with_floor) {
+    const int side = settings_.ground_side;
+    ground_program_.draw_into(ground_rough_framebuffer_.get(), side, side);
+    glBindTextureUnit(binding::source, ground_rough_.get());
+    ground_blur_.draw_into(ground_framebuffer_.get(), side, side);
+  }
   glBindTextureUnit(binding::caustics, caustics_.get());
   glBindTextureUnit(binding::sand, sand_.get());
   glBindTextureUnit(binding::ground_light, ground_light_.get());

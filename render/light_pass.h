@@ -28,9 +28,9 @@ class LightPass {
   void draw_maps(bool under_water, bool with_floor);
 
   QualitySettings settings_;
-  Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_;
-  Framebuffer shadow_framebuffer_, caustics_framebuffer_, ground_framebuffer_;
-  Fullscreen caustics_program_, ground_program_;
+  Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_, ground_rough_;
+  Framebuffer shadow_framebuffer_, caustics_framebuffer_, ground_framebuffer_, ground_rough_framebuffer_;
+  Fullscreen caustics_program_, ground_program_, ground_blur_;
 };
 
 }  // namespace mercury::render

@@ -39,6 +39,8 @@ QualitySettings settings_of(Quality quality) {
     s.ground_side = 1024;
     s.shadow_blockers = 8;
     s.shadow_taps = 12;
+    s.skin_blockers = 5;
+    s.skin_taps = 8;
     s.occlusion_taps = 12;
     s.particles = 900;
   } else if (quality == Quality::high) {
@@ -46,7 +48,9 @@ QualitySettings settings_of(Quality quality) {
     s.ground_side = 2048;
     s.caustics_side = 512;
     s.shadow_blockers = 16;
-    s.shadow_taps = 32;
+    s.shadow_taps = 24;
+    s.skin_blockers = 12;
+    s.skin_taps = 24;
     s.occlusion_taps = 24;
     s.particles = 1500;
   }
@@ -56,6 +60,10 @@ QualitySettings settings_of(Quality quality) {
 std::string QualitySettings::defines() const {
   return define("SAMPLES", samples) + define("SHADOW_BLOCKERS", shadow_blockers) + define("SHADOW_TAPS", shadow_taps) +
          define("OCCLUSION_TAPS", occlusion_taps);
+}
+
+std::string QualitySettings::skin_defines() const {
+  return define("SHADOW_BLOCKERS", skin_blockers) + define("SHADOW_TAPS", skin_taps);
 }
 
 }  // namespace mercury::render

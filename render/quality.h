@@ -12,10 +12,12 @@ struct QualitySettings {
   int shadow_side = 1024;   // texels
   int ground_side = 512;    // texels of the floor's map of light
   int caustics_side = 256;  // texels of a tile
-  int shadow_blockers = 5, shadow_taps = 6;
+  int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
   int occlusion_taps = 7;
   int particles = 500;
-  std::string defines() const;  // for the shaders
+  int skin_blockers = 0, skin_taps = 4;  // of shadows on skins
+  std::string defines() const;       // for the shaders
+  std::string skin_defines() const;  // for the shaders of bodies
 };
 
 // Not for Quality::automatic.

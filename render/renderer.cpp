@@ -9,6 +9,7 @@
 
 #include "render/bindings.h"
 #include "render/bodies.h"
+#include "render/bounds_pass.h"
 #include "render/finish_pass.h"
 #include "render/frame_block.h"
 #include "render/light_pass.h"
@@ -52,6 +53,16 @@ std::vector<Vector4f> look_records(std::span<const Look> looks) {
   return records;
 }
 
+// The box around all bodies that are shown, as they stand in the picture.
+Bounds placed(std::span<const Bounds> bodies, std::span<const Placement> placements) {
+  Bounds all;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Placement place = placements.empty() ? Placement{} : placements[i];
+    if (!place.hidden && !bodies[i].empty()) all.extend(bodies[i].moved(place.offset));
+  }
+  return all;
+}
+
 Texture make_colormap(Colormap map) {
   constexpr int entries = 256;
   std::vector<float> texels;
@@ -67,7 +78,7 @@ Texture make_colormap(Colormap map) {
 // What quality decides: thrown away and made anew when it changes.
 struct Passes {
   explicit Passes(const QualitySettings& settings)
-      : skin(settings.defines()), light(settings), occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
+      : skin(settings.skin_defines()), light(settings), occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
   void resize(int width, int height) {
     occlusion.resize(width, height);
     finish.resize(width, height);
@@ -91,6 +102,7 @@ struct Renderer::Parts {
   Buffer frame, placements, looks, face_values, mass_values;
   std::array<Texture, 4> colormaps;
   std::optional<Passes> passes;
+  BoundsPass bounds;
 
   void upload(const Scene& scene);
   void bind() const;
@@ -151,16 +163,8 @@ std::span<const std::uint32_t> Renderer::mass_offsets() const { return parts_->b
 unsigned Renderer::position_buffer() const { return parts_->bodies.positions.get(); }
 
 std::vector<Bounds> Renderer::body_bounds() {
-  const Bodies& bodies = parts_->bodies;
-  std::vector<float> positions(3 * bodies.mass_count());
-  if (!positions.empty())
-    glGetNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(4 * positions.size()), positions.data());
-  std::vector<Bounds> result;
-  for (std::size_t i = 0; i < bodies.body_count(); ++i) {
-    const std::size_t first = bodies.mass_offsets()[i], end = bodies.mass_offsets()[i + 1];
-    result.push_back(bounds_of(std::span(positions).subspan(3 * first, 3 * (end - first))));
-  }
-  return result;
+  parts_->bodies.positions.bind_storage(binding::positions);
+  return parts_->bounds.measure(parts_->bodies);
 }
 
 void Renderer::Parts::upload(const Scene& scene) {
@@ -195,17 +199,14 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const Style style = style_of(scene.surroundings, scene.theme);
   p.upload(scene);
-  Bounds group;
-  const std::vector<Bounds> each = body_bounds();
-  for (std::size_t i = 0; i < each.size(); ++i)
-    if (scene.placements.empty()) group.extend(each[i]);
-    else if (!scene.placements[i].hidden) group.extend(each[i].moved(scene.placements[i].offset));
+  const Bounds group = placed(body_bounds(), scene.placements);
   const ShadowFit shadow = fit_shadow(group, style.to_key, p.settings.shadow_side);
   const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.width, p.height);
   p.frame.write(&block, sizeof block);
   p.bind();
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
+  // Skins are closed: their insides show where they are cut alone.
+  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);
 
   Passes& passes = *p.passes;
@@ -226,6 +227,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
   if (scene.show.skin) passes.skin.draw(p.bodies, color_by, scene.scale);
+  glDisable(GL_CULL_FACE);
   glDepthFunc(GL_GEQUAL);
   passes.backdrop.draw();
   passes.finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);

@@ -7,16 +7,16 @@ using Eigen::Vector3f;
 
 Style dark_water() {
   Style s;
-  s.to_key = {0.30f, -0.25f, 0.92f};
-  s.key_light = {1.75f, 2.15f, 2.20f};
-  s.sky_light = {0.16f, 0.36f, 0.48f};
-  s.ground_light = {0.05f, 0.10f, 0.13f};
+  s.to_key = {-0.34f, -0.22f, 0.92f};
+  s.key_light = {2.00f, 2.30f, 2.30f};
+  s.sky_light = {0.12f, 0.30f, 0.44f};
+  s.ground_light = {0.03f, 0.08f, 0.12f};
   s.key_size = 0.10f;
-  s.backdrop_high = {0.020f, 0.145f, 0.215f};
-  s.backdrop_low = {0.004f, 0.040f, 0.072f};
-  s.floor_color = {0.17f, 0.20f, 0.20f};
-  s.fog = {0.55f, 0.34f, 0.30f};
-  s.caustics = 0.75f;
+  s.backdrop_high = {0.010f, 0.120f, 0.200f};
+  s.backdrop_low = {0.003f, 0.034f, 0.070f};
+  s.floor_color = {0.050f, 0.105f, 0.130f};
+  s.fog = {0.90f, 0.55f, 0.46f};
+  s.caustics = 0.55f;
   s.glow = 1.5f;
   s.vignette = 0.45f;
   return s;
@@ -24,16 +24,16 @@ Style dark_water() {
 
 Style light_water() {
   Style s;
-  s.to_key = {0.30f, -0.25f, 0.92f};
-  s.key_light = {2.25f, 2.30f, 2.10f};
-  s.sky_light = {0.45f, 0.66f, 0.74f};
-  s.ground_light = {0.30f, 0.36f, 0.34f};
+  s.to_key = {-0.34f, -0.22f, 0.92f};
+  s.key_light = {2.35f, 2.35f, 2.15f};
+  s.sky_light = {0.34f, 0.56f, 0.66f};
+  s.ground_light = {0.20f, 0.26f, 0.26f};
   s.key_size = 0.10f;
-  s.backdrop_high = {0.42f, 0.74f, 0.80f};
-  s.backdrop_low = {0.14f, 0.46f, 0.56f};
-  s.floor_color = {0.62f, 0.58f, 0.47f};
-  s.fog = {0.42f, 0.24f, 0.21f};
-  s.caustics = 0.55f;
+  s.backdrop_high = {0.22f, 0.60f, 0.74f};
+  s.backdrop_low = {0.08f, 0.38f, 0.54f};
+  s.floor_color = {0.46f, 0.47f, 0.40f};
+  s.fog = {0.95f, 0.42f, 0.34f};
+  s.caustics = 0.40f;
   s.glow = 0.6f;
   s.vignette = 0.15f;
   return s;
@@ -41,6 +41,7 @@ Style light_water() {
 
 Style dark_land() {
   Style s;
+  s.to_key = {-0.50f, -0.28f, 0.82f};
   s.key_light = {2.45f, 2.35f, 2.20f};
   s.sky_light = {0.34f, 0.38f, 0.46f};
   s.ground_light = {0.10f, 0.10f, 0.10f};
@@ -57,9 +58,10 @@ Style dark_land() {
 
 Style light_land() {
   Style s;
-  s.key_light = {1.90f, 1.85f, 1.76f};
-  s.sky_light = {0.70f, 0.74f, 0.80f};
-  s.ground_light = {0.36f, 0.35f, 0.33f};
+  s.to_key = {-0.50f, -0.28f, 0.82f};
+  s.key_light = {2.30f, 2.22f, 2.10f};
+  s.sky_light = {0.52f, 0.56f, 0.62f};
+  s.ground_light = {0.22f, 0.21f, 0.20f};
   s.key_size = 0.06f;
   s.backdrop_high = {0.78f, 0.81f, 0.85f};
   s.backdrop_low = {0.78f, 0.81f, 0.85f};

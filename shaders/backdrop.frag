@@ -19,7 +19,6 @@ void main() {
   vec3 point = frame.eye.xyz + steps * sight;
   float range = steps * length(sight);
   vec2 pixel = max(fwidth(point.xy), vec2(1e-6));
-  float open = openness(gl_FragCoord.xy, steps);
-  vec3 light = int(frame.water.x) == AROUND_LAND ? land(point.xy, pixel, range, open) : sand(point.xy, range, open);
+  vec3 light = int(frame.water.x) == AROUND_LAND ? land(point.xy, pixel, openness(gl_FragCoord.xy, steps)) : sand(point.xy);
   color = vec4(through_fog(light, direction, range), 0.0);
 }

@@ -4,6 +4,6 @@ layout(binding = 4) uniform sampler2D caustics_tile;
 // Follows the key light's direction down to the point. The pattern repeats after a metre times `frame.water.w` / 3.
 float caustics(vec3 point) {
   vec2 place = point.xy - frame.to_key.xy / frame.to_key.z * point.z;
-  float scale = 2.2 / frame.water.w;
-  return 1.0 + frame.water.y * (texture(caustics_tile, place * scale).r * 4.0 - 1.0);
+  float scale = 3.0 / frame.water.w;
+  return 1.0 + frame.water.y * (texture(caustics_tile, place * scale).r - 1.0);
 }

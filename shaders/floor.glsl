@@ -17,7 +17,7 @@ float key_on_floor(vec2 place) {
 }
 
 // `pixel` = size of a pixel on the floor [m], `open` = what ambient occlusion leaves.
-vec3 land(vec2 place, vec2 pixel, float range, float open) {
+vec3 land(vec2 place, vec2 pixel, float open) {
   float key = key_on_floor(place);
   vec3 light = frame.key_light.rgb * key * frame.to_key.z / 1.6 + frame.sky_light.rgb * open;
   // A decade of lines that suits the distance: the next finer fades in as the camera comes near.
@@ -29,13 +29,14 @@ vec3 land(vec2 place, vec2 pixel, float range, float open) {
   return mix(frame.floor_color.rgb, frame.line_color.rgb, line) * light;
 }
 
-vec3 sand(vec2 place, float range, float open) {
+// Nothing stands on the sand, so that it sees the whole sky.
+vec3 sand(vec2 place) {
   float key = key_on_floor(place);
-  vec3 tile = texture(sand_tile, place * (1.6 / frame.water.w)).rgb;
+  vec3 tile = texture(sand_tile, place * (2.6 / frame.water.w)).rgb;
   vec2 slope = (tile.xy - 0.5) * 1.1;
   vec3 normal = normalize(vec3(-slope, 1.0));
   float n_l = max(dot(normal, frame.to_key.xyz), 0.0);
   vec3 light = frame.key_light.rgb * key * n_l / 1.6 * caustics(vec3(place, frame.ground.w)) +
-               frame.sky_light.rgb * open * (0.7 + 0.3 * normal.z);
+               frame.sky_light.rgb * (0.7 + 0.3 * normal.z);
   return frame.floor_color.rgb * (0.75 + 0.5 * tile.z) * light;
 }

@@ -22,10 +22,17 @@ void main() {
   vec3 spread = textureLod(glow, place, 0.0).rgb;
   vec2 off = (place - 0.5) * vec2(1.0, 0.8);
   float dim = 1.0 - vignette * smoothstep(0.1, 0.75, dot(off, off) * 2.0);
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < SAMPLES; ++i)
-    sum += tone_mapped(dim * (max(texelFetch(samples, ivec2(gl_FragCoord.xy), i).rgb, vec3(0.0)) + spread));
-  vec3 mapped = sum / float(SAMPLES);
+  vec3 light[SAMPLES];
+  bool edge = false;
+  for (int i = 0; i < SAMPLES; ++i) {
+    light[i] = texelFetch(samples, ivec2(gl_FragCoord.xy), i).rgb;
+    edge = edge || light[i] != light[0];
+  }
+  vec3 mapped = tone_mapped(dim * (max(light[0], vec3(0.0)) + spread));
+  if (edge) {
+    for (int i = 1; i < SAMPLES; ++i) mapped += tone_mapped(dim * (max(light[i], vec3(0.0)) + spread));
+    mapped /= float(SAMPLES);
+  }
   // One step of the 8-bit code, as light: steeper where it is bright.
   vec3 step_size = (0.08 + 2.2 * sqrt(mapped)) / 255.0;
   color = vec4(mapped + (pixel_noise(gl_FragCoord.xy) - 0.5) * step_size, 1.0);

@@ -1,6 +1,8 @@
 // Light on soft skin. Needs frame.glsl.
 const float pi = 3.14159265;
 
+float fifth(float x) { return x * x * x * x * x; }
+
 // Microfacet reflection: GGX distribution (Walter et al. 2007), Smith-Schlick visibility, Schlick's Fresnel term.
 float specular(vec3 normal, vec3 to_light, vec3 to_eye, float roughness) {
   vec3 half_way = normalize(to_light + to_eye);
@@ -11,7 +13,7 @@ float specular(vec3 normal, vec3 to_light, vec3 to_eye, float roughness) {
   float d = n_h * n_h * (a2 - 1.0) + 1.0;
   float k = 0.5 * roughness * roughness;
   float visibility = 1.0 / (4.0 * (n_v * (1.0 - k) + k) * (n_l * (1.0 - k) + k));
-  float fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(half_way, to_eye), 0.0), 5.0);
+  float fresnel = 0.04 + 0.96 * fifth(1.0 - max(dot(half_way, to_eye), 0.0));
   return a2 / (pi * d * d) * visibility * fresnel * n_l;
 }
 
@@ -35,7 +37,7 @@ vec3 lit(Surface s, vec3 to_eye, vec3 key, float open) {
   vec3 filled = open / (1.0 - s.albedo * (1.0 - open) * 0.8);
   vec3 ambient = mix(frame.ground_light.rgb, frame.sky_light.rgb, upward) * filled;
   vec3 mirrored = reflect(-to_eye, s.normal);
-  float grazing = pow(1.0 - max(dot(s.normal, to_eye), 0.0), 5.0);
+  float grazing = fifth(1.0 - max(dot(s.normal, to_eye), 0.0));
   vec3 sheen = mix(frame.ground_light.rgb, frame.sky_light.rgb, smoothstep(-0.4, 0.6, mirrored.z)) *
                (0.04 + 0.5 * grazing * (1.0 - 0.6 * s.roughness)) * open;
   return s.albedo * (diffuse + ambient) + key * specular(s.normal, frame.to_key.xyz, to_eye, s.roughness) + sheen;

@@ -23,6 +23,7 @@ float key_visibility(vec3 point, vec3 normal, float noise) {
   float beyond = max(0.0, place.z - 1.0) * frame.shadow_size.y;
   float turn = 6.2831853 * noise;
   float search = frame.to_key.w * (0.35 * receiver + beyond) / frame.shadow_size.x;
+#if SHADOW_BLOCKERS > 0
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SHADOW_BLOCKERS; ++i) {
     float d = textureLod(shadow_depths, place.xy + search * disc_point(i, SHADOW_BLOCKERS, turn), 0.0).r;
@@ -33,7 +34,11 @@ float key_visibility(vec3 point, vec3 normal, float noise) {
   }
   if (blockers == 0.0) return 1.0;
   float gap = receiver + beyond - sum / blockers * frame.shadow_size.y;
-  float radius = max(frame.to_key.w * gap / frame.shadow_size.x, 1.2 * texel / frame.shadow_size.x);
+#else
+  float gap = 0.0;  // without a search, all edges are equally soft
+  turn = 0.4;
+#endif
+  float radius = max(frame.to_key.w * gap / frame.shadow_size.x, 1.6 * texel / frame.shadow_size.x);
   // A far sample of a slanted receiver would otherwise meet the receiver itself.
   float reference = min(place.z, 0.9999) - 0.3 * radius * frame.shadow_size.x * slant / frame.shadow_size.y;
   float lit = 0.0;

@@ -78,7 +78,7 @@ void main() {
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open);
 
   float strength = max(activation, 0.0);
-  vec3 glow = frame.key_light.w * strength * strength * albedo * (0.35 + 0.65 * max(dot(normal, to_eye), 0.0));
+  vec3 glow = frame.key_light.w * strength * strength * albedo * (0.35 + 0.65 * albedo) * (0.35 + 0.65 * max(dot(normal, to_eye), 0.0));
   float rim = pow(1.0 - abs(dot(normal, to_eye)), 2.5);
   if ((flags & PLACEMENT_SELECTED) != 0u) glow += rim * vec3(1.6, 1.3, 0.5);
   if ((flags & PLACEMENT_FAULTY) != 0u) glow += rim * vec3(2.0, 0.15, 0.1);
