@@ -278,6 +278,7 @@ Robot make_voxel_robot(const VoxelGrid& grid, const VoxelRobotOptions& options) 
   Robot robot;
   robot.name = options.name;
   robot.materials = options.materials;
+  robot.material_names = options.material_names;
   robot.origin = voxel_origin(grid, options);
   robot.masses.reserve(masses);
   add_masses(lattice, grid, robot);

@@ -53,6 +53,7 @@ struct VoxelRobotOptions {
   std::optional<std::uint64_t> seed;     // kept in its origin
   std::optional<std::uint64_t> index;    // which robot of that seed's population, kept in its origin
   std::vector<Material> materials;       // its own table, pairs by the ids of combine(); empty = the 254 defaults
+  std::vector<std::string> material_names;  // of its own table; may be empty
 };
 
 // The largest connected body of the grid as a robot, the grid's middle at the origin of coordinates.

@@ -1,0 +1,125 @@
+#include "robots/inspect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace mercury {
+namespace {
+
+std::string name_of_material(const Robot& robot, MaterialId id) {
+  if (!robot.material_names.empty() && !robot.material_names[id].empty()) return robot.material_names[id];
+  if (robot.materials.empty()) return default_material_name(id);
+  return "material " + std::to_string(id);
+}
+
+void inspect_materials(const Robot& robot, Inspection& found) {
+  std::array<std::size_t, max_materials> springs{};
+  for (const Spring& spring : robot.springs) ++springs[spring.material];
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    if (springs[i] == 0) continue;
+    const auto id = static_cast<MaterialId>(i);
+    const Material& material = materials_of(robot)[id];
+    found.materials.push_back({id, name_of_material(robot, id), material, springs[i]});
+    if (material.amplitude != 0) found.muscles += springs[i];
+  }
+}
+
+void inspect_box(const Robot& robot, Inspection& found) {
+  found.lowest = found.highest = robot.masses.front();
+  for (const Vec3& x : robot.masses) {
+    found.lowest = {std::min(found.lowest.x, x.x), std::min(found.lowest.y, x.y), std::min(found.lowest.z, x.z)};
+    found.highest = {std::max(found.highest.x, x.x), std::max(found.highest.y, x.y), std::max(found.highest.z, x.z)};
+  }
+  found.extent = found.highest - found.lowest;
+  found.length = std::max({found.extent.x, found.extent.y, found.extent.z});
+}
+
+void inspect_springs(const Robot& robot, Inspection& found) {
+  std::vector<std::size_t> root(robot.masses.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::vector<bool> joined(robot.masses.size(), false);
+  found.components = robot.masses.size();
+  for (const Spring& spring : robot.springs) {
+    joined[spring.a] = joined[spring.b] = true;
+    const std::size_t a = root_of(spring.a), b = root_of(spring.b);
+    if (a == b) continue;
+    root[a] = b;
+    --found.components;
+  }
+  found.loose_masses = static_cast<std::size_t>(std::count(joined.begin(), joined.end(), false));
+  found.springs_a_mass = 2 * static_cast<double>(robot.springs.size()) / static_cast<double>(robot.masses.size());
+  if (robot.springs.empty()) return;
+  const auto [shortest, longest] = std::minmax_element(
+      robot.springs.begin(), robot.springs.end(),
+      [](const Spring& a, const Spring& b) { return a.rest_length < b.rest_length; });
+  found.shortest_spring = shortest->rest_length;
+  found.longest_spring = longest->rest_length;
+}
+
+// An edge of a face; `way` is 1 where it runs from the lower mass to the higher, else -1.
+struct HalfEdge {
+  std::uint16_t low, high;
+  int way;
+  bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
+};
+
+std::vector<HalfEdge> sorted_half_edges(const Robot& robot) {
+  std::vector<HalfEdge> half_edges;
+  half_edges.reserve(3 * robot.faces.size());
+  const auto add = [&](std::uint16_t from, std::uint16_t to) {
+    half_edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+  };
+  for (const Face& face : robot.faces) {
+    add(face.a, face.b);
+    add(face.b, face.c);
+    add(face.c, face.a);
+  }
+  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  });
+  return half_edges;
+}
+
+void inspect_skin(const Robot& robot, Inspection& found) {
+  const std::vector<HalfEdge> half_edges = sorted_half_edges(robot);
+  long edges = 0;
+  for (std::size_t i = 0; i < half_edges.size(); ++edges) {
+    int faces = 0, balance = 0;
+    const HalfEdge& edge = half_edges[i];
+    for (; i < half_edges.size() && half_edges[i].same_edge(edge); ++i, ++faces) balance += half_edges[i].way;
+    if (balance != 0) ++found.open_edges;
+    if (faces > 2) ++found.crowded_edges;
+  }
+  found.closed = !robot.faces.empty() && found.open_edges == 0;
+
+  std::vector<bool> on_skin(robot.masses.size(), false);
+  for (const Face& face : robot.faces) {
+    on_skin[face.a] = on_skin[face.b] = on_skin[face.c] = true;
+    // From a corner of the box, which keeps the rounding small for a robot far from the origin.
+    const Vec3 a = robot.masses[face.a] - found.lowest, b = robot.masses[face.b] - found.lowest,
+               c = robot.masses[face.c] - found.lowest;
+    found.volume += static_cast<double>(dot(a, cross(b, c))) / 6;
+    found.area += static_cast<double>(length(cross(b - a, c - a))) / 2;
+  }
+  const auto corners = std::count(on_skin.begin(), on_skin.end(), true);
+  found.euler_characteristic = static_cast<long>(corners) - edges + static_cast<long>(robot.faces.size());
+}
+
+}  // namespace
+
+Inspection inspect(const Robot& robot) {
+  Inspection found{.masses = robot.masses.size(), .springs = robot.springs.size(), .faces = robot.faces.size()};
+  inspect_materials(robot, found);
+  inspect_box(robot, found);
+  inspect_springs(robot, found);
+  inspect_skin(robot, found);
+  return found;
+}
+
+}  // namespace mercury
