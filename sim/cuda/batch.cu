@@ -85,7 +85,9 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
   device_statuses_ = DeviceArray<DeviceStatus>(count);
   state_ = DeviceArray<float>(count * group_stride_ * state_rows * lanes);
   splits_ = DeviceArray<float>(count * group_stride_ * lanes);
-  springs_ = DeviceArray<SpringRecord>(count * row_stride_ * lanes);
+  springs_ = DeviceArray<SpringRecord>((count * row_stride_ + rows_at_once) * lanes);
+  springs_.clear();
+  arrivals_ = DeviceArray<std::uint32_t>(count * group_stride_ * lanes);
   row_start_ = DeviceArray<std::uint32_t>(count * (group_stride_ + 1));
   face_pairs_ = DeviceArray<FacePair>(count * face_stride_);
   device_materials_ = DeviceArray<Material>(count * max_materials);
@@ -101,7 +103,7 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
     const std::size_t n = std::min(portion, count - first);
     std::vector<float> state(n * group_stride_ * state_rows * lanes), splits(n * group_stride_ * lanes);
     std::vector<SpringRecord> springs(n * row_stride_ * lanes);
-    std::vector<std::uint32_t> row_start(n * (group_stride_ + 1));
+    std::vector<std::uint32_t> row_start(n * (group_stride_ + 1)), arrivals(n * group_stride_ * lanes);
     std::vector<FacePair> face_pairs(n * face_stride_);
     oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
       const std::size_t i = first + k;
@@ -119,8 +121,10 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
       const std::vector<std::uint32_t> at = springs_at_masses(robot);
       std::ranges::copy(at, splits.begin() + static_cast<std::ptrdiff_t>(k * group_stride_ * lanes));
       SpringRecord* to = springs.data() + k * row_stride_ * lanes;
-      for (const ScheduledSpring& spring : prepared.schedule.places)
+      for (const ScheduledSpring& spring : prepared.schedule.places) {
         *to++ = {static_cast<std::uint32_t>(spring.partner) << 8 | spring.material, spring.rest_length};
+        ++arrivals[k * group_stride_ * lanes + spring.partner];
+      }
       std::ranges::copy(prepared.schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
       std::ranges::copy(prepared.pairs, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
       std::ranges::copy(materials_of(robot), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
@@ -129,6 +133,7 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
     splits_.write(first * group_stride_ * lanes, splits);
     springs_.write(first * row_stride_ * lanes, springs);
     row_start_.write(first * (group_stride_ + 1), row_start);
+    arrivals_.write(first * group_stride_ * lanes, arrivals);
     face_pairs_.write(first * face_stride_, face_pairs);
   }
   device_materials_.write(0, materials_);
@@ -197,7 +202,7 @@ void Batch::reserve_workspace(std::size_t bytes_a_robot) {
 
 BatchView Batch::view() const {
   return {device_records_.data(), device_statuses_.data(), state_.data(), springs_.data(), row_start_.data(),
-          face_pairs_.data(), splits_.data(), device_materials_.data(), phases_.data(), pulls_.data(), workspace_.data(),
+          face_pairs_.data(), splits_.data(), arrivals_.data(), device_materials_.data(), phases_.data(), pulls_.data(), workspace_.data(),
           size(), group_stride_, row_stride_, face_stride_, static_cast<std::uint32_t>(pulls_.size()),
           static_cast<std::uint32_t>(workspace_stride_)};
 }

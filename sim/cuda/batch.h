@@ -61,7 +61,7 @@ class Batch {
   DeviceArray<DeviceStatus> device_statuses_;
   DeviceArray<float> state_, splits_;
   DeviceArray<SpringRecord> springs_;
-  DeviceArray<std::uint32_t> row_start_;
+  DeviceArray<std::uint32_t> row_start_, arrivals_;
   DeviceArray<FacePair> face_pairs_;
   DeviceArray<Material> device_materials_;
   DeviceArray<MusclePhase> phases_;

@@ -26,9 +26,12 @@ struct BlockLayout {
   std::uint32_t tables, failures, contacts, total;
 };
 
-// Two tables of buckets (one is filled for the next step while the other is read) and a list link a mass.
+// Pairs of near masses that are kept; if there are more, the cell grid is asked every step.
+inline constexpr std::uint32_t contact_list_size = 1023;
+
+// The list and its length, the buckets, and a link a mass (contacts.cuh).
 MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint32_t groups) {
-  return buckets == 0 ? 0 : 2 * buckets * 4 + groups * lanes * 2;
+  return buckets == 0 ? 0 : (1 + contact_list_size + buckets) * 4 + groups * lanes * 2;
 }
 
 MERCURY_HOST_DEVICE BlockLayout block_layout(const Shape& shape, std::uint32_t groups, std::uint32_t rows) {

@@ -56,57 +56,56 @@ std::vector<FacePair> match(const Robot& robot) {
   return pairs;
 }
 
-// 32 pairs and the banks that their four columns of masses take.
+// Up to 32 pairs, and the banks that their four columns of masses take.
 struct Bundle {
   std::array<std::uint32_t, 4> banks{};
   std::vector<FacePair> pairs;
 
-  int conflicts(const FacePair& p) const {
-    const std::array<std::uint16_t, 4> mass{p.a, p.b, p.c, p.d};
-    int count = 0;
-    for (std::size_t column = 0; column < 4; ++column) count += banks[column] >> (mass[column] % lanes) & 1;
-    return count;
+  static std::array<std::uint32_t, 4> banks_of(const FacePair& p) {
+    return {1u << p.a % lanes, 1u << p.b % lanes, 1u << p.c % lanes, 1u << p.d % lanes};
+  }
+  bool has_room(const FacePair& p) const {
+    if (pairs.size() == lanes) return false;
+    const auto wanted = banks_of(p);
+    return !(banks[0] & wanted[0] || banks[1] & wanted[1] || banks[2] & wanted[2] || banks[3] & wanted[3]);
   }
   void add(const FacePair& p) {
-    const std::array<std::uint16_t, 4> mass{p.a, p.b, p.c, p.d};
-    for (std::size_t column = 0; column < 4; ++column) banks[column] |= 1u << (mass[column] % lanes);
+    const auto wanted = banks_of(p);
+    for (std::size_t column = 0; column < 4; ++column) banks[column] |= wanted[column];
     pairs.push_back(p);
   }
 };
 
-// (a, b, c, d) and (c, d, a, b) are the same two triangles.
-FacePair turned(const FacePair& p) { return {p.c, p.d, p.a, p.b}; }
+// The same two triangles, told in another order; a face's force does not depend on its orientation.
+std::array<FacePair, 4> tellings(const FacePair& p) {
+  return {p, FacePair{p.c, p.d, p.a, p.b}, FacePair{p.a, p.d, p.c, p.b}, FacePair{p.c, p.b, p.a, p.d}};
+}
 
-std::vector<FacePair> spread_over_banks(std::vector<FacePair> pairs) {
-  constexpr std::size_t open_at_once = 8;
-  std::vector<Bundle> open;
-  std::vector<FacePair> ordered;
-  ordered.reserve(pairs.size());
-  const auto close = [&](std::size_t which) {
-    ordered.insert(ordered.end(), open[which].pairs.begin(), open[which].pairs.end());
-    open.erase(open.begin() + static_cast<std::ptrdiff_t>(which));
-  };
-  std::size_t started = 0;
-  const std::size_t needed = (pairs.size() + lanes - 1) / lanes;
-  for (const FacePair& pair : pairs) {
-    if (open.size() < open_at_once && started < needed) {
-      open.emplace_back();
-      ++started;
-    }
-    std::size_t best = 0;
-    bool turn = false;
-    int fewest = 99;
-    for (std::size_t i = 0; i < open.size(); ++i)
-      for (const bool t : {false, true})
-        if (const int count = open[i].conflicts(t ? turned(pair) : pair); count < fewest) {
-          fewest = count;
-          best = i;
-          turn = t;
-        }
-    open[best].add(turn ? turned(pair) : pair);
-    if (open[best].pairs.size() == lanes) close(best);
+// The fullest bundle that takes a pair in one of its tellings, or a new one.
+void place(std::vector<Bundle>& bundles, const FacePair& pair) {
+  Bundle* best = nullptr;
+  FacePair best_telling;
+  for (Bundle& bundle : bundles) {
+    if (best && bundle.pairs.size() <= best->pairs.size()) continue;
+    for (const FacePair& telling : tellings(pair))
+      if (bundle.has_room(telling)) {
+        best = &bundle;
+        best_telling = telling;
+        break;
+      }
   }
-  while (!open.empty()) close(0);
+  if (best) return best->add(best_telling);
+  bundles.emplace_back().add(pair);
+}
+
+std::vector<FacePair> spread_over_banks(const std::vector<FacePair>& pairs) {
+  std::vector<Bundle> bundles;
+  for (const FacePair& pair : pairs) place(bundles, pair);
+  std::vector<FacePair> ordered;
+  for (Bundle& bundle : bundles) {
+    bundle.pairs.resize(lanes, no_faces);
+    ordered.insert(ordered.end(), bundle.pairs.begin(), bundle.pairs.end());
+  }
   return ordered;
 }
 

@@ -37,6 +37,9 @@ struct RobotRecord {
   float contact_distance;                // [m]
 };
 
+// Rows of springs that a warp has in hand at once; behind the last robot's rows stand as many that are read but unused.
+inline constexpr int rows_at_once = 4;
+
 // What became of a robot: the step is counted from the start of the simulation, -1 = has not exploded.
 struct DeviceStatus {
   long long exploded_step;
@@ -58,6 +61,7 @@ struct BatchView {
   const std::uint32_t* row_start;  // [robot][group + 1]
   const FacePair* face_pairs;      // [robot][pair]
   const float* splits;             // [robot][mass], springs at a mass
+  const std::uint32_t* arrivals;   // [robot][mass], places of the schedule whose partner a mass is
   const Material* materials;       // [robot][max_materials]
   MusclePhase* phases;             // [robot][max_materials], for the present clock base
   const DevicePull* pulls;

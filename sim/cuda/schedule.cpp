@@ -12,55 +12,46 @@ struct Edge {
   std::uint32_t spring;
 };
 
-// Which mass owns each spring, and how busy that makes lanes and banks.
+// Which mass owns each spring. A row is as wide as its group, so what counts is the busiest lane and bank of a group;
+// owners are chosen so that the sum of the squares of all loads is small, which evens them out.
 class Ownership {
  public:
   explicit Ownership(const Robot& robot)
       : springs_(robot.springs), lane_load_(robot.masses.size()),
         bank_load_((robot.masses.size() + lanes - 1) / lanes * lanes), owned_by_b_(robot.springs.size()) {
     for (std::size_t s = 0; s < springs_.size(); ++s) {
-      const auto [a, b] = ends(s);
-      owned_by_b_[s] = rank(b, a) < rank(a, b);
+      owned_by_b_[s] = load(springs_[s].b, springs_[s].a) < load(springs_[s].a, springs_[s].b);
       change(s, 1);
     }
-    for (int pass = 0; pass < 4 && improve(); ++pass) {}
+    constexpr int sweeps = 12;
+    for (int sweep = 0; sweep < sweeps; ++sweep) improve(sweep);
   }
 
   std::uint16_t owner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].b : springs_[s].a; }
   std::uint16_t partner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].a : springs_[s].b; }
 
  private:
-  struct Ends {
-    std::uint16_t a, b;
-  };
-  Ends ends(std::size_t s) const { return {springs_[s].a, springs_[s].b}; }
-
   std::uint32_t& bank_load(std::uint16_t owner, std::uint16_t partner) {
     return bank_load_[owner / lanes * lanes + partner % lanes];
   }
-  std::uint32_t busiest(std::uint16_t owner, std::uint16_t partner) {
-    return std::max(lane_load_[owner], bank_load(owner, partner));
-  }
-  // First the larger load, then the sum.
-  std::uint32_t rank(std::uint16_t owner, std::uint16_t partner) {
-    return busiest(owner, partner) * 0x10000 + lane_load_[owner] + bank_load(owner, partner);
+  std::uint32_t load(std::uint16_t owner, std::uint16_t partner) {
+    return lane_load_[owner] + bank_load(owner, partner);
   }
   void change(std::size_t s, std::uint32_t by) {
     lane_load_[owner(s)] += by;
     bank_load(owner(s), partner(s)) += by;
   }
 
-  // Hands springs to their other end where that is less busy. False if none was.
-  bool improve() {
-    bool improved = false;
+  // Hands springs to their other end where that lowers the sum of squares; in odd sweeps also where it stays the same,
+  // which lets loads wander to where there is room.
+  void improve(int sweep) {
     for (std::size_t s = 0; s < springs_.size(); ++s) {
-      if (busiest(partner(s), owner(s)) + 1 >= busiest(owner(s), partner(s))) continue;
+      const std::uint32_t here = load(owner(s), partner(s)), there = load(partner(s), owner(s)) + 2;
+      if (there > here || (there == here && sweep % 2 == 0)) continue;
       change(s, static_cast<std::uint32_t>(-1));
       owned_by_b_[s] = !owned_by_b_[s];
       change(s, 1);
-      improved = true;
     }
-    return improved;
   }
 
   const std::vector<Spring>& springs_;

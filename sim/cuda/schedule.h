@@ -39,7 +39,11 @@ struct FacePair {
   std::uint16_t a = 0, b = 0, c = 0, d = 0;
 };
 
-// Every face once, in an order in which the masses of 32 pairs in a row seldom share a bank.
+// An empty place.
+inline constexpr FacePair no_faces{0, 0, 0, 0};
+
+// Every face once. Of 32 pairs in a row no two have masses of the same bank in the same column; places that this leaves
+// free are empty.
 std::vector<FacePair> pair_faces(const Robot& robot);
 
 }  // namespace mercury::cuda

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <bit>
+#include <cstdio>
+#include <cstdlib>
 
 #include "sim/cuda/material_table.cuh"
 #include "sim/cuda/memory.h"
@@ -10,11 +12,16 @@ namespace {
 
 extern __shared__ char shared_memory[];
 
-// 48 registers let two blocks of 672 threads share a multiprocessor.
-template <Solver solver, class Hooks, bool on_chip>
-__global__ void __maxnreg__(48)
+__device__ std::uint32_t shared_address(const void* pointer) {
+  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
+}
+
+// With 72 registers a multiprocessor holds 28 warps.
+template <Solver solver, class Hooks, class Memory>
+__global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Hooks hooks) {
-  using Stepper = RobotStepper<solver, Hooks>;
+  using Stepper = RobotStepper<solver, Hooks, Memory>;
+  constexpr bool on_chip = std::is_same_v<Memory, OnChip>;
   const Shape& shape = arguments.shape;
   const BatchView& batch = arguments.batch;
   const std::uint32_t lane = threadIdx.x % lanes, block_warp = threadIdx.x / lanes;
@@ -26,9 +33,9 @@ __global__ void __maxnreg__(48)
 
   auto* const failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + seat;
   char* const workspace = batch.workspace + std::size_t{robot} * batch.workspace_stride;
-  char* masses;
+  typename Memory::Address masses;
   if constexpr (on_chip)
-    masses = shared_memory + layout.contacts + seat * working_bytes;
+    masses = shared_address(shared_memory) + layout.contacts + seat * working_bytes;
   else
     masses = workspace;
   char* const contacts = shape.contacts_on_chip
@@ -41,15 +48,18 @@ __global__ void __maxnreg__(48)
                           shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, lane, table);
   materials.template fill<solver>(arguments, batch.robots[shape.shared_table ? first_robot : robot]);
 
-  Stepper stepper(arguments, hooks, robot, warp, lane, masses, table + lane % shape.table_copies, failure, contacts);
+  Stepper stepper(arguments, hooks, robot, warp, lane, masses, shared_address(table + lane % shape.table_copies), failure,
+                  contacts);
   // The last block may have seats left; those and robots that exploded earlier only keep the barriers company.
   const bool seated = first_robot + seat < batch.robot_count && stepper.alive();
   if (warp == 0 && lane == 0) *failure = {seated ? never : 0, never};
   stepper.load_state();
-  if constexpr (Hooks::has_contacts) stepper.fill_contacts();
   __syncthreads();
+  int list_contacts = 1;
 
   for (std::uint32_t step = 0; step < arguments.steps; ++step) {
+    if constexpr (Hooks::has_contacts)
+      if (shape.contact_buckets > 0 && list_contacts) stepper.list_contacts();
     stepper.add_environment(step);
     if constexpr (solver == Solver::xpbd) {
       if constexpr (Hooks::has_faces || Hooks::has_contacts) __syncthreads();
@@ -60,18 +70,22 @@ __global__ void __maxnreg__(48)
     __syncthreads();
     stepper.end(step);
     materials.update(arguments, step + 1);
-    stepper.turn_contacts();
-    __syncthreads();
+    if constexpr (Hooks::has_contacts)
+      list_contacts = __syncthreads_or(stepper.contacts_stale());
+    else
+      __syncthreads();
   }
   if (seated) stepper.store_state();
 }
 
 template <Solver solver, class Hooks>
 void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
-  const auto kernel = arguments.shape.on_chip ? step_kernel<solver, Hooks, true> : step_kernel<solver, Hooks, false>;
+  const auto kernel = arguments.shape.on_chip ? step_kernel<solver, Hooks, OnChip> : step_kernel<solver, Hooks, OffChip>;
   const Shape& shape = arguments.shape;
   const auto bytes = static_cast<int>(shape.shared_bytes);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
+  check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, cudaSharedmemCarveoutMaxShared),
+        "preferring shared memory");
   const std::uint32_t blocks = (arguments.batch.robot_count + shape.robots_per_block - 1) / shape.robots_per_block;
   const std::uint32_t threads = shape.robots_per_block * shape.warps_per_robot * lanes;
   kernel<<<blocks, threads, shape.shared_bytes, stream>>>(arguments, hooks);
@@ -79,7 +93,7 @@ void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t str
 }
 
 struct Limits {
-  std::uint32_t shared_per_block, shared_per_multiprocessor, reserved_per_block, threads_per_multiprocessor;
+  std::uint32_t shared_per_block, shared_per_multiprocessor, reserved_per_block, multiprocessors;
 };
 
 Limits device_limits() {
@@ -91,13 +105,22 @@ Limits device_limits() {
     return static_cast<std::uint32_t>(value);
   };
   return {attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin), attribute(cudaDevAttrMaxSharedMemoryPerMultiprocessor),
-          attribute(cudaDevAttrReservedSharedMemoryPerBlock), attribute(cudaDevAttrMaxThreadsPerMultiProcessor)};
+          attribute(cudaDevAttrReservedSharedMemoryPerBlock), attribute(cudaDevAttrMultiProcessorCount)};
 }
 
-constexpr std::uint32_t most_warps = 21;   // 2 blocks of 672 threads with 48 registers each fill a multiprocessor
-constexpr std::uint32_t least_warps = 2;   // the material table is shared out among them
+// What the kernel's registers allow: so many warps on a multiprocessor, at best in two blocks, so that one computes while
+// the other waits at a barrier.
+constexpr std::uint32_t resident_warps = 28;
+// Groups that a warp takes in turn: enough to hide a barrier's cost, few enough to share the work evenly.
+constexpr std::uint32_t fewest_turns = 3;
 
-// As many copies of the material table as leave `blocks` blocks on a multiprocessor.
+// The fewest warps, at most `most`, with which a robot's groups take as many turns as with `most`.
+std::uint32_t even_warps(std::uint32_t groups, std::uint32_t most) {
+  const std::uint32_t turns = std::max((groups + most - 1) / most, std::min(fewest_turns, groups));
+  return (groups + turns - 1) / turns;
+}
+
+// As many copies of the material table as leave room for `blocks` blocks on a multiprocessor. False if not one does.
 bool fit(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limits& limits, std::uint32_t blocks) {
   for (const std::uint32_t copies : {16u, 8u, 4u, 2u, 1u}) {
     shape.table_copies = copies;
@@ -107,6 +130,24 @@ bool fit(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limits& l
       return true;
   }
   return false;
+}
+
+// Small robots: several a block, while the multiprocessor's warps are filled by at least two blocks.
+bool fit_several(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limits& limits, std::uint32_t robots) {
+  shape.warps_per_robot = even_warps(groups, resident_warps / 2);
+  for (std::uint32_t seats = std::min(resident_warps / 2 / shape.warps_per_robot, robots); seats > 0; --seats) {
+    shape.robots_per_block = seats;
+    if (fit(shape, groups, rows, limits, resident_warps / (seats * shape.warps_per_robot))) return true;
+  }
+  return false;
+}
+
+// Large robots: one a block and multiprocessor.
+bool fit_one(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limits& limits) {
+  shape.robots_per_block = 1;
+  const std::uint32_t turns = (groups + resident_warps - 1) / resident_warps;
+  shape.warps_per_robot = (groups + turns - 1) / turns;
+  return fit(shape, groups, rows, limits, 1);
 }
 
 }  // namespace
@@ -119,20 +160,23 @@ Shape choose_shape(Solver solver, const Environment& environment, std::uint32_t 
   const std::uint32_t rows = working_rows(solver);
   Shape shape;
   shape.shared_table = same_materials;
-  const std::uint32_t turns = (groups + most_warps - 1) / most_warps;
-  shape.warps_per_robot = std::max(least_warps, (groups + turns - 1) / turns);
   const Land* land = std::get_if<Land>(&environment);
   if (land && land->self_collision && land->contact_stiffness > 0) shape.contact_buckets = std::bit_ceil(groups * lanes);
-  shape.robots_per_block = std::clamp(most_warps / shape.warps_per_robot, 1u, std::max(robots, 1u));
-  if (!same_materials && shape.robots_per_block > 1) shape.robots_per_block = std::min(shape.robots_per_block, 3u);
-  for (; shape.robots_per_block > 1; --shape.robots_per_block)
-    if (fit(shape, groups, rows, limits, 2)) return shape;
-  if (fit(shape, groups, rows, limits, 2) || fit(shape, groups, rows, limits, 1)) return shape;
+  if (const char* dev = getenv("MERCURY_SHAPE")) {
+    unsigned w, r, c, b;
+    if (sscanf(dev, "%u,%u,%u,%u", &w, &r, &c, &b) == 4) {
+      shape.warps_per_robot = w; shape.robots_per_block = r; shape.table_copies = c;
+      shape.shared_bytes = block_layout(shape, groups, rows).total;
+      return shape;
+    }
+  }
+  // Fewer robots than multiprocessors: each gets one to itself.
+  if (robots > limits.multiprocessors && fit_several(shape, groups, rows, limits, robots)) return shape;
+  if (fit_one(shape, groups, rows, limits)) return shape;
   shape.contacts_on_chip = false;
-  if (fit(shape, groups, rows, limits, 1)) return shape;
+  if (fit_one(shape, groups, rows, limits)) return shape;
   shape.on_chip = false;
-  shape.warps_per_robot = 32;
-  fit(shape, groups, rows, limits, 1);
+  fit_one(shape, groups, rows, limits);
   return shape;
 }
 
