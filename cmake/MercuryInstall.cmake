@@ -24,8 +24,11 @@ target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DI
   sim/simulation.h
   sim/telemetry.h
   sim/vec3.h)
-file(GLOB robot_headers CONFIGURE_DEPENDS robots/*.h)
-target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${robot_headers})
+target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
+  robots/file.h
+  robots/random.h
+  robots/random_voxel.h
+  robots/voxel.h)
 
 set(mercury_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mercury)
 install(TARGETS mercury_sim mercury_robots EXPORT mercury

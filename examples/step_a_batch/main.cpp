@@ -1,15 +1,20 @@
-// PLACEHOLDER body until robots land
+// Steps 64 random voxel robots for five seconds and prints how far each has swum.
 #include <cstdio>
-#include <vector>
 
+#include "robots/random_voxel.h"
 #include "sim/simulation.h"
 
 int main() {
-  mercury::Robot robot;
-  robot.masses = {{0, 0, 0}, {0.1f, 0, 0}};
-  robot.springs = {{0, 1, 1, 0.1f}};
-  std::vector<mercury::Robot> robots(8, robot);
-  mercury::Simulation simulation({}, robots);
-  simulation.step(1000);
-  for (const auto& t : simulation.telemetry()) std::printf("%.4f m\n", mercury::length(t.center_of_mass));
+  const auto robots = mercury::random_voxel_robots({}, /*seed=*/1, /*count=*/64);
+  mercury::Simulation simulation({.dt = 1e-3, .environment = mercury::Ocean{}}, robots);
+
+  const auto before = simulation.telemetry();
+  simulation.step(5000);
+  const auto after = simulation.telemetry();
+
+  std::printf("%s, %.1f s simulated\n", simulation.device_name().c_str(), simulation.time());
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const float distance = mercury::length(after[i].center_of_mass - before[i].center_of_mass);
+    std::printf("%-14s %6.3f m\n", robots[i].name.c_str(), distance);
+  }
 }

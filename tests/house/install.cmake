@@ -2,7 +2,7 @@
 file(REMOVE_RECURSE ${PREFIX})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-foreach(file IN ITEMS include/mercury/sim/simulation.h include/mercury/sim/robot.h)
+foreach(file IN ITEMS include/mercury/sim/simulation.h include/mercury/robots/voxel.h)
   if(NOT EXISTS ${PREFIX}/${file})
     message(SEND_ERROR "${file} was not installed")
   endif()

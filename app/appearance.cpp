@@ -1,0 +1,88 @@
+#include "app/appearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace mercury {
+namespace {
+
+std::uint32_t edge_key(std::uint16_t a, std::uint16_t b) {
+  return static_cast<std::uint32_t>(std::min(a, b)) << 16 | std::max(a, b);
+}
+
+render::Color color_of(const Material& material, float slowest, float fastest) {
+  if (material.amplitude != 0) {
+    const float speed = fastest > slowest ? (material.frequency - slowest) / (fastest - slowest) : 0.5f;
+    return render::muscle_color(material.phase, speed);
+  }
+  // Bone and tissue of the defaults lie at 100 and 40 N/m.
+  return render::mix(render::tissue_color, render::bone_color, std::clamp((material.stiffness - 40) / 60, 0.0f, 1.0f));
+}
+
+}  // namespace
+
+BodyShape::BodyShape(const Robot& robot, std::uint32_t first_look) {
+  for (const Vec3 p : robot.masses) rest_positions_.insert(rest_positions_.end(), {p.x, p.y, p.z});
+  for (const Face& face : robot.faces) faces_.insert(faces_.end(), {face.a, face.b, face.c});
+  for (const Spring& spring : robot.springs) {
+    springs_.insert(springs_.end(), {spring.a, spring.b});
+    spring_looks_.push_back(first_look + spring.material);
+  }
+  for (const MaterialId id : face_materials(robot)) face_looks_.push_back(first_look + id);
+}
+
+render::Body BodyShape::body() const {
+  return {.rest_positions = rest_positions_,
+          .faces = faces_,
+          .springs = springs_,
+          .face_looks = face_looks_,
+          .spring_looks = spring_looks_};
+}
+
+std::vector<MaterialId> face_materials(const Robot& robot) {
+  std::unordered_map<std::uint32_t, const Spring*> springs;
+  springs.reserve(robot.springs.size());
+  for (const Spring& spring : robot.springs) springs.emplace(edge_key(spring.a, spring.b), &spring);
+  std::vector<MaterialId> materials;
+  materials.reserve(robot.faces.size());
+  for (const Face& face : robot.faces) {
+    const Spring* longest = nullptr;
+    for (const auto& [a, b] : {std::pair{face.a, face.b}, {face.b, face.c}, {face.c, face.a}}) {
+      const auto found = springs.find(edge_key(a, b));
+      if (found == springs.end()) continue;
+      if (!longest || found->second->rest_length > longest->rest_length) longest = found->second;
+    }
+    materials.push_back(longest ? longest->material : air);
+  }
+  return materials;
+}
+
+std::vector<render::Color> material_colors(std::span<const Material> materials, bool defaults) {
+  float slowest = INFINITY, fastest = 0;
+  for (const Material& material : materials) {
+    if (material.amplitude == 0) continue;
+    slowest = std::min(slowest, material.frequency);
+    fastest = std::max(fastest, material.frequency);
+  }
+  std::vector<render::Color> colors;
+  for (const Material& material : materials) colors.push_back(color_of(material, slowest, fastest));
+  if (!defaults) return colors;
+  for (std::size_t id = base_material_count + 1; id < colors.size(); ++id) {
+    const auto [first, second] = base_materials_of(static_cast<MaterialId>(id));
+    colors[id] = render::mix(colors[first], colors[second], 0.5f);
+  }
+  return colors;
+}
+
+void set_activations(std::span<const Material> materials, double time, std::span<render::Look> looks) {
+  float largest = 0;
+  for (const Material& material : materials) largest = std::max(largest, std::abs(material.amplitude));
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = materials[i];
+    const double angle = std::remainder(static_cast<double>(m.frequency) * time + static_cast<double>(m.phase), 2 * M_PI);
+    looks[i].activation = largest > 0 ? -m.amplitude / largest * static_cast<float>(std::sin(angle)) : 0;
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,14 @@
+// A configuration as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "sim/configuration.h"
+
+namespace mercury {
+
+// Its members by the names of the program's options: {"device": "cpu", "threads": 0, "solver": "force", "dt": 0.001,
+// "damping": 0.1, "environment": "ocean", "density": 1000, ...}; vectors as [x, y, z].
+nlohmann::ordered_json json_of(const Configuration& configuration);
+
+}  // namespace mercury

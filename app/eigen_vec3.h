@@ -1,0 +1,12 @@
+// Between the simulation's vectors and the renderer's.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sim/vec3.h"
+
+namespace mercury {
+
+inline Eigen::Vector3f eigen(Vec3 v) { return {v.x, v.y, v.z}; }
+
+}  // namespace mercury

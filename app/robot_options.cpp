@@ -1,0 +1,51 @@
+#include "app/robot_options.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+
+#include "app/option_values.h"
+#include "robots/file.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t most_robots = 1'000'000;
+
+}  // namespace
+
+void RobotOptions::add_to(CLI::App& command) {
+  command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  command.add_option("--random", random_, "So many random robots; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("voxel:N")
+      ->group("Robots");
+  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
+  voxel_.add_to(command);
+}
+
+std::vector<Robot> RobotOptions::load() const {
+  if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12");
+  std::vector<Robot> robots;
+  if (!paths_.empty()) robots = load_robots(std::vector<std::filesystem::path>(paths_.begin(), paths_.end()));
+  for (const std::string& request : random_) {
+    std::vector<Robot> more = random_robots(request);
+    robots.insert(robots.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+  return robots;
+}
+
+std::vector<Robot> RobotOptions::random_robots(const std::string& request) const {
+  const std::size_t colon = request.find(':');
+  const std::string kind = request.substr(0, colon);
+  std::size_t count = 1;
+  if (colon != std::string::npos) count = number_from<std::uint64_t>("--random", request.substr(colon + 1));
+  if (count < 1 || count > most_robots)
+    throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
+  if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed_, count);
+  throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N", kind));
+}
+
+}  // namespace mercury

@@ -1,0 +1,35 @@
+// The robots a command works on: files, folders, and robots made at random.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/voxel_options.h"
+#include "sim/robot.h"
+
+namespace mercury {
+
+class RobotOptions {
+ public:
+  // Adds the options to a command. The object must outlive it.
+  void add_to(CLI::App& command);
+
+  // Reads the files and makes the random robots, files first. Throws InputError when there are none, or one cannot be
+  // used.
+  std::vector<Robot> load() const;
+
+  bool empty() const { return paths_.empty() && random_.empty(); }
+
+ private:
+  std::vector<Robot> random_robots(const std::string& request) const;
+
+  std::vector<std::string> paths_;   // files and folders
+  std::vector<std::string> random_;  // "voxel:12"
+  std::uint64_t seed_ = 1;
+  VoxelOptions voxel_;
+};
+
+}  // namespace mercury

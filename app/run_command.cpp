@@ -1,0 +1,142 @@
+// mercury run: simulate without pictures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/option_values.h"
+#include "app/progress.h"
+#include "app/report.h"
+#include "app/robot_options.h"
+#include "app/simulation_options.h"
+#include "app/stepping.h"
+#include "robots/whole_file.h"
+#include "sim/simulation.h"
+
+namespace mercury {
+namespace {
+
+constexpr double sample_period = 0.1;  // between looks at the telemetry [s]
+
+struct RunOptions {
+  RobotOptions robots;
+  SimulationOptions simulation;
+  std::string csv, config;
+  bool json = false, strict = false, quiet = false;
+};
+
+double distance(Vec3 a, Vec3 b) { return length(a - b); }
+
+// Looks at the robots now and then: the way each went, and its largest strain.
+class Observer {
+ public:
+  explicit Observer(const Simulation& simulation)
+      : simulation_(simulation), start_(simulation.telemetry()), last_(start_), way_(start_.size(), 0.0),
+        strain_(start_.size(), 0.0) {
+    observe(start_);
+  }
+
+  void observe() { observe(simulation_.telemetry()); }
+
+  std::vector<RobotResult> results() const {
+    std::vector<RobotResult> results;
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      const Robot& robot = simulation_.robot(i);
+      const Telemetry& now = last_[i];
+      results.push_back({.name = robot.name,
+                         .masses = robot.masses.size(),
+                         .springs = robot.springs.size(),
+                         .displacement = distance(now.center_of_mass, start_[i].center_of_mass),
+                         .mean_speed = simulation_.time() > 0 ? way_[i] / simulation_.time() : 0,
+                         .largest_strain = strain_[i],
+                         .exploded = now.exploded,
+                         .exploded_at = now.exploded_at,
+                         .first_bad_spring = now.first_bad_spring,
+                         .hash = simulation_.hash(i)});
+    }
+    return results;
+  }
+
+ private:
+  void observe(const std::vector<Telemetry>& now) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      way_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
+      strain_[i] = std::max(strain_[i], static_cast<double>(now[i].largest_strain));
+    }
+    last_ = now;
+  }
+
+  const Simulation& simulation_;
+  std::vector<Telemetry> start_, last_;
+  std::vector<double> way_, strain_;
+};
+
+RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet) {
+  Stepper stepper(simulation);
+  Observer observer(simulation);
+  Progress progress("simulating", "steps", steps, quiet);
+  const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
+  bool on = true;
+  while (on && simulation.steps() < steps) {
+    on = stepper.advance_to(std::min(steps, (simulation.steps() / period + 1) * period));
+    observer.observe();
+    progress.update(simulation.steps());
+  }
+  return {.configuration = simulation.configuration(),
+          .device = simulation.device_name(),
+          .steps = simulation.steps(),
+          .seconds = simulation.time(),
+          .wall_seconds = stepper.wall_seconds(),
+          .interrupted = !on,
+          .notes = simulation.notes(),
+          .robots = observer.results()};
+}
+
+int run(const RunOptions& options) {
+  const Configuration configuration = options.simulation.configuration();
+  const std::int64_t steps = options.simulation.steps();
+  const std::vector<Robot> robots = options.robots.load();
+  Simulation simulation(configuration, robots);
+  for (const std::string& note : simulation.notes()) fmt::print(stderr, "mercury: {}\n", note);
+
+  const RunReport report = simulate(simulation, steps, options.quiet);
+  if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
+  fmt::print("{}", options.json ? json_of(report) : table_of(report));
+
+  const auto exploded = std::count_if(report.robots.begin(), report.robots.end(), [](auto& r) { return r.exploded; });
+  if (exploded > 0)
+    fmt::print(stderr, "mercury: {} of {} robots exploded; a smaller --dt or --solver xpbd helps\n", exploded,
+               report.robots.size());
+  if (report.interrupted) {
+    fmt::print(stderr, "mercury: stopped at {:.6g} s\n", report.seconds);
+    return 1;
+  }
+  return options.strict && exploded > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = program.add_subcommand("run", "Simulate without pictures: a table, CSV or JSON");
+  options->robots.add_to(*command);
+  add_text(*command, "--csv", options->csv, "Also write one line a robot into this file", "FILE");
+  command->add_flag("--json", options->json, "Print JSON rather than a table");
+  command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
+  command->add_flag("--quiet", options->quiet, "No progress on standard error");
+  options->simulation.add_to(*command);
+  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+           "FILE.toml");
+  command->footer(
+      "Displacement is that of the centre of mass; speed is the length of its way over the time, and strain the\n"
+      "largest of any spring, both looked at every 0.1 s.\n\n"
+      "Examples:\n"
+      "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
+      "  mercury run robots/ --environment land --solver xpbd --dt 0.005 --json > land.json");
+  command->callback([options, choose] { choose([options] { return run(*options); }); });
+}
+
+}  // namespace mercury
