@@ -58,7 +58,7 @@ class CudaBackend final : public Backend {
     batch_.update_phases(clock);
     StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
     if (const Land* land = std::get_if<Land>(&configuration_.environment))
-      arguments.contact_stiffness = land->contact_stiffness * land->stiffness_scale;
+      arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
     for (std::int64_t done = 0; done < steps; done += arguments.steps) {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));

@@ -109,23 +109,23 @@ TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndThatOfXpbdDoesNot) {
   for (const double factor : {0.98, 1.02, 2.0, 10.0, 1000.0}) EXPECT_FALSE(explodes(Solver::xpbd, factor * limit)) << factor;
 }
 
-// A batch in which the force solver explodes, and the same with XPBD.
-TEST_P(Stability, XpbdStaysBoundedAtATimeStepWhereTheForceSolverExplodes) {
+TEST_P(Stability, XpbdStaysBoundedAtTimeStepsWhereTheForceSolverExplodes) {
   const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 4);
-  for (const auto& [environment, dt] : {std::pair<std::string_view, double>{Ocean::name, 0.1},
-                                        {OceanSimple::name, 0.1},
-                                        {Land::name, 0.01}}) {
-    Configuration configuration{.dt = dt, .environment = environment_named(environment), .device = {.kind = GetParam()}};
+  const std::vector<std::pair<std::string_view, double>> beyond = {
+      {Ocean::name, 0.1}, {Ocean::name, 1}, {OceanSimple::name, 0.1}, {OceanSimple::name, 1},
+      {Land::name, 0.01}, {Land::name, 0.05}, {Land::name, 0.1}, {Land::name, 0.2}};
+  for (const auto& [environment, dt] : beyond) {
+    Configuration configuration{.dt = dt, .environment = environment_named(environment), .device = device()};
     Simulation force(configuration, {&robot, 1});
     force.step(std::llround(20 / dt));
-    EXPECT_TRUE(force.telemetry(0).exploded) << environment;
+    EXPECT_TRUE(force.telemetry(0).exploded) << environment << " dt " << dt;
     configuration.solver = Solver::xpbd;
     Simulation xpbd(configuration, {&robot, 1});
     for (int look = 0; look < 20; ++look) {
       xpbd.step(std::llround(1 / dt));
       const Telemetry telemetry = xpbd.telemetry(0);
-      EXPECT_FALSE(telemetry.exploded) << environment;
-      EXPECT_LT(telemetry.largest_strain, 1) << environment << " at " << xpbd.time() << " s";
+      ASSERT_FALSE(telemetry.exploded) << environment << " dt " << dt;
+      ASSERT_LT(telemetry.largest_strain, 1.2) << environment << " dt " << dt << " at " << xpbd.time() << " s";
     }
   }
 }

@@ -127,7 +127,9 @@ void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
 
 // Every pair is looked at: slow, but there is no grid to get wrong.
 void Reference::add_repulsion(const Land& land, Field& force) const {
-  const double k = double{land.contact_stiffness} * double{land.stiffness_scale};
+  double k = double{land.contact_stiffness} * double{land.stiffness_scale};
+  const double dt = configuration_.dt;
+  if (configuration_.solver == Solver::xpbd) k = std::min(k, 1 / (8 * dt * dt));  // docs/physics.md, Contact
   for (std::size_t i = 0; i < x_.size(); ++i)
     for (std::size_t j = i + 1; j < x_.size(); ++j) {
       const Vector d = x_[j] - x_[i];
