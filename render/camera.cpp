@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace mercury::render {
 namespace {
@@ -26,6 +27,15 @@ Axes axes_of(const Camera& camera) {
   if (right.norm() < 1e-4f) right = Vector3f::UnitY().cross(back);
   right.normalize();
   return {right, back.cross(right), back};
+}
+
+std::vector<Vector3f> corners_of(std::span<const Bounds> boxes) {
+  std::vector<Vector3f> corners;
+  for (const Bounds& box : boxes)
+    for (int corner = 0; corner < 8 && !box.empty(); ++corner)
+      corners.emplace_back((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
+                           (corner & 4) ? box.high.z() : box.low.z());
+  return corners;
 }
 
 }  // namespace
@@ -114,32 +124,36 @@ void Orbit::pan(float right, float up) {
 
 void Orbit::zoom(float factor) { distance = std::clamp(distance * factor, 1e-3f, 1e5f); }
 
-void Orbit::frame(const Bounds& bounds, float aspect, float margin) {
-  if (bounds.empty()) return;
-  target = bounds.center();
+void Orbit::frame(const Bounds& bounds, float aspect, float margin, const Insets& free) {
+  frame(std::span(&bounds, 1), aspect, margin, free);
+}
+
+void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, const Insets& free) {
+  const std::vector<Vector3f> corners = corners_of(boxes);
+  if (corners.empty()) return;
+  target = bounds_of({corners[0].data(), 3 * corners.size()}).center();
   distance = 1;
   const Axes axes = axes_of(camera());
-  const float tan_up = std::tan(0.5f * field_of_view);
-  const float tan_across = tan_up * aspect;
-  // A corner at (x, y, z) from the target, in the picture's axes, is inside if |x| <= (d - z) tan and likewise y.
-  // Moving the target sideways balances the margins left over on both sides.
+  const float half = std::tan(0.5f * field_of_view);
+  // Tangents from the axis to the edges of the part of the picture that may be filled.
+  const float to_right = half * aspect * (1 - 2 * free.right), to_left = half * aspect * (1 - 2 * free.left);
+  const float to_top = half * (1 - 2 * free.top), to_bottom = half * (1 - 2 * free.bottom);
+  // A corner at (x, y, z) from the target, in the picture's axes, is inside if x <= (d - z) to_right and so on.
+  // Moving the target sideways balances what is left over on both sides.
   Vector3f shift = Vector3f::Zero();
   for (int pass = 0; pass < 8; ++pass) {
-    float needed = 0, left = 0, right = 0, below = 0, above = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3f point((corner & 1) ? bounds.high.x() : bounds.low.x(),
-                           (corner & 2) ? bounds.high.y() : bounds.low.y(),
-                           (corner & 4) ? bounds.high.z() : bounds.low.z());
-      const Vector3f p = point - target - shift;
+    float right = -1e30f, left = -1e30f, above = -1e30f, below = -1e30f;
+    for (const Vector3f& corner : corners) {
+      const Vector3f p = corner - target - shift;
       const float x = p.dot(axes.right), y = p.dot(axes.up), z = p.dot(axes.back);
-      right = std::max(right, x / tan_across + z);
-      left = std::max(left, -x / tan_across + z);
-      above = std::max(above, y / tan_up + z);
-      below = std::max(below, -y / tan_up + z);
-      needed = std::max({right, left, above, below});
+      right = std::max(right, x / to_right + z);
+      left = std::max(left, -x / to_left + z);
+      above = std::max(above, y / to_top + z);
+      below = std::max(below, -y / to_bottom + z);
     }
-    distance = std::max(1e-3f, needed * margin);
-    shift += 0.5f * (right - left) * tan_across * axes.right + 0.5f * (above - below) * tan_up * axes.up;
+    distance = std::max(1e-3f, std::max({right, left, above, below}) * margin);
+    shift += (right - left) / (1 / to_right + 1 / to_left) * axes.right +
+             (above - below) / (1 / to_top + 1 / to_bottom) * axes.up;
   }
   target += shift;
 }

@@ -44,6 +44,11 @@ struct Camera {
   Ray ray(float x, float y, int width, int height) const;
 };
 
+// Parts of the picture's width and height to be left free at its edges, for legends and clocks.
+struct Insets {
+  float left = 0, right = 0, top = 0, bottom = 0;
+};
+
 // A camera that turns around a target, as every mode of moving it needs.
 struct Orbit {
   Eigen::Vector3f target{0, 0, 0};  // [m]
@@ -61,7 +66,9 @@ struct Orbit {
   void zoom(float factor);
   // Looks at the centre of the box from so far that all of it is in a picture of that aspect, `margin` times as far as
   // just needed. Angles stay.
-  void frame(const Bounds& bounds, float aspect, float margin = 1.05f);
+  void frame(const Bounds& bounds, float aspect, float margin = 1.05f, const Insets& free = {});
+  // The same for several boxes, as tightly as their corners allow: what a group of bodies needs.
+  void frame(std::span<const Bounds> boxes, float aspect, float margin = 1.05f, const Insets& free = {});
 };
 
 // Looking straight down, +x to the right.

@@ -30,6 +30,8 @@ enum class Colormap {
   diverging,  // blue over grey to red: signed numbers, 0 in the middle
 };
 
+inline constexpr int colormap_count = 4;
+
 // "viridis", "magma", "turbo", "diverging".
 std::string_view name_of(Colormap map);
 // Throws std::invalid_argument that lists them.

@@ -1,11 +1,14 @@
 #include "render/light_pass.h"
 
+#include <vector>
+
 #include "render/bindings.h"
 
 namespace mercury::render {
 namespace {
 
 constexpr int sand_side = 512;
+constexpr int caustics_cells = 110;
 
 Texture make_tile(GLenum format, int side) {
   GLuint name = 0;
@@ -26,6 +29,17 @@ Texture make_sand() {
   Fullscreen("sand.frag").draw_into(framebuffer.get(), sand_side, sand_side);
   glGenerateTextureMipmap(sand.get());
   return sand;
+}
+
+std::vector<GLuint> grid_indices(int cells) {
+  std::vector<GLuint> indices;
+  const GLuint row = GLuint(cells + 1);
+  for (GLuint y = 0; y < GLuint(cells); ++y)
+    for (GLuint x = 0; x < GLuint(cells); ++x) {
+      const GLuint corner = y * row + x;
+      indices.insert(indices.end(), {corner, corner + 1, corner + row, corner + row, corner + 1, corner + row + 1});
+    }
+  return indices;
 }
 
 // The same texels seen through a comparing sampler.
@@ -52,16 +66,38 @@ LightPass::LightPass(const QualitySettings& settings)
       sand_(make_sand()),
       ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
-      caustics_program_("caustics.frag"),
+      caustics_grid_(make_vertex_array()),
+      caustics_program_(make_program({"caustics.vert", "caustics.frag"})),
       ground_program_("ground_light.frag", settings.defines()),
       ground_blur_("ground_blur.frag") {
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
   shadow_framebuffer_ = make_framebuffer({}, shadow_depths_.get());
+  caustics_indices_.write(grid_indices(caustics_cells));
+  glVertexArrayElementBuffer(caustics_grid_.get(), caustics_indices_.get());
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
   ground_rough_framebuffer_ = make_framebuffer({ground_rough_.get()});
   ground_framebuffer_ = make_framebuffer({ground_light_.get()});
+}
+
+// Rays that the waves bend together add their light: the tile is drawn as a net of their paths.
+void LightPass::draw_caustics() const {
+  const float dark = 0;
+  glClearNamedFramebufferfv(caustics_framebuffer_.get(), GL_COLOR, 0, &dark);
+  glBindFramebuffer(GL_FRAMEBUFFER, caustics_framebuffer_.get());
+  glViewport(0, 0, settings_.caustics_side, settings_.caustics_side);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glUseProgram(caustics_program_.get());
+  glUniform1i(0, caustics_cells);
+  glUniform1f(1, float(settings_.caustics_side));
+  glBindVertexArray(caustics_grid_.get());
+  glDrawElements(GL_TRIANGLES, 6 * caustics_cells * caustics_cells, GL_UNSIGNED_INT, nullptr);
+  glDisable(GL_BLEND);
+  glGenerateTextureMipmap(caustics_.get());
 }
 
 void LightPass::begin_shadow() {
@@ -84,10 +120,7 @@ void LightPass::end_shadow() {
 void LightPass::draw_maps(bool under_water, bool with_floor) {
   glBindTextureUnit(binding::shadow_map, shadow_.get());
   glBindTextureUnit(binding::shadow_depths, shadow_depths_.get());
-  if (under_water) {
-    caustics_program_.draw_into(caustics_framebuffer_.get(), settings_.caustics_side, settings_.caustics_side);
-    glGenerateTextureMipmap(caustics_.get());
-  }
+  if (under_water) draw_caustics();
   if (with_floor) {
     const int side = settings_.ground_side;
     ground_program_.draw_into(ground_rough_framebuffer_.get(), side, side);

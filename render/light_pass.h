@@ -26,11 +26,15 @@ class LightPass {
   void begin_shadow();
   void end_shadow();
   void draw_maps(bool under_water, bool with_floor);
+  void draw_caustics() const;
 
   QualitySettings settings_;
   Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_, ground_rough_;
   Framebuffer shadow_framebuffer_, caustics_framebuffer_, ground_framebuffer_, ground_rough_framebuffer_;
-  Fullscreen caustics_program_, ground_program_, ground_blur_;
+  VertexArray caustics_grid_;
+  Buffer caustics_indices_;
+  Program caustics_program_;
+  Fullscreen ground_program_, ground_blur_;
 };
 
 }  // namespace mercury::render

@@ -63,7 +63,7 @@ std::string QualitySettings::defines() const {
 }
 
 std::string QualitySettings::skin_defines() const {
-  return define("SHADOW_BLOCKERS", skin_blockers) + define("SHADOW_TAPS", skin_taps);
+  return define("SAMPLES", samples) + define("SHADOW_BLOCKERS", skin_blockers) + define("SHADOW_TAPS", skin_taps);
 }
 
 }  // namespace mercury::render

@@ -7,13 +7,16 @@
 #include <string>
 #include <utility>
 
+#include "render/annotation_pass.h"
 #include "render/bindings.h"
 #include "render/bodies.h"
 #include "render/bounds_pass.h"
 #include "render/finish_pass.h"
 #include "render/frame_block.h"
+#include "render/lattice_pass.h"
 #include "render/light_pass.h"
 #include "render/occlusion_pass.h"
+#include "render/overlay_pass.h"
 #include "render/quality.h"
 #include "render/skin_pass.h"
 #include "render/targets.h"
@@ -53,37 +56,55 @@ std::vector<Vector4f> look_records(std::span<const Look> looks) {
   return records;
 }
 
-// The box around all bodies that are shown, as they stand in the picture.
-Bounds placed(std::span<const Bounds> bodies, std::span<const Placement> placements) {
+// The boxes of bodies as they stand in the picture; empty for one that is not shown.
+std::vector<Bounds> placed(std::vector<Bounds> bodies, std::span<const Placement> placements) {
+  for (std::size_t i = 0; i < std::min(bodies.size(), placements.size()); ++i)
+    bodies[i] = placements[i].hidden ? Bounds{} : bodies[i].moved(placements[i].offset);
+  return bodies;
+}
+
+Bounds joined(std::span<const Bounds> boxes) {
   Bounds all;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Placement place = placements.empty() ? Placement{} : placements[i];
-    if (!place.hidden && !bodies[i].empty()) all.extend(bodies[i].moved(place.offset));
-  }
+  for (const Bounds& box : boxes)
+    if (!box.empty()) all.extend(box);
   return all;
 }
 
-Texture make_colormap(Colormap map) {
-  constexpr int entries = 256;
+Overlay written(const Scene& scene, const Camera& camera, std::span<const Bounds> bodies, const Style& style, int width,
+                int height, float text_size) {
+  Overlay overlay(width, height, text_size, style);
+  overlay.labels(scene.labels, bodies, camera);
+  if (scene.legend) overlay.legend(*scene.legend);
+  if (!scene.clock.empty()) overlay.clock(scene.clock);
+  if (!scene.caption.empty()) overlay.caption(scene.caption);
+  if (scene.scale_bar) overlay.length(camera);
+  return overlay;
+}
+
+// One map a row, from the middle of the first texel to the middle of the last.
+Texture make_colormaps() {
   std::vector<float> texels;
-  for (int i = 0; i < entries; ++i) {
-    const auto linear = linear_of(color_at(map, float(i) / float(entries - 1)));
-    texels.insert(texels.end(), linear.begin(), linear.end());
-  }
-  Texture texture = make_texture(GL_RGB16F, entries, 1);
-  glTextureSubImage2D(texture.get(), 0, 0, 0, entries, 1, GL_RGB, GL_FLOAT, texels.data());
+  for (int map = 0; map < colormap_count; ++map)
+    for (int i = 0; i < colormap_entries; ++i) {
+      const auto linear = linear_of(color_at(Colormap(map), float(i) / float(colormap_entries - 1)));
+      texels.insert(texels.end(), linear.begin(), linear.end());
+    }
+  Texture texture = make_texture(GL_RGB16F, colormap_entries, colormap_count);
+  glTextureSubImage2D(texture.get(), 0, 0, 0, colormap_entries, colormap_count, GL_RGB, GL_FLOAT, texels.data());
   return texture;
 }
 
 // What quality decides: thrown away and made anew when it changes.
 struct Passes {
   explicit Passes(const QualitySettings& settings)
-      : skin(settings.skin_defines()), light(settings), occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
+      : skin(settings.skin_defines()), lattice(settings.skin_defines()), light(settings), occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
   void resize(int width, int height) {
     occlusion.resize(width, height);
     finish.resize(width, height);
   }
   SkinPass skin;
+  LatticePass lattice;
+  AnnotationPass annotation;
   LightPass light;
   OcclusionPass occlusion;
   FinishPass finish;
@@ -100,7 +121,9 @@ struct Renderer::Parts {
   Targets targets;
   Bodies bodies;
   Buffer frame, placements, looks, face_values, mass_values;
-  std::array<Texture, 4> colormaps;
+  Texture colormaps = make_colormaps();
+  OverlayPass overlay;
+  float text_size = 0;
   std::optional<Passes> passes;
   BoundsPass bounds;
 
@@ -111,7 +134,7 @@ struct Renderer::Parts {
 Renderer::Renderer(const Context& context, const RendererOptions& options) : parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;
   p.software = context.is_software();
-  for (std::size_t i = 0; i < p.colormaps.size(); ++i) p.colormaps[i] = make_colormap(Colormap(i));
+  p.text_size = options.text_size;
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   set_quality(options.quality);
   resize(options.width, options.height);
@@ -199,7 +222,8 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const Style style = style_of(scene.surroundings, scene.theme);
   p.upload(scene);
-  const Bounds group = placed(body_bounds(), scene.placements);
+  const std::vector<Bounds> boxes = placed(body_bounds(), scene.placements);
+  const Bounds group = joined(boxes);
   const ShadowFit shadow = fit_shadow(group, style.to_key, p.settings.shadow_side);
   const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.width, p.height);
   p.frame.write(&block, sizeof block);
@@ -213,7 +237,10 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   const bool smooth = std::any_of(scene.placements.begin(), scene.placements.end(), [](const auto& x) { return x.smooth; });
   passes.skin.deform(p.bodies, smooth);
   passes.light.draw(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none,
-                    [&] { if (scene.show.skin) passes.skin.draw_shadow(p.bodies); });
+                    [&] {
+                      if (scene.show.skin) passes.skin.draw_shadow(p.bodies);
+                      passes.lattice.draw_shadow(p.bodies, scene);
+                    });
   passes.occlusion.draw(6 * p.bodies.typical_spring(), [&] { if (scene.show.skin) passes.skin.draw_depth(p.bodies); });
 
   glBindFramebuffer(GL_FRAMEBUFFER, p.targets.drawing.get());
@@ -222,15 +249,22 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   glClearNamedFramebufferfv(p.targets.drawing.get(), GL_DEPTH, 0, &farthest);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  glBindTextureUnit(binding::colormap, p.colormaps[std::size_t(scene.scale.map)].get());
+  glBindTextureUnit(binding::colormap, p.colormaps.get());
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
   if (scene.show.skin) passes.skin.draw(p.bodies, color_by, scene.scale);
   glDisable(GL_CULL_FACE);
+  passes.lattice.draw(p.bodies, scene);
+  passes.annotation.draw_arrows(scene.arrows);
   glDepthFunc(GL_GEQUAL);
   passes.backdrop.draw();
+  glDepthFunc(GL_GREATER);
+  passes.annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
+  if (scene.surroundings == Surroundings::water) passes.annotation.draw_particles(scene, camera, p.settings.particles);
   passes.finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);
+  p.overlay.draw(written(scene, camera, boxes, style, p.width, p.height, p.text_size), p.targets.finished.get(), p.width,
+                 p.height, p.colormaps.get());
 }
 
 unsigned Renderer::picture() const { return parts_->targets.picture.get(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/bindings.h"
+#include "render/lattice_pass.h"
 
 namespace mercury::render {
 namespace {
@@ -68,9 +69,7 @@ void SkinPass::draw_triangles(const Bodies& bodies) const {
 void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale) const {
   glUseProgram(skin_.get());
   glUniform1i(0, int(color_by));
-  const float range = scale.high - scale.low;
-  // An empty range shows the middle of the scale, as color_at() does.
-  glUniform2f(1, range != 0 ? scale.low : scale.low - 0.5f, range != 0 ? 1 / range : 1.0f);
+  set_scale(1, scale);
   draw_triangles(bodies);
 }
 

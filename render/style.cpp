@@ -81,6 +81,7 @@ Style style_of(Surroundings surroundings, Theme theme) {
                                                 : (dark ? dark_land() : light_land());
   if (surroundings == Surroundings::none) s.fog.setZero();
   s.text = dark ? rgb(0xf2f6f8) : rgb(0x16232c);
+  s.text_edge_opacity = dark ? 0.85f : 0.0f;
   s.text_edge = dark ? rgb(0x04121c) : rgb(0xffffff);
   return s;
 }

@@ -19,6 +19,7 @@ struct Style {
   float glow = 1;                  // of contracting muscles
   float vignette = 0.25f;
   Color text, text_edge;           // of labels and legends
+  float text_edge_opacity = 0.85f;
 };
 
 Style style_of(Surroundings surroundings, Theme theme);

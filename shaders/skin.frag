@@ -17,7 +17,7 @@ layout(location = 4) flat in uint flags;
 layout(location = 0) out vec4 color;  // a = share of light that glows
 
 layout(location = 0) uniform int color_by;      // 0 looks, 1 face values, 2 mass values
-layout(location = 1) uniform vec2 value_range;  // low, 1 / (high - low)
+layout(location = 1) uniform vec3 value_scale;
 
 const float bevel = 0.11;  // of the shorter side
 
@@ -67,14 +67,14 @@ void main() {
     albedo *= 1.0 + 0.30 * min(activation, 0.0);
   } else {
     float value = color_by == 1 ? face_values[face] : mass_value;
-    albedo = textureLod(colormap, vec2((value - value_range.x) * value_range.y, 0.5), 0.0).rgb;
+    albedo = textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb;
   }
   if ((flags & PLACEMENT_FAULTY) != 0u) albedo = vec3(0.25 + 0.1 * dot(albedo, vec3(0.3)));
 
   float open = openness(gl_FragCoord.xy, dot(from_eye, -vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z)));
   vec3 key = frame.key_light.rgb;
   if (dot(normal, frame.to_key.xyz) > -0.4) key *= key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
-  if (frame.water.y > 0.0) key *= caustics(world);
+  if (frame.water.y > 0.0) key *= caustics(world, 1.8);
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open);
 
   float strength = max(activation, 0.0);

@@ -1,6 +1,7 @@
 // Draws the wobbling group to a PNG, to look at: draw_wobbling OUT.png [name=value ...]
 // Names: count side seed time frames width height quality theme around show spacing azimuth elevation context map cut
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -19,13 +20,14 @@ std::map<std::string, std::string> settings{
     {"count", "12"}, {"side", "10"},      {"seed", "1"},      {"time", "1.3"},       {"frames", "1"},
     {"width", "1280"}, {"height", "720"}, {"quality", "auto"}, {"theme", "dark"},     {"around", "water"},
     {"show", "skin"}, {"spacing", "1.25"}, {"azimuth", "-1.2"}, {"elevation", "0.6"}, {"context", "auto"},
-    {"map", ""},      {"cut", ""},        {"smooth", "0"}};
+    {"map", ""},      {"cut", ""},        {"smooth", "0"}, {"flow", "0.15"}, {"arrows", "0"}, {"paths", "0"}, {"text", "0"}};
 
 double number(const char* name) { return std::atof(settings[name].c_str()); }
 
 Scene make_scene(const WobblingGroup& group) {
   Scene scene;
   scene.placements = group.placements;
+  scene.flow = {float(number("flow")), 0, 0};
   scene.theme = settings["theme"] == "light" ? Theme::light : Theme::dark;
   scene.surroundings = settings["around"] == "land" ? Surroundings::land
                        : settings["around"] == "none" ? Surroundings::none
@@ -60,7 +62,10 @@ int main(int argc, char** argv) {
   Orbit orbit;
   orbit.azimuth = float(number("azimuth"));
   orbit.elevation = float(number("elevation"));
-  orbit.frame(bounds, float(renderer.width()) / float(renderer.height()));
+  std::vector<Bounds> boxes;
+  for (std::size_t i = 0; i < each.size(); ++i) boxes.push_back(each[i].moved(group.placements[i].offset));
+  orbit.frame(boxes, float(renderer.width()) / float(renderer.height()), 1.08f,
+              {0, number("text") != 0 ? 0.12f : 0, 0, number("text") != 0 ? 0.05f : 0});
   const int frames = int(number("frames"));
   Readback readback(PixelFormat::rgb, renderer.width(), renderer.height());
   Image image;
@@ -72,6 +77,39 @@ int main(int argc, char** argv) {
     const std::vector<Look> looks = wobbling_looks(scene.time);
     scene.positions = positions;
     scene.looks = looks;
+    std::vector<float> values;
+    if (!settings["map"].empty()) {
+      for (std::size_t m = 0; m < positions.size() / 3; ++m) values.push_back(positions[3 * m]);
+      scene.mass_values = values;
+      scene.scale = {-0.5f, 0.5f, colormap_named(settings["map"])};
+    }
+    std::vector<Arrow> arrows;
+    std::vector<std::vector<float>> ways(group.bodies.size());
+    std::vector<Path> paths;
+    for (std::uint32_t b = 0; b < group.bodies.size(); ++b) {
+      if (number("arrows") != 0)
+        for (std::size_t m = renderer.mass_offsets()[b]; m < renderer.mass_offsets()[b + 1]; m += 7) {
+          const Eigen::Vector3f at(positions.data() + 3 * m);
+          arrows.push_back({b, at, 0.4f * at, rgb(m % 2 ? 0xffb000 : 0x56b4e9)});
+        }
+      for (float t = 0; t < 2; t += 0.02f)
+        ways[b].insert(ways[b].end(), {t - 2, 0.2f * std::sin(5 * t), 0.1f * std::cos(4 * t)});
+      if (number("paths") != 0) paths.push_back({b, ways[b], category_color(int(b))});
+    }
+    scene.arrows = arrows;
+    scene.paths = paths;
+    std::vector<Label> labels;
+    if (number("text") != 0) {
+      for (std::uint32_t b = 0; b < group.bodies.size(); ++b)
+        labels.push_back({b, "robot " + std::to_string(b + 1) + "\n1.2 m \u00b7 #" + std::to_string(b + 1)});
+      scene.clock = "12.3 s   \u00d74";
+      scene.caption = "Mercury\n12 random voxel robots, \u03c6 = \u03c0/2";
+      scene.scale_bar = true;
+      scene.legend = Legend{"speed", "m/s", Scale{-0.5f, 0.5f, colormap_named(settings["map"].empty() ? "viridis" : settings["map"])}, {}};
+      if (settings["map"].empty())
+        scene.legend = Legend{"material", "", {}, {{muscle_color(0, 0.5f), "muscle, \u03c6 = 0"}, {muscle_color(1.57f, 0.5f), "muscle, \u03c6 = \u03c0/2"}, {tissue_color, "tissue"}, {bone_color, "bone"}}};
+    }
+    scene.labels = labels;
     renderer.draw(scene, orbit.camera());
     if (readback.full()) readback.finish(image);
     readback.start(renderer);

@@ -1,0 +1,109 @@
+#include "render/annotation_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/bindings.h"
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+constexpr float exposure = 1.0f / 12;  // [s]: what flows by leaves a streak this long
+
+// As shaders/arrow.vert has it.
+struct ArrowRecord {
+  Vector4f from, vector, color;
+};
+
+// As shaders/path.vert has it.
+struct PathPoint {
+  Vector4f place, color;
+};
+
+Vector4f linear(Color color, float alpha = 1) {
+  const auto light = linear_of(color);
+  return {light[0], light[1], light[2], alpha};
+}
+
+float bits_of(std::uint32_t value) { return std::bit_cast<float>(value); }
+
+void append(const Path& path, std::vector<PathPoint>& points) {
+  const std::size_t count = path.points.size() / 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float* p = path.points.data() + 3 * i;
+    const float opacity = 0.05f + 0.9f * float(i) / float(std::max<std::size_t>(1, count - 1));
+    points.push_back({{p[0], p[1], p[2], bits_of(path.body)}, linear(path.color, i + 1 < count ? opacity : -opacity)});
+  }
+}
+
+// Blends into the colours and leaves alpha, which says what glows.
+class Blending {
+ public:
+  Blending() {
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glDepthMask(GL_FALSE);
+  }
+  ~Blending() {
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+  }
+};
+
+}  // namespace
+
+AnnotationPass::AnnotationPass()
+    : empty_(make_vertex_array()),
+      arrow_(make_program({"arrow.vert", "arrow.frag"})),
+      path_(make_program({"path.vert", "path.frag"})),
+      particle_(make_program({"particle.vert", "particle.frag"})) {}
+
+void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
+  if (arrows.empty()) return;
+  std::vector<ArrowRecord> records;
+  records.reserve(arrows.size());
+  for (const Arrow& a : arrows)
+    records.push_back({{a.from.x(), a.from.y(), a.from.z(), bits_of(a.body)},
+                       {a.vector.x(), a.vector.y(), a.vector.z(), 0},
+                       linear(a.color)});
+  arrows_.write(records);
+  arrows_.bind_storage(binding::first_free);
+  glUseProgram(arrow_.get());
+  glBindVertexArray(empty_.get());
+  glEnable(GL_CLIP_DISTANCE0);
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(9 * arrows.size()));
+  glDisable(GL_CLIP_DISTANCE0);
+}
+
+void AnnotationPass::draw_paths(std::span<const Path> paths, float width) {
+  std::vector<PathPoint> points;
+  for (const Path& path : paths) append(path, points);
+  if (points.size() < 2) return;
+  points_.write(points);
+  points_.bind_storage(binding::first_free);
+  const Blending blending;
+  glUseProgram(path_.get());
+  glUniform1f(0, width);
+  glBindVertexArray(empty_.get());
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * (points.size() - 1)));
+}
+
+void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count) const {
+  const float half_side = 0.8f * (camera.eye - camera.target).norm();
+  const Vector3f sight = (camera.target - camera.eye).normalized();
+  const Vector3f middle = camera.target - 0.2f * half_side * sight;
+  const auto drift = [&](float speed) { return float(std::remainder(double(speed) * scene.time, 2.0 * half_side)); };
+  const Blending blending;
+  glUseProgram(particle_.get());
+  glUniform4f(0, middle.x(), middle.y(), middle.z(), half_side);
+  glUniform4f(1, scene.flow.x(), scene.flow.y(), scene.flow.z(), exposure);
+  glUniform3f(2, drift(scene.flow.x()), drift(scene.flow.y()), drift(scene.flow.z()));
+  glBindVertexArray(empty_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 6 * count);
+}
+
+}  // namespace mercury::render

@@ -1,0 +1,39 @@
+// The built-in font: glyphs as signed distances, so that they are sharp at any size.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace mercury::render {
+
+struct FontGlyph {
+  int code;                    // Unicode
+  float advance;               // to the next glyph
+  int x, y, width, height;     // in the atlas
+  int left, top;               // from the pen on the base line to its upper left corner, y downwards
+};
+
+// All lengths in pixels at `size` pixels a line.
+struct FontData {
+  std::span<const FontGlyph> glyphs;  // by code
+  std::span<const unsigned char> png;  // the atlas, grey: 128 on the outline, more inside
+  int size;
+  float ascent;                // of the highest glyph above the base line
+  int spread;                  // distance that 128 steps of grey stand for
+};
+
+// Generated at build time.
+const FontData& font_data();
+
+// The glyph of a character, or of U+FFFD where the font has none.
+const FontGlyph& glyph_of(int code);
+
+// Unicode characters of UTF-8; a broken byte gives U+FFFD.
+std::vector<int> characters_of(std::string_view utf8);
+
+// Width of a line of text in pixels, at `size` pixels a line.
+float text_width(std::string_view utf8, float size);
+
+}  // namespace mercury::render

@@ -1,0 +1,244 @@
+#include "render/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "render/font.h"
+
+namespace mercury::render {
+namespace {
+
+void set(float (&to)[4], Color color, float opacity) {
+  const auto light = linear_of(color);
+  const std::array<float, 4> all{light[0], light[1], light[2], opacity};
+  std::copy(all.begin(), all.end(), to);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+struct PlacedLabel {
+  const Label* label;
+  float x, y, depth;  // where its lower middle is to be [pixels], and how far away the body is [m]
+};
+
+// The highest point of the body's box as it is seen, above the middle of the box.
+PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& camera, int width, int height) {
+  const Eigen::Vector3f middle = camera.project(body.center(), width, height);
+  float top = middle.y();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f point((corner & 1) ? body.high.x() : body.low.x(), (corner & 2) ? body.high.y() : body.low.y(),
+                                (corner & 4) ? body.high.z() : body.low.z());
+    const Eigen::Vector3f seen = camera.project(point, width, height);
+    if (seen.z() > 0) top = std::min(top, seen.y());
+  }
+  return {&label, middle.x(), 0.75f * top + 0.25f * middle.y(), middle.z()};
+}
+
+constexpr float small = 0.82f;  // size of second lines
+
+}  // namespace
+
+std::string tick_text(float value, float step) {
+  if (std::abs(value) < 1e-6f * std::abs(step)) value = 0;
+  std::array<char, 32> text{};
+  const float size = std::max(std::abs(value), std::abs(step));
+  if (size >= 1e5f || std::abs(step) < 1e-4f) {
+    std::snprintf(text.data(), text.size(), "%.3g", double(value));
+  } else {
+    int digits = std::clamp(int(std::ceil(-std::log10(std::abs(step)) - 1e-4f)), 0, 6);
+    // A step of 0.25 needs a digit more than its size tells.
+    const float scaled = std::abs(step) * std::pow(10.0f, float(digits));
+    if (std::abs(scaled - std::round(scaled)) > 1e-3f) ++digits;
+    std::snprintf(text.data(), text.size(), "%.*f", digits, double(value));
+  }
+  std::string result(text.data());
+  if (!result.empty() && result[0] == '-') result.replace(0, 1, "\u2212");
+  return result;
+}
+
+float round_length(float most) {
+  const float power = std::pow(10.0f, std::floor(std::log10(std::max(most, 1e-30f))));
+  for (const float factor : {5.0f, 2.0f, 1.0f})
+    if (factor * power <= most * 1.0001f) return factor * power;
+  return power;
+}
+
+Overlay::Overlay(int width, int height, float text_size, const Style& style)
+    : width_(float(width)),
+      height_(float(height)),
+      text_size_(text_size > 0 ? text_size : std::max(13.0f, std::round(float(height) / 42.0f))),
+      style_(style) {}
+
+void Overlay::text(std::string_view utf8, float x, float y, float size, float align, float opacity) {
+  const FontData& font = font_data();
+  const float scale = size / float(font.size);
+  float pen = x - align * text_width(utf8, size);
+  const float base = y + scale * font.ascent;
+  for (const int code : characters_of(utf8)) {
+    const FontGlyph& glyph = glyph_of(code);
+    OverlayQuad quad;
+    quad.kind = OverlayQuad::glyph;
+    quad.place = {pen + scale * float(glyph.left), base + scale * float(glyph.top), scale * float(glyph.width),
+                  scale * float(glyph.height)};
+    quad.source = {float(glyph.x), float(glyph.y), float(glyph.width), float(glyph.height)};
+    quad.sharpness = scale * float(font.spread) * 255 / 128;
+    set(quad.color, style_.text, opacity);
+    set(quad.edge, style_.text_edge, style_.text_edge_opacity * opacity);
+    if (glyph.width > 0) quads_.push_back(quad);
+    pen += scale * glyph.advance;
+  }
+}
+
+void Overlay::box(const Rectangle& place, float radius, Color color, float opacity) {
+  OverlayQuad quad;
+  quad.place = place;
+  quad.source.x = radius;
+  set(quad.color, color, opacity);
+  quads_.push_back(quad);
+}
+
+void Overlay::scale_bar(const Rectangle& place, Colormap map) {
+  OverlayQuad quad;
+  quad.kind = OverlayQuad::scale;
+  quad.place = place;
+  quad.map = std::uint32_t(map);
+  quads_.push_back(quad);
+}
+
+void Overlay::backing(const Rectangle& place, float opacity) { box(place, 0.35f * text_size_, style_.text_edge, opacity); }
+
+void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera) {
+  std::vector<PlacedLabel> placed;
+  for (const Label& label : labels)
+    if (label.body < bodies.size() && !bodies[label.body].empty() && !label.text.empty())
+      placed.push_back(place_label(label, bodies[label.body], camera, int(width_), int(height_)));
+  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
+  std::vector<Rectangle> taken;
+  const float pad = 0.3f * text_size_;
+  for (const PlacedLabel& p : placed) {
+    if (p.depth < camera.near) continue;
+    const std::vector<std::string_view> lines = lines_of(p.label->text);
+    float across = 0, down = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const float size = text_size_ * (i == 0 ? 1 : small);
+      across = std::max(across, text_width(lines[i], size));
+      down += size;
+    }
+    Rectangle place{p.x - 0.5f * across - pad, p.y - down - 0.8f * pad, across + 2 * pad, down + 0.8f * pad};
+    if (place.x + place.width < 0 || place.x > width_ || p.y < 0 || place.y > height_) continue;
+    place.x = std::clamp(place.x, 0.0f, std::max(0.0f, width_ - place.width));
+    place.y = std::max(place.y, 0.0f);
+    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(place, other); })) continue;
+    taken.push_back(place);
+    backing(place, 0.5f);
+    float y = place.y + 0.3f * pad;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const float size = text_size_ * (i == 0 ? 1 : small);
+      text(lines[i], place.x + 0.5f * place.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
+      y += size;
+    }
+  }
+}
+
+void Overlay::legend(const Legend& legend) {
+  const float size = text_size_, pad = 0.7f * size;
+  const std::string title = legend.title + (legend.unit.empty() ? "" : " [" + legend.unit + "]");
+  std::vector<std::string> numbers;
+  std::vector<float> values;
+  float widest = 0;
+  if (legend.scale) {
+    values = ticks(legend.scale->low, legend.scale->high, 6);
+    const float step = values.size() > 1 ? values[1] - values[0] : values[0];
+    for (const float value : values) numbers.push_back(tick_text(value, step));
+    for (const std::string& number : numbers) widest = std::max(widest, 1.9f * size + text_width(number, 0.9f * size));
+  }
+  for (const auto& [color, name] : legend.swatches) widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
+  widest = std::max(widest, text_width(title, size));
+  const float bar = legend.scale ? std::clamp(0.36f * height_, 6 * size, 16 * size) : 0;
+  const float rows = 1.25f * size * float(legend.swatches.size());
+  const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + rows;
+  const Rectangle panel{width_ - widest - 3 * pad, 0.5f * (height_ - down) - pad, widest + 2 * pad, down + 1.6f * pad};
+  backing(panel, 0.55f);
+  const float left = panel.x + pad;
+  float y = panel.y + 0.8f * pad;
+  text(title, left, y, size);
+  y += 1.5f * size;
+  if (legend.scale) {
+    const Rectangle place{left, y + 0.3f * size, 1.1f * size, bar};
+    scale_bar(place, legend.scale->map);
+    const float range = legend.scale->high - legend.scale->low;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const float at = range != 0 ? (values[i] - legend.scale->low) / range : 0.5f;
+      const float line = place.y + (1 - at) * bar;
+      box({place.x + place.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+      text(numbers[i], place.x + place.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
+    }
+    y += bar + 0.6f * size;
+  }
+  for (const auto& [color, name] : legend.swatches) {
+    box({left, y + 0.12f * size, 0.95f * size, 0.95f * size}, 0.2f * size, color, 1);
+    text(name, left + 1.5f * size, y + 0.1f * size, 0.9f * size);
+    y += 1.25f * size;
+  }
+}
+
+void Overlay::clock(std::string_view shown) {
+  const float size = text_size_, pad = 0.45f * size;
+  const Rectangle place{size, height_ - 2.4f * size, text_width(shown, size) + 2 * pad, 1.4f * size};
+  backing(place, 0.5f);
+  text(shown, place.x + pad, place.y + 0.2f * size, size);
+}
+
+void Overlay::caption(std::string_view shown) {
+  const float size = 1.15f * text_size_, pad = 0.45f * size;
+  const std::vector<std::string_view> lines = lines_of(shown);
+  float across = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) across = std::max(across, text_width(lines[i], i == 0 ? size : small * size));
+  const float down = size * (1 + small * float(lines.size() - 1));
+  const Rectangle place{text_size_, text_size_, across + 2 * pad, down + 0.4f * size};
+  if (lines.empty()) return;
+  backing(place, 0.5f);
+  float y = place.y + 0.2f * size;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text(lines[i], place.x + pad, y, i == 0 ? size : small * size);
+    y += i == 0 ? size : small * size;
+  }
+}
+
+void Overlay::length(const Camera& camera) {
+  const float distance = (camera.eye - camera.target).norm();
+  const float pixels_a_metre = height_ / (2 * distance * std::tan(0.5f * camera.field_of_view));
+  const float shown = round_length(0.2f * width_ / pixels_a_metre);
+  const float across = shown * pixels_a_metre, size = text_size_;
+  std::array<char, 32> name{};
+  if (shown < 0.01f)
+    std::snprintf(name.data(), name.size(), "%g mm", double(1000 * shown));
+  else if (shown < 1)
+    std::snprintf(name.data(), name.size(), "%g cm", double(100 * shown));
+  else
+    std::snprintf(name.data(), name.size(), "%g m", double(shown));
+  const float x = width_ - across - 1.5f * size, y = height_ - 1.3f * size, line = std::max(1.5f, 0.12f * size);
+  backing({x - 0.5f * size, y - 1.35f * size, across + size, 2.05f * size}, 0.5f);
+  text(name.data(), x + 0.5f * across, y - 1.2f * size, size, 0.5f);
+  box({x, y, across, line}, 0, style_.text, 1);
+  box({x, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);
+  box({x + across - line, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);
+}
+
+}  // namespace mercury::render

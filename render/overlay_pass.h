@@ -1,0 +1,22 @@
+// Paints an Overlay onto a finished picture.
+#pragma once
+
+#include "render/gl_objects.h"
+#include "render/overlay.h"
+
+namespace mercury::render {
+
+class OverlayPass {
+ public:
+  OverlayPass();
+  // `colormaps` has one map a row. Into an sRGB framebuffer.
+  void draw(const Overlay& overlay, GLuint framebuffer, int width, int height, GLuint colormaps);
+
+ private:
+  VertexArray empty_;
+  Program program_;
+  Buffer quads_;
+  Texture atlas_;
+};
+
+}  // namespace mercury::render

@@ -1,0 +1,46 @@
+// An arrow of 9 vertices: a strip for its shaft, a triangle for its head.
+#include "frame.glsl"
+#include "bodies.glsl"
+#include "ribbon.glsl"
+struct Arrow {
+  vec4 from;    // body's coordinates; w = body as bits
+  vec4 vector;
+  vec4 color;   // linear
+};
+layout(std430, binding = 11) readonly buffer Arrows { Arrow arrows[]; };
+
+layout(location = 0) out float across;
+layout(location = 1) flat out vec3 side;
+layout(location = 2) flat out vec3 axis;
+layout(location = 3) flat out vec3 albedo;
+layout(location = 4) out vec3 world;
+out gl_PerVertex {
+  vec4 gl_Position;
+  float gl_ClipDistance[1];
+};
+
+void main() {
+  Arrow arrow = arrows[gl_VertexID / 9];
+  int vertex = gl_VertexID % 9;
+  Placement placement = placements[floatBitsToUint(arrow.from.w)];
+  vec3 tail = arrow.from.xyz + placement.offset;
+  float size = length(arrow.vector.xyz);
+  float pixel = pixel_size(tail);
+  // Slender, but never thinner than can be seen.
+  float shaft = max(0.022 * size, 0.9 * pixel);
+  float head = min(max(5.0 * shaft, 6.0 * pixel), 0.6 * size);
+  axis = arrow.vector.xyz / max(size, 1e-12);
+  side = across_of(axis, frame.eye.xyz - tail);
+  if (vertex < 6) {
+    vec2 corner = ribbon_corner(vertex);
+    across = corner.y;
+    world = tail + axis * corner.x * (size - 0.9 * head) + side * corner.y * shaft;
+  } else {
+    across = vertex == 8 ? 0.0 : float(2 * (vertex - 6) - 1);
+    world = tail + axis * (vertex == 8 ? size : size - head) + side * across * 0.45 * head;
+  }
+  albedo = arrow.color.rgb;
+  gl_Position = frame.view_projection * vec4(world, 1.0);
+  if ((placement.flags & PLACEMENT_HIDDEN) != 0u || size < pixel) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, tail);
+}

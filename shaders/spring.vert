@@ -1,0 +1,63 @@
+// A spring as a strip of 6 vertices, as the eye or (with SHADOW) the key light sees it.
+#include "frame.glsl"
+#include "bodies.glsl"
+#include "ribbon.glsl"
+layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
+layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
+layout(std430, binding = 12) readonly buffer SpringLooks { uint spring_looks[]; };
+layout(std430, binding = 13) readonly buffer SpringValues { float spring_values[]; };
+
+layout(location = 0) uniform float radius;      // [m]
+layout(location = 1) uniform int color_by;      // 0 looks, 1 mass values, 2 spring values
+layout(location = 2) uniform vec3 value_scale;
+layout(location = 3) uniform uint first;        // springs of earlier calls
+layout(binding = 7) uniform sampler2D colormap;
+
+layout(location = 0) out vec3 world;
+layout(location = 1) out float across;
+layout(location = 2) flat out vec3 side;
+layout(location = 3) flat out vec3 axis;
+layout(location = 4) out vec4 look;  // colour, activation
+layout(location = 5) flat out uint flags;
+
+out gl_PerVertex {
+  vec4 gl_Position;
+  float gl_ClipDistance[1];
+};
+
+vec4 look_of(uint spring, uint mass) {
+  if (color_by == 0) return looks[min(spring_looks[spring], uint(looks.length()) - 1u)];
+  float value = color_by == 1 ? mass_values[mass] : spring_values[spring];
+  return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
+}
+
+void main() {
+  uint spring = first + uint(gl_VertexID) / 6u;
+  vec2 corner = ribbon_corner(gl_VertexID % 6);
+  uint mass_a = springs[2u * spring], mass_b = springs[2u * spring + 1u];
+  Placement placement = placements[mass_bodies[mass_a]];
+  vec3 a = position_of(mass_a) + placement.offset, b = position_of(mass_b) + placement.offset;
+  vec3 point = mix(a, b, corner.x);
+#ifdef SHADOW
+  vec3 to_eye = frame.to_key.xyz;
+  float thickness = radius;
+#else
+  vec3 to_eye = frame.eye.xyz - point;
+  float thickness = max(radius, 0.6 * pixel_size(point));
+#endif
+  look = look_of(spring, corner.x < 0.5 ? mass_a : mass_b);
+  axis = normalize(b - a);
+  side = across_of(axis, to_eye);
+  across = corner.y;
+  // A muscle swells as it shortens.
+  world = point + side * corner.y * thickness * (1.0 + 0.25 * look.a);
+  flags = placement.flags;
+#ifdef SHADOW
+  vec3 place = (frame.shadow * vec4(world, 1.0)).xyz;
+  gl_Position = vec4(2.0 * place.xy - 1.0, place.z, 1.0);
+#else
+  gl_Position = frame.view_projection * vec4(world, 1.0);
+#endif
+  if ((flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, world);
+}
