@@ -8,7 +8,7 @@ packages_to_build=(
   cmake ninja-build g++ pkg-config
   libtbb-dev libhwy-dev                                                  # sim
   nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev            # robots
-  libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev   # render
+  libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev fonts-lato   # render
   libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev   # app
 )
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
