@@ -127,7 +127,7 @@ class CudaBackend final : public Backend {
     const_cast<Batch&>(batch_).update_phases(clock);
     DeviceArray<DeviceTelemetry> device(all.size());
     launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment),
-                     working_rows(configuration_.solver), device.data());
+                     batch_.rows_placed(), device.data());
     std::vector<DeviceTelemetry> sums(all.size());
     device.read(0, sums);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -149,7 +149,8 @@ class CudaBackend final : public Backend {
 
   void choose() {
     if (batch_.size() == 0) return;
-    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.groups(), batch_.size(), batch_.same_laws());
+    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.view(), batch_.same_laws());
+    batch_.place_records(shape_.on_chip ? working_rows(configuration_.solver) : 0);
     std::size_t workspace = 0;
     if (!shape_.on_chip) workspace += std::size_t{batch_.groups()} * working_rows(configuration_.solver) * row_bytes;
     if (!shape_.contacts_on_chip) workspace += contact_bytes(shape_.contact_buckets, batch_.groups());

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "sim/cuda/step.h"
 
@@ -19,14 +20,28 @@ struct Prepared {
 
 Prepared prepare(const Robot& robot) { return {schedule_springs(robot), pair_faces(robot)}; }
 
-// Turns the partner of every record from one unit into another: mass index (rows 0) or byte offset among groups of
-// so many rows.
-__global__ void place_partners(SpringRecord* records, std::size_t count, std::uint32_t old_rows, std::uint32_t new_rows) {
+// The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
+std::vector<float> lengths_of(const Robot& robot) {
+  std::vector<float> lengths{0};
+  for (const Spring& spring : robot.springs) {
+    const auto place = std::ranges::lower_bound(lengths, spring.rest_length);
+    if (place != lengths.end() && *place == spring.rest_length) continue;
+    lengths.insert(place, spring.rest_length);
+    if (lengths.size() > max_lengths) break;
+  }
+  return lengths;
+}
+
+// Turns the partner of every record from one unit into another: mass index (rows 0) or word offset among groups of so
+// many rows.
+__global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_rows,
+                               std::uint32_t new_rows) {
   for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count; i += std::size_t{gridDim.x} * blockDim.x) {
-    const std::uint32_t where = records[i].where, place = where >> 8;
-    std::uint32_t mass = place;
-    if (old_rows > 0) mass = place / (old_rows * row_bytes) * lanes + place % (old_rows * row_bytes) / 4;
-    records[i].where = (mass / lanes * new_rows * row_bytes + mass % lanes * 4) << 8 | (where & 0xff);
+    std::uint32_t& key = records[i * record_words];
+    const std::uint32_t place = key >> 16;
+    const std::uint32_t mass = old_rows == 0 ? place : place / (old_rows * lanes) * lanes + place % lanes;
+    const std::uint32_t moved = new_rows == 0 ? mass : mass / lanes * new_rows * lanes + mass % lanes;
+    key = moved << 16 | (key & 0xffff);
   }
 }
 
@@ -67,8 +82,9 @@ Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), rob
 void Batch::upload(std::span<const RobotMeasures> measures) {
   const std::size_t count = robots_.size();
   constexpr std::size_t portion = 512;
-  // Rows and pairs are known only once a robot is prepared; an upper bound comes from a first pass over the counts.
+  // The strides are known only once every robot was prepared. Small batches are kept, large ones prepared twice.
   std::vector<std::uint32_t> rows(count), pairs(count);
+  std::vector<std::vector<float>> lengths(count);
   std::vector<Prepared> kept;
   const bool keep = count <= portion;
   if (keep) kept.resize(count);
@@ -76,8 +92,10 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
     Prepared prepared = prepare(*robots_[i]);
     rows[i] = prepared.schedule.rows();
     pairs[i] = static_cast<std::uint32_t>(prepared.pairs.size());
+    lengths[i] = lengths_of(*robots_[i]);
     if (keep) kept[i] = std::move(prepared);
   });
+  record_words_ = std::ranges::all_of(lengths, [](const auto& some) { return some.size() <= max_lengths; }) ? 1 : 2;
   row_stride_ = std::ranges::max(rows);
   face_stride_ = std::ranges::max(pairs);
 
@@ -85,8 +103,10 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
   device_statuses_ = DeviceArray<DeviceStatus>(count);
   state_ = DeviceArray<float>(count * group_stride_ * state_rows * lanes);
   splits_ = DeviceArray<float>(count * group_stride_ * lanes);
-  springs_ = DeviceArray<SpringRecord>((count * row_stride_ + rows_at_once) * lanes);
+  const std::size_t robot_words = std::size_t{row_stride_} * lanes * record_words_;
+  springs_ = DeviceArray<std::uint32_t>(count * robot_words + rows_at_once * lanes * record_words_);
   springs_.clear();
+  if (record_words_ == 1) lengths_ = DeviceArray<float>(count * max_lengths);
   arrivals_ = DeviceArray<std::uint32_t>(count * group_stride_ * lanes);
   row_start_ = DeviceArray<std::uint32_t>(count * (group_stride_ + 1));
   face_pairs_ = DeviceArray<FacePair>(count * face_stride_);
@@ -102,7 +122,8 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
   for (std::size_t first = 0; first < count; first += portion) {
     const std::size_t n = std::min(portion, count - first);
     std::vector<float> state(n * group_stride_ * state_rows * lanes), splits(n * group_stride_ * lanes);
-    std::vector<SpringRecord> springs(n * row_stride_ * lanes);
+    std::vector<std::uint32_t> springs(n * robot_words);
+    std::vector<float> length_table(record_words_ == 1 ? n * max_lengths : 0);
     std::vector<std::uint32_t> row_start(n * (group_stride_ + 1)), arrivals(n * group_stride_ * lanes);
     std::vector<FacePair> face_pairs(n * face_stride_);
     oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
@@ -120,18 +141,28 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
       }
       const std::vector<std::uint32_t> at = springs_at_masses(robot);
       std::ranges::copy(at, splits.begin() + static_cast<std::ptrdiff_t>(k * group_stride_ * lanes));
-      SpringRecord* to = springs.data() + k * row_stride_ * lanes;
+      std::uint32_t* to = springs.data() + k * robot_words;
       for (const ScheduledSpring& spring : prepared.schedule.places) {
-        *to++ = {static_cast<std::uint32_t>(spring.partner) << 8 | spring.material, spring.rest_length};
+        const std::uint32_t key = static_cast<std::uint32_t>(spring.partner) << 16 | spring.material;
+        if (record_words_ == 1) {
+          const auto number = std::ranges::lower_bound(lengths[i], spring.rest_length) - lengths[i].begin();
+          *to++ = key | static_cast<std::uint32_t>(number) << 8;
+        } else {
+          *to++ = key;
+          *to++ = std::bit_cast<std::uint32_t>(spring.rest_length);
+        }
         ++arrivals[k * group_stride_ * lanes + spring.partner];
       }
+      if (record_words_ == 1)
+        std::ranges::copy(lengths[i], length_table.begin() + static_cast<std::ptrdiff_t>(k * max_lengths));
       std::ranges::copy(prepared.schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
       std::ranges::copy(prepared.pairs, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
       std::ranges::copy(materials_of(robot), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
     });
     state_.write(first * group_stride_ * state_rows * lanes, state);
     splits_.write(first * group_stride_ * lanes, splits);
-    springs_.write(first * row_stride_ * lanes, springs);
+    springs_.write(first * robot_words, springs);
+    lengths_.write(first * max_lengths, length_table);
     row_start_.write(first * (group_stride_ + 1), row_start);
     arrivals_.write(first * group_stride_ * lanes, arrivals);
     face_pairs_.write(first * face_stride_, face_pairs);
@@ -142,7 +173,6 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
 void Batch::configure(const Configuration& configuration) {
   if (size() == 0) return;
   update_scales(configuration);
-  place_records(working_rows(configuration.solver));
 }
 
 void Batch::update_scales(const Configuration& configuration) {
@@ -163,7 +193,8 @@ void Batch::update_scales(const Configuration& configuration) {
 
 void Batch::place_records(std::uint32_t rows) {
   if (rows == rows_placed_) return;
-  place_partners<<<blocks_for(springs_.size()), threads>>>(springs_.data(), springs_.size(), rows_placed_, rows);
+  const std::size_t count = springs_.size() / record_words_;
+  place_partners<<<blocks_for(count), threads>>>(springs_.data(), count, record_words_, rows_placed_, rows);
   check(cudaGetLastError(), "placing springs");
   rows_placed_ = rows;
 }
@@ -201,10 +232,10 @@ void Batch::reserve_workspace(std::size_t bytes_a_robot) {
 }
 
 BatchView Batch::view() const {
-  return {device_records_.data(), device_statuses_.data(), state_.data(), springs_.data(), row_start_.data(),
+  return {device_records_.data(), device_statuses_.data(), state_.data(), springs_.data(), lengths_.data(), row_start_.data(),
           face_pairs_.data(), splits_.data(), arrivals_.data(), device_materials_.data(), phases_.data(), pulls_.data(), workspace_.data(),
           size(), group_stride_, row_stride_, face_stride_, static_cast<std::uint32_t>(pulls_.size()),
-          static_cast<std::uint32_t>(workspace_stride_)};
+          static_cast<std::uint32_t>(workspace_stride_), record_words_};
 }
 
 void Batch::read_state(std::size_t robot, std::span<float> groups) const {

@@ -21,6 +21,9 @@ class Batch {
 
   // Follows a change of configuration: scales, and where a record's partner lies in the working memory.
   void configure(const Configuration& configuration);
+  // Sets where records find their partners: as mass index (rows 0), or as offset among groups of so many rows.
+  void place_records(std::uint32_t rows);
+  std::uint32_t rows_placed() const { return rows_placed_; }
   void set_materials(std::size_t first_robot, std::span<const Material> tables, const Configuration& configuration);
   // Brings the phases up to a clock whose base or dt is new.
   void update_phases(const Clock& clock);
@@ -28,6 +31,7 @@ class Batch {
   // Room for working memory off the chip; 0 = none.
   void reserve_workspace(std::size_t bytes_a_robot);
 
+  std::uint32_t record_words() const { return record_words_; }
   bool same_laws() const { return same_laws_; }  // all robots share materials and scales
   BatchView view() const;
 
@@ -44,14 +48,13 @@ class Batch {
  private:
   void upload(std::span<const RobotMeasures> measures);
   void update_scales(const Configuration& configuration);
-  void place_records(std::uint32_t rows);
 
   std::vector<const Robot*> robots_;
   std::vector<RobotMeasures> measures_;
   std::vector<RobotRecord> records_;
   std::vector<Material> materials_;
   std::vector<std::uint64_t> first_mass_{0};
-  std::uint32_t group_stride_ = 0, row_stride_ = 0, face_stride_ = 0, rows_placed_ = 0;
+  std::uint32_t group_stride_ = 0, row_stride_ = 0, face_stride_ = 0, rows_placed_ = 0, record_words_ = 1;
   std::size_t workspace_stride_ = 0;
   bool same_laws_ = false;
   bool phases_stale_ = true;
@@ -60,7 +63,8 @@ class Batch {
   DeviceArray<RobotRecord> device_records_;
   DeviceArray<DeviceStatus> device_statuses_;
   DeviceArray<float> state_, splits_;
-  DeviceArray<SpringRecord> springs_;
+  DeviceArray<std::uint32_t> springs_;
+  DeviceArray<float> lengths_;
   DeviceArray<std::uint32_t> row_start_, arrivals_;
   DeviceArray<FacePair> face_pairs_;
   DeviceArray<Material> device_materials_;

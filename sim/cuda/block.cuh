@@ -20,10 +20,10 @@ struct alignas(8) SpringLaw {
   float factor;    // L / L0
 };
 
-// Shared memory of a block, in this order: material tables, failures, contact buckets and lists, working memory of its
+// Shared memory of a block, in this order: material tables, failures, rest lengths, contact buckets and lists, working memory of its
 // robots. Ends of the parts in bytes.
 struct BlockLayout {
-  std::uint32_t tables, failures, contacts, total;
+  std::uint32_t tables, failures, lengths, contacts, total;
 };
 
 // Pairs of near masses that are kept; if there are more, the cell grid is asked every step.
@@ -37,9 +37,10 @@ MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint
 MERCURY_HOST_DEVICE BlockLayout block_layout(const Shape& shape, std::uint32_t groups, std::uint32_t rows) {
   BlockLayout layout{};
   const std::uint32_t tables = shape.shared_table ? 1 : shape.robots_per_block;
-  layout.tables = tables * shape.table_copies * max_materials * static_cast<std::uint32_t>(sizeof(SpringLaw));
+  layout.tables = (tables * max_materials * static_cast<std::uint32_t>(sizeof(SpringLaw))) << shape.table_copy_bits;
   layout.failures = layout.tables + shape.robots_per_block * 16;
-  layout.contacts = layout.failures;
+  layout.lengths = layout.failures + (shape.record_words == 1 ? shape.robots_per_block * max_lengths * 4 : 0);
+  layout.contacts = layout.lengths;
   if (shape.contacts_on_chip) layout.contacts += shape.robots_per_block * contact_bytes(shape.contact_buckets, groups);
   layout.total = layout.contacts;
   if (shape.on_chip) layout.total += shape.robots_per_block * groups * rows * row_bytes;

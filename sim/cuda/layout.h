@@ -23,12 +23,11 @@ enum Row : std::uint32_t { row_x = 0, row_v = 3, row_sum = 6, row_splits = 9 };
 inline constexpr std::uint32_t working_rows_force = 9;
 inline constexpr std::uint32_t working_rows_xpbd = 10;
 
-// A scheduled spring in 8 bytes. `where` = partner << 8 | material, the partner as a mass index or, once `rows` is
-// chosen, as byte offset into the working memory.
-struct SpringRecord {
-  std::uint32_t where;
-  float rest_length;
-};
+// A scheduled spring. `key` = partner << 16 | length << 8 | material. The partner is a mass index or, on the chip, the
+// mass's offset in the working memory, in words. Robots that have at most 256 different rest lengths name theirs by
+// number, which makes a record 4 bytes; others have it behind the key in 8 bytes, and no number. Records stream through
+// every step, so their size decides whether those of all robots in flight fit into the L2 cache.
+inline constexpr std::uint32_t max_lengths = 256;
 
 struct RobotRecord {
   std::uint32_t masses, groups, face_pairs, springs;
@@ -57,7 +56,8 @@ struct BatchView {
   const RobotRecord* robots;
   DeviceStatus* statuses;
   float* state;                    // [robot][group][state_rows][32]
-  const SpringRecord* springs;     // [robot][row][32]
+  const std::uint32_t* springs;    // [robot][row][32][record_words], keys, and rest lengths in wide records
+  const float* lengths;            // [robot][max_lengths], for narrow records
   const std::uint32_t* row_start;  // [robot][group + 1]
   const FacePair* face_pairs;      // [robot][pair]
   const float* splits;             // [robot][mass], springs at a mass
@@ -67,6 +67,7 @@ struct BatchView {
   const DevicePull* pulls;
   char* workspace;                 // [robot], what does not fit on the chip: contact lists, working memory
   std::uint32_t robot_count, group_stride, row_stride, face_stride, pull_count, workspace_stride;
+  std::uint32_t record_words;      // 1 or 2
 };
 
 }  // namespace mercury::cuda

@@ -12,7 +12,8 @@ class MaterialTable {
   // `warps` of them work on this table; at least 2.
   __device__ MaterialTable(const StepArguments& arguments, std::uint32_t robot, std::uint32_t warp, std::uint32_t warps,
                            std::uint32_t lane, SpringLaw* table)
-      : warp_(warp), warps_(warps), lane_(lane), copies_(arguments.shape.table_copies), table_(table),
+      : warp_(warp), warps_(warps), lane_(lane), copies_(1u << arguments.shape.table_copy_bits),
+        copy_bits_(arguments.shape.table_copy_bits), table_(table),
         materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
         phases_(arguments.batch.phases + std::size_t{robot} * max_materials) {}
 
@@ -45,14 +46,15 @@ class MaterialTable {
   static constexpr std::uint32_t blocks = max_materials / lanes;
 
   __device__ void spread(std::uint32_t block, float factor) {
-    SpringLaw* const first = table_ + block * lanes * copies_;
-    for (std::uint32_t turn = 0; turn < copies_; ++turn) {
-      const std::uint32_t place = turn * lanes + lane_;
-      first[place].factor = __shfl_sync(0xffffffffu, factor, place / copies_);
-    }
+    SpringLaw* to = table_ + block * lanes * copies_ + lane_;
+    const std::uint32_t sources_a_turn = lanes >> copy_bits_;
+    std::uint32_t source = lane_ >> copy_bits_;
+#pragma unroll 4
+    for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_a_turn, to += lanes)
+      to->factor = __shfl_sync(0xffffffffu, factor, source);
   }
 
-  const std::uint32_t warp_, warps_, lane_, copies_;
+  const std::uint32_t warp_, warps_, lane_, copies_, copy_bits_;
   SpringLaw* const table_;
   const Material* const materials_;
   const MusclePhase* const phases_;

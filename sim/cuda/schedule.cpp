@@ -152,20 +152,71 @@ Grouped group_by_owner(const Robot& robot, std::uint32_t groups) {
   return grouped;
 }
 
-void append_group(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, std::uint32_t group) {
-  const EdgeColouring colouring(edges);
-  for (std::uint32_t c = 0; c < colouring.colours(); ++c)
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-      const std::uint32_t e = colouring.edge_at(lane, c);
-      // Lanes past the last mass belong to no mass; their places point at memory that is there but unused.
-      const auto self = static_cast<std::uint16_t>(group * lanes + lane);
-      if (e == EdgeColouring::none) {
-        schedule.places.push_back({self, air, 0});
-      } else {
-        const Spring& spring = robot.springs[edges[e].spring];
-        schedule.places.push_back({edges[e].partner, spring.material, spring.rest_length});
-      }
+// Masses that a spring joins to each mass, those of mass i at [start[i], start[i + 1]).
+struct Neighbours {
+  std::vector<std::uint32_t> start;
+  std::vector<std::uint16_t> mass;
+};
+
+Neighbours find_neighbours(const Robot& robot) {
+  Neighbours neighbours;
+  neighbours.start.assign(robot.masses.size() + 1, 0);
+  for (const Spring& spring : robot.springs) {
+    ++neighbours.start[spring.a + 1u];
+    ++neighbours.start[spring.b + 1u];
+  }
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) neighbours.start[i + 1] += neighbours.start[i];
+  neighbours.mass.resize(neighbours.start.back());
+  std::vector<std::uint32_t> next(neighbours.start.begin(), neighbours.start.end() - 1);
+  for (const Spring& spring : robot.springs) {
+    neighbours.mass[next[spring.a]++] = spring.b;
+    neighbours.mass[next[spring.b]++] = spring.a;
+  }
+  return neighbours;
+}
+
+// A mass for an empty place to look at, in a bank that the row leaves free: a neighbour, so that it is never farther than
+// a spring may be long. Lanes past the last mass stand at memory that is there but belongs to no mass; they look at each
+// other's. If no bank fits, the lane's own.
+std::uint16_t idle_partner(const Neighbours& neighbours, std::uint32_t self, std::uint32_t& banks) {
+  const auto take = [&](std::uint32_t mass) {
+    if (banks >> mass % lanes & 1) return false;
+    banks |= 1u << mass % lanes;
+    return true;
+  };
+  const auto masses = static_cast<std::uint32_t>(neighbours.start.size() - 1);
+  if (self < masses) {
+    for (std::uint32_t k = neighbours.start[self]; k < neighbours.start[self + 1]; ++k)
+      if (take(neighbours.mass[k])) return neighbours.mass[k];
+  } else {
+    for (std::uint32_t mass = masses; mass % lanes != 0; ++mass)
+      if (take(mass)) return static_cast<std::uint16_t>(mass);
+  }
+  return static_cast<std::uint16_t>(self);
+}
+
+void append_row(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, const EdgeColouring& colouring,
+                std::uint32_t colour, const Neighbours& neighbours) {
+  const std::uint32_t group = schedule.groups();
+  std::uint32_t banks = 0;
+  for (std::uint32_t lane = 0; lane < lanes; ++lane)
+    if (const std::uint32_t e = colouring.edge_at(lane, colour); e != EdgeColouring::none)
+      banks |= 1u << edges[e].partner % lanes;
+  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+    const std::uint32_t e = colouring.edge_at(lane, colour);
+    if (e == EdgeColouring::none) {
+      schedule.places.push_back({idle_partner(neighbours, group * lanes + lane, banks), air, 0});
+    } else {
+      const Spring& spring = robot.springs[edges[e].spring];
+      schedule.places.push_back({edges[e].partner, spring.material, spring.rest_length});
     }
+  }
+}
+
+void append_group(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, const Neighbours& neighbours) {
+  const EdgeColouring colouring(edges);
+  for (std::uint32_t colour = 0; colour < colouring.colours(); ++colour)
+    append_row(schedule, robot, edges, colouring, colour, neighbours);
   schedule.row_start.push_back(schedule.row_start.back() + colouring.colours());
 }
 
@@ -177,8 +228,10 @@ Schedule schedule_springs(const Robot& robot) {
   Schedule schedule;
   schedule.row_start.push_back(0);
   schedule.places.reserve(robot.springs.size() * 5 / 4);
+  const Neighbours neighbours = find_neighbours(robot);
   for (std::uint32_t g = 0; g < groups; ++g)
-    append_group(schedule, robot, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]), g);
+    append_group(schedule, robot, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]),
+                 neighbours);
   return schedule;
 }
 

@@ -15,8 +15,8 @@ namespace mercury::cuda {
 
 inline constexpr std::uint32_t lanes = 32;
 
-// A spring as its owner's lane sees it. An empty place has material air, rest length 0 and the owner itself as partner:
-// it has no length and no stiffness, so it adds nothing.
+// A spring as its owner's lane sees it. An empty place has material air and rest length 0, so that it adds nothing; its
+// partner is a neighbour of the owner, or the owner itself, in a bank that nobody else in the row wants.
 struct ScheduledSpring {
   std::uint16_t partner = 0;
   MaterialId material = air;

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <cstdio>
-#include <cstdlib>
 
 #include "sim/cuda/material_table.cuh"
 #include "sim/cuda/memory.h"
@@ -17,10 +15,10 @@ __device__ std::uint32_t shared_address(const void* pointer) {
 }
 
 // With 72 registers a multiprocessor holds 28 warps.
-template <Solver solver, class Hooks, class Memory>
+template <Solver solver, class Hooks, class Memory, int record_words>
 __global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Hooks hooks) {
-  using Stepper = RobotStepper<solver, Hooks, Memory>;
+  using Stepper = RobotStepper<solver, Hooks, Memory, record_words>;
   constexpr bool on_chip = std::is_same_v<Memory, OnChip>;
   const Shape& shape = arguments.shape;
   const BatchView& batch = arguments.batch;
@@ -39,17 +37,22 @@ __global__ void __maxnreg__(72)
   else
     masses = workspace;
   char* const contacts = shape.contacts_on_chip
-                             ? shared_memory + layout.failures + seat * contact_bytes(shape.contact_buckets, batch.group_stride)
+                             ? shared_memory + layout.lengths + seat * contact_bytes(shape.contact_buckets, batch.group_stride)
                              : workspace + (on_chip ? 0 : working_bytes);
 
-  const std::uint32_t table_size = shape.table_copies * max_materials;
-  SpringLaw* const table = reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : seat * table_size);
+  const std::uint32_t table_copies = 1u << shape.table_copy_bits;
+  SpringLaw* const table = reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : seat * table_copies * max_materials);
   MaterialTable materials(arguments, shape.shared_table ? 0 : robot, shape.shared_table ? block_warp : warp,
                           shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, lane, table);
   materials.template fill<solver>(arguments, batch.robots[shape.shared_table ? first_robot : robot]);
 
-  Stepper stepper(arguments, hooks, robot, warp, lane, masses, shared_address(table + lane % shape.table_copies), failure,
-                  contacts);
+  float* const lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + seat * max_lengths;
+  if constexpr (record_words == 1)
+    for (std::uint32_t i = warp * lanes + lane; i < max_lengths; i += shape.warps_per_robot * lanes)
+      lengths[i] = batch.lengths[std::size_t{robot} * max_lengths + i];
+
+  Stepper stepper(arguments, hooks, robot, warp, lane, masses, shared_address(table + lane % table_copies),
+                  shared_address(lengths), failure, contacts);
   // The last block may have seats left; those and robots that exploded earlier only keep the barriers company.
   const bool seated = first_robot + seat < batch.robot_count && stepper.alive();
   if (warp == 0 && lane == 0) *failure = {seated ? never : 0, never};
@@ -79,8 +82,15 @@ __global__ void __maxnreg__(72)
 }
 
 template <Solver solver, class Hooks>
+auto kernel_for(const Shape& shape) {
+  if (shape.record_words == 1)
+    return shape.on_chip ? step_kernel<solver, Hooks, OnChip, 1> : step_kernel<solver, Hooks, OffChip, 1>;
+  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, 2> : step_kernel<solver, Hooks, OffChip, 2>;
+}
+
+template <Solver solver, class Hooks>
 void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
-  const auto kernel = arguments.shape.on_chip ? step_kernel<solver, Hooks, OnChip> : step_kernel<solver, Hooks, OffChip>;
+  const auto kernel = kernel_for<solver, Hooks>(arguments.shape);
   const Shape& shape = arguments.shape;
   const auto bytes = static_cast<int>(shape.shared_bytes);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
@@ -122,8 +132,8 @@ std::uint32_t even_warps(std::uint32_t groups, std::uint32_t most) {
 
 // As many copies of the material table as leave room for `blocks` blocks on a multiprocessor. False if not one does.
 bool fit(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limits& limits, std::uint32_t blocks) {
-  for (const std::uint32_t copies : {16u, 8u, 4u, 2u, 1u}) {
-    shape.table_copies = copies;
+  for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u}) {
+    shape.table_copy_bits = bits;
     shape.shared_bytes = block_layout(shape, groups, rows).total;
     if (shape.shared_bytes <= limits.shared_per_block &&
         blocks * (shape.shared_bytes + limits.reserved_per_block) <= limits.shared_per_multiprocessor)
@@ -154,22 +164,15 @@ bool fit_one(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limit
 
 std::uint32_t working_rows(Solver solver) { return solver == Solver::force ? working_rows_force : working_rows_xpbd; }
 
-Shape choose_shape(Solver solver, const Environment& environment, std::uint32_t groups, std::uint32_t robots,
-                   bool same_materials) {
+Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws) {
   const Limits limits = device_limits();
+  const std::uint32_t groups = batch.group_stride, robots = batch.robot_count;
   const std::uint32_t rows = working_rows(solver);
   Shape shape;
-  shape.shared_table = same_materials;
+  shape.shared_table = same_laws;
+  shape.record_words = batch.record_words;
   const Land* land = std::get_if<Land>(&environment);
   if (land && land->self_collision && land->contact_stiffness > 0) shape.contact_buckets = std::bit_ceil(groups * lanes);
-  if (const char* dev = getenv("MERCURY_SHAPE")) {
-    unsigned w, r, c, b;
-    if (sscanf(dev, "%u,%u,%u,%u", &w, &r, &c, &b) == 4) {
-      shape.warps_per_robot = w; shape.robots_per_block = r; shape.table_copies = c;
-      shape.shared_bytes = block_layout(shape, groups, rows).total;
-      return shape;
-    }
-  }
   // Fewer robots than multiprocessors: each gets one to itself.
   if (robots > limits.multiprocessors && fit_several(shape, groups, rows, limits, robots)) return shape;
   if (fit_one(shape, groups, rows, limits)) return shape;

@@ -14,18 +14,19 @@
 namespace mercury::cuda {
 
 // One robot of a block, as one of its threads sees it.
-template <Solver solver, class Hooks, class Memory>
+template <Solver solver, class Hooks, class Memory, int record_words>
 class RobotStepper {
  public:
   static constexpr std::uint32_t rows = solver == Solver::force ? working_rows_force : working_rows_xpbd;
   static constexpr std::uint32_t group_bytes = rows * row_bytes;
   using Address = typename Memory::Address;
 
-  // `table` = shared address of this lane's copy of the material table.
+  // Shared addresses: `table` of this lane's copy of the material table, `lengths` of the rest lengths.
   __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, std::uint32_t robot, std::uint32_t warp,
-                          std::uint32_t lane, Address masses, std::uint32_t table, Failure* failure, char* contacts)
+                          std::uint32_t lane, Address masses, std::uint32_t table, std::uint32_t lengths, Failure* failure,
+                          char* contacts)
       : arguments_(arguments), hooks_(hooks), record_(arguments.batch.robots[robot]), robot_(robot), warp_(warp),
-        lane_(lane), masses_(masses), table_(table), failure_(failure), contacts_(contacts) {
+        lane_(lane), masses_(masses), table_(table), lengths_(lengths), failure_(failure), contacts_(contacts) {
     const std::uint32_t turns = (record_.groups + warps() - 1) / warps();
     first_group_ = min(warp * turns, record_.groups);
     last_group_ = min(first_group_ + turns, record_.groups);
@@ -156,8 +157,21 @@ class RobotStepper {
   __device__ const std::uint32_t* row_start() const {
     return arguments_.batch.row_start + std::size_t{robot_} * (arguments_.batch.group_stride + 1);
   }
-  __device__ const SpringRecord* springs() const {
-    return arguments_.batch.springs + std::size_t{robot_} * arguments_.batch.row_stride * lanes;
+  using Record = std::conditional_t<record_words == 1, uint1, uint2>;
+  __device__ const Record* springs() const {
+    return reinterpret_cast<const Record*>(arguments_.batch.springs) + std::size_t{robot_} * arguments_.batch.row_stride * lanes;
+  }
+  __device__ Mass<Memory> partner_of(const Record& record) const {
+    if constexpr (std::is_same_v<Memory, OnChip>)
+      return {masses_ + (record.x >> 16) * 4};
+    else
+      return at(record.x >> 16);
+  }
+  __device__ float rest_length_of(const Record& record) const {
+    if constexpr (record_words == 1)
+      return OnChip::load(lengths_ + (record.x >> 8 & 0xff) * 4, 0);
+    else
+      return __uint_as_float(record.y);
   }
 
   // What every spring that ends at a mass adds to its sum besides its force: the bits of the rounding constant.
@@ -204,14 +218,15 @@ class RobotStepper {
 
   // `count` rows of springs: first every load, then the arithmetic, then every addition.
   template <int count>
-  __device__ void add_rows(const uint2* records, Owner& owner, float& longest) const {
+  __device__ void add_rows(const Record* records, Owner& owner, float& longest) const {
     Mass<Memory> partner[count];
     Vec3 d[count];
     float2 law[count];
-    float splits[count];
+    float splits[count], rest_length[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      partner[i].at = masses_ + (records[i].x >> 8);
+      partner[i] = partner_of(records[i]);
+      rest_length[i] = rest_length_of(records[i]);
       d[i] = owner.x - partner[i].vector(row_x);
       law[i] = load_pair(table_ + (records[i].x & 0xff) * law_bytes());
       if constexpr (solver == Solver::xpbd) splits[i] = owner.splits + partner[i].value(row_splits);
@@ -220,7 +235,7 @@ class RobotStepper {
     for (int i = 0; i < count; ++i) {
       const float squared = squared_length(d[i]);
       longest = fmaxf(longest, squared);
-      const float length = __uint_as_float(records[i].y) * law[i].y;
+      const float length = rest_length[i] * law[i].y;
       float per_distance;
       if constexpr (solver == Solver::force)
         per_distance = hooke(squared, length, law[i].x);
@@ -237,12 +252,20 @@ class RobotStepper {
   }
 
   __device__ std::uint32_t law_bytes() const {
-    return static_cast<std::uint32_t>(sizeof(SpringLaw)) * arguments_.shape.table_copies;
+    return static_cast<std::uint32_t>(sizeof(SpringLaw)) << arguments_.shape.table_copy_bits;
   }
 
-  __device__ static void load_records(const uint2* from, uint2 (&records)[rows_at_once]) {
+  // Past the L1 cache, which is left to what is read again.
+  __device__ static void load_records(const Record* from, Record (&records)[rows_at_once]) {
 #pragma unroll
-    for (int i = 0; i < rows_at_once; ++i) records[i] = __ldg(from + i * lanes);
+    for (int i = 0; i < rows_at_once; ++i) {
+      if constexpr (record_words == 1)
+        asm volatile("ld.global.nc.L1::no_allocate.u32 %0, [%1];" : "=r"(records[i].x) : "l"(from + i * lanes));
+      else
+        asm volatile("ld.global.nc.L1::no_allocate.v2.u32 {%0, %1}, [%2];"
+                     : "=r"(records[i].x), "=r"(records[i].y)
+                     : "l"(from + i * lanes));
+    }
   }
 
   // All springs of this warp's masses, whose rows follow one another; the records of the next rows are on their way
@@ -252,8 +275,8 @@ class RobotStepper {
     if (first_group_ == last_group_) return longest;
     const std::uint32_t* start = row_start();
     std::uint32_t row = start[first_group_];
-    const uint2* next = reinterpret_cast<const uint2*>(springs()) + std::size_t{row} * lanes + lane_;
-    uint2 records[rows_at_once];
+    const Record* next = springs() + std::size_t{row} * lanes + lane_;
+    Record records[rows_at_once];
     load_records(next, records);
     for (std::uint32_t g = first_group_; g < last_group_; ++g) {
       const Mass<Memory> mass = own(g);
@@ -261,7 +284,7 @@ class RobotStepper {
       const int bias = static_cast<int>(last - row) * rounding_magic_bits;
       Owner owner{mass.vector(row_x), solver == Solver::xpbd ? mass.value(row_splits) : 0.0f, bias, bias, bias};
       for (; row < last; row += rows_at_once) {
-        uint2 present[rows_at_once];
+        Record present[rows_at_once];
 #pragma unroll
         for (int i = 0; i < rows_at_once; ++i) present[i] = records[i];
         const std::uint32_t left = last - row;
@@ -361,11 +384,11 @@ class RobotStepper {
 
   // Whether mass i owns a spring to mass j.
   __device__ bool owns(std::uint32_t i, std::uint32_t j) const {
-    const std::uint32_t wanted = offset_of(j), group = i / lanes;
-    const SpringRecord* spring = springs() + i % lanes;
+    const std::uint32_t wanted = std::is_same_v<Memory, OnChip> ? offset_of(j) / 4 : j, group = i / lanes;
+    const Record* spring = springs() + i % lanes;
     for (std::uint32_t row = row_start()[group]; row < row_start()[group + 1]; ++row) {
-      const SpringRecord& record = spring[std::size_t{row} * lanes];
-      if (record.where >> 8 == wanted && (record.where & 0xff) != air) return true;
+      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
+      if (key >> 16 == wanted && (key & 0xff) != air) return true;
     }
     return false;
   }
@@ -377,7 +400,7 @@ class RobotStepper {
   std::uint32_t first_group_, last_group_;
   float travelled_ = 0;  // no mass of this thread has gone farther since contacts were listed
   const Address masses_;
-  const std::uint32_t table_;
+  const std::uint32_t table_, lengths_;
   Failure* const failure_;
   char* const contacts_;
 };

@@ -13,10 +13,11 @@ namespace mercury::cuda {
 struct Shape {
   std::uint32_t robots_per_block = 1;
   std::uint32_t warps_per_robot = 1;
-  std::uint32_t table_copies = 1;   // of the material table: 1, 2, 4, 8 or 16
+  std::uint32_t table_copy_bits = 0;  // 2^this many copies of the material table, at most 16
   bool shared_table = false;        // all robots of the batch have the same materials
   bool on_chip = true;              // masses in shared memory, else in the workspace
   std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
+  std::uint32_t record_words = 2;   // of the batch
   bool contacts_on_chip = true;       // else behind the working memory in the workspace
   std::size_t shared_bytes = 0;
 };
@@ -36,8 +37,7 @@ using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
 std::uint32_t working_rows(Solver solver);
 
 // The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
-Shape choose_shape(Solver solver, const Environment& environment, std::uint32_t groups, std::uint32_t robots,
-                   bool same_materials);
+Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws);
 
 // Asynchronous; errors through cudaGetLastError.
 void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream);

@@ -31,9 +31,18 @@ __device__ Vec3 position(const float* state, std::uint32_t mass) {
 }
 
 struct Springs {
-  const SpringRecord* records;
+  const std::uint32_t* records;
+  const float* lengths;
   const std::uint32_t* row_start;
-  std::uint32_t groups, group_bytes;
+  std::uint32_t record_words, groups, rows_placed;
+
+  __device__ std::uint32_t partner(std::uint32_t key) const {
+    const std::uint32_t place = key >> 16;
+    return rows_placed == 0 ? place : place / (rows_placed * lanes) * lanes + place % lanes;
+  }
+  __device__ float rest_length(const std::uint32_t* record) const {
+    return record_words == 1 ? lengths[*record >> 8 & 0xff] : __uint_as_float(record[1]);
+  }
 };
 
 __device__ void add_springs(const float* state, const Springs& springs, const Material* materials,
@@ -42,15 +51,16 @@ __device__ void add_springs(const float* state, const Springs& springs, const Ma
   for (std::uint32_t group = threadIdx.x / lanes; group < springs.groups; group += threads / lanes) {
     const Vec3 own = position(state, group * lanes + lane);
     for (std::uint32_t row = springs.row_start[group]; row < springs.row_start[group + 1]; ++row) {
-      const SpringRecord record = springs.records[std::size_t{row} * lanes + lane];
-      const std::uint32_t id = record.where & 0xff, place = record.where >> 8;
+      const std::uint32_t* record = springs.records + (std::size_t{row} * lanes + lane) * springs.record_words;
+      const std::uint32_t id = *record & 0xff;
       if (id == air) continue;
-      const Vec3 d = position(state, place / springs.group_bytes * lanes + place % springs.group_bytes / 4) - own;
+      const float rest_length = springs.rest_length(record);
+      const Vec3 d = position(state, springs.partner(*record)) - own;
       const float distance = sqrtf(dot(d, d));
       const float factor = muscle_factor(materials[id].amplitude, phase_at(phases[id], steps_since_base));
-      const auto stretch = static_cast<double>(distance - record.rest_length * factor);
+      const auto stretch = static_cast<double>(distance - rest_length * factor);
       share.sums[7] += 0.5 * static_cast<double>(stiffness_scale * materials[id].stiffness) * stretch * stretch;
-      share.strain = fmaxf(share.strain, fabsf(distance - record.rest_length) / record.rest_length);
+      share.strain = fmaxf(share.strain, fabsf(distance - rest_length) / rest_length);
     }
   }
 }
@@ -62,8 +72,9 @@ __global__ void telemetry_kernel(BatchView batch, Clock clock, float stiffness_s
   const float* state = batch.state + std::size_t{robot} * batch.group_stride * state_rows * lanes;
   Share share{};
   add_masses(state, record.masses, share);
-  const Springs springs{batch.springs + std::size_t{robot} * batch.row_stride * lanes,
-                        batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups, rows * row_bytes};
+  const Springs springs{batch.springs + std::size_t{robot} * batch.row_stride * lanes * batch.record_words,
+                        batch.lengths + std::size_t{robot} * max_lengths,
+                        batch.row_start + std::size_t{robot} * (batch.group_stride + 1), batch.record_words, record.groups, rows};
   add_springs(state, springs, batch.materials + std::size_t{robot} * max_materials,
               batch.phases + std::size_t{robot} * max_materials, clock.step - clock.base_step, stiffness_scale, share);
   shares[threadIdx.x] = share;

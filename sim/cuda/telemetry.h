@@ -11,8 +11,8 @@ struct DeviceTelemetry {
   float largest_strain;
 };
 
-// One block a robot; the order of every sum is fixed by the robot alone. `rows` = working rows that the records are
-// placed for.
+// One block a robot; the order of every sum is fixed by the robot alone. `rows` = as the records are placed
+// (Batch::place_records).
 void launch_telemetry(const BatchView& batch, const Clock& clock, float stiffness_scale, std::uint32_t rows,
                       DeviceTelemetry* out);
 
