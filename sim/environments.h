@@ -3,6 +3,7 @@
 //   on_mass(v)                               force on a unit mass of velocity v [N]
 //   on_face(area_normal, v)                  force on a face, if has_faces
 //   floor(x, displacement)                   resolves the end of a step on positions, if has_floor
+// Vector is a Vec3 or a vector of several (sim/cpu/lanes.h).
 #pragma once
 
 #include "sim/configuration.h"
@@ -19,17 +20,21 @@ struct OceanHooks {
       : gravity(ocean.gravity), flow(ocean.flow), half_density(ocean.density / 2),
         drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient) {}
 
-  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3) const { return gravity; }
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
+    return {gravity.x, gravity.y, gravity.z};
+  }
 
   // Eq. 1 with the flow relative to the face, u = flow - v, and the normal turned to the side that u leaves by, so that
   // drag never adds energy. As printed (v itself, the normal as it is) the sum over a closed rigid body is zero.
   // `area_normal` is A n; either orientation gives the same force.
-  MERCURY_HOST_DEVICE Vec3 on_face(Vec3 area_normal, Vec3 velocity) const {
-    const Vec3 u = flow - velocity;
-    const float flux = multiply_add(area_normal.z, u.z, multiply_add(area_normal.y, u.y, area_normal.x * u.x));
-    const float speed_squared = multiply_add(u.z, u.z, multiply_add(u.y, u.y, u.x * u.x));
-    const float along_flow = half_density * drag_minus_lift * std::fabs(flux);
-    const float along_normal = half_density * lift * (flux < 0 ? -speed_squared : speed_squared);
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
+    const Vector u = flow - velocity;
+    const auto flux = multiply_add(area_normal.z, u.z, multiply_add(area_normal.y, u.y, area_normal.x * u.x));
+    const auto speed_squared = multiply_add(u.z, u.z, multiply_add(u.y, u.y, u.x * u.x));
+    const auto along_flow = half_density * drag_minus_lift * absolute(flux);
+    const auto along_normal = half_density * lift * select(flux < 0.0f, -speed_squared, speed_squared);
     return {multiply_add(along_flow, u.x, along_normal * area_normal.x),
             multiply_add(along_flow, u.y, along_normal * area_normal.y),
             multiply_add(along_flow, u.z, along_normal * area_normal.z)};
@@ -44,7 +49,8 @@ struct OceanSimpleHooks {
   explicit OceanSimpleHooks(const OceanSimple& ocean)
       : gravity(ocean.gravity), flow(ocean.flow), drag(ocean.point_drag) {}
 
-  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3 v) const {
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector v) const {
     return {multiply_add(drag, flow.x - v.x, gravity.x), multiply_add(drag, flow.y - v.y, gravity.y),
             multiply_add(drag, flow.z - v.z, gravity.z)};
   }
@@ -57,20 +63,26 @@ struct LandHooks {
 
   explicit LandHooks(const Land& land) : gravity(land.gravity), friction(land.friction) {}
 
-  MERCURY_HOST_DEVICE Vec3 on_mass(Vec3) const { return gravity; }
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
+    return {gravity.x, gravity.y, gravity.z};
+  }
 
   // A mass that would end below the floor ends on it, and moves along it less by at most friction times its depth.
   // `x` is where the step ends and `displacement` what it moved; both are mended. True if the mass touched.
-  MERCURY_HOST_DEVICE bool floor(Vec3& x, Vec3& displacement) const {
-    const float depth = -x.z;
-    if (!(depth > 0)) return false;
-    const float moved = std::sqrt(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
-    const float held = friction * depth;
-    const float undone = moved > held ? held / moved : 1.0f;
-    x = {multiply_add(-undone, displacement.x, x.x), multiply_add(-undone, displacement.y, x.y), 0.0f};
-    displacement = {multiply_add(-undone, displacement.x, displacement.x),
-                    multiply_add(-undone, displacement.y, displacement.y), displacement.z + depth};
-    return true;
+  template <class Vector>
+  MERCURY_HOST_DEVICE auto floor(Vector& x, Vector& displacement) const {
+    const auto depth = -x.z;
+    const auto touched = depth > 0.0f;
+    const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
+    const auto held = friction * depth;
+    const auto undone = select(moved > held, held / moved, 1.0f);
+    x = select(touched, Vector{negative_multiply_add(undone, displacement.x, x.x),
+                               negative_multiply_add(undone, displacement.y, x.y), 0.0f}, x);
+    displacement = select(touched, Vector{negative_multiply_add(undone, displacement.x, displacement.x),
+                                          negative_multiply_add(undone, displacement.y, displacement.y),
+                                          displacement.z + depth}, displacement);
+    return touched;
   }
 };
 

@@ -21,15 +21,21 @@ inline constexpr float stretch_limit = 16;
 inline constexpr float rounding_magic = 12582912.f;             // 1.5 x 2^23
 inline constexpr std::int32_t rounding_magic_bits = 0x4b400000;  // its bits
 
-// round(value_per_distance * distance), both in units.
+// round(value_per_distance * distance), both in units, plus rounding_magic_bits. Halves go to the even integer, so the
+// opposite distance gives exactly the opposite integer.
+template <class Real>
+MERCURY_HOST_DEVICE auto to_fixed_plus_magic(Real value_per_distance, Real distance) {
+  return bits_of(multiply_add(value_per_distance, distance, rounding_magic));
+}
 MERCURY_HOST_DEVICE std::int32_t to_fixed_small(float value_per_distance, float distance) {
-  return bits_of(multiply_add(value_per_distance, distance, rounding_magic)) - rounding_magic_bits;
+  return to_fixed_plus_magic(value_per_distance, distance) - rounding_magic_bits;
 }
 
 // Whether face and contact forces, in units, fit; false for NaN as well.
-MERCURY_HOST_DEVICE bool fits(Vec3 units) {
-  return std::fabs(units.x) < face_limit_units && std::fabs(units.y) < face_limit_units &&
-         std::fabs(units.z) < face_limit_units;
+template <class Vector>
+MERCURY_HOST_DEVICE auto fits(Vector units) {
+  return all_of(absolute(units.x) < face_limit_units, absolute(units.y) < face_limit_units,
+                absolute(units.z) < face_limit_units);
 }
 
 // Units in one newton (force) or one metre (correction) for one robot: powers of two.

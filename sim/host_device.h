@@ -1,5 +1,6 @@
 // The one place that knows whether nvcc is compiling: marks functions that run on host and device, and names the
-// arithmetic that differs between them.
+// arithmetic that differs between them. An equation written in these names is computed for one float, and for a vector
+// of floats whose type brings the same names (sim/cpu/lanes.h).
 #pragma once
 
 #include <bit>
@@ -9,7 +10,7 @@
 #ifdef __CUDACC__
 #define MERCURY_HOST_DEVICE __host__ __device__ __forceinline__
 #else
-#define MERCURY_HOST_DEVICE inline
+#define MERCURY_HOST_DEVICE __attribute__((always_inline)) inline  // into each instruction set's own code
 #endif
 
 namespace mercury {
@@ -22,6 +23,25 @@ MERCURY_HOST_DEVICE float multiply_add(float a, float b, float c) {
   return a * b + c;
 #endif
 }
+
+// c - a b, rounded likewise.
+MERCURY_HOST_DEVICE float negative_multiply_add(float a, float b, float c) {
+#ifdef __CUDA_ARCH__
+  return __fmaf_rn(-a, b, c);
+#else
+  return c - a * b;
+#endif
+}
+
+MERCURY_HOST_DEVICE float absolute(float a) { return std::fabs(a); }
+MERCURY_HOST_DEVICE float square_root(float a) { return std::sqrt(a); }
+
+// Branches that a vector of floats can take lane by lane.
+MERCURY_HOST_DEVICE float select(bool condition, float yes, float no) { return condition ? yes : no; }
+MERCURY_HOST_DEVICE std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) {
+  return condition ? yes : no;
+}
+MERCURY_HOST_DEVICE bool all_of(bool a, bool b, bool c) { return a && b && c; }
 
 // 1 / sqrt(a), a > 0; on the device within 2 units in the last place.
 MERCURY_HOST_DEVICE float inverse_sqrt(float a) {
@@ -52,6 +72,10 @@ MERCURY_HOST_DEVICE std::int32_t bits_of(float a) {
   return std::bit_cast<std::int32_t>(a);
 #endif
 }
+
+// The bits of a two's complement integer, as a float.
+MERCURY_HOST_DEVICE float float_of_signed(std::uint32_t a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
+MERCURY_HOST_DEVICE bool top_bit(std::uint32_t a) { return (a & 0x80000000u) != 0; }
 
 // Rounds to the nearest integer, ties to even; |a| < 2^31.
 MERCURY_HOST_DEVICE std::int32_t round_to_int(float a) {

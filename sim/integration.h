@@ -8,8 +8,9 @@ namespace mercury {
 inline constexpr float farthest = 1e6f;  // [m]; beyond it a robot has exploded
 
 // False for NaN as well.
-MERCURY_HOST_DEVICE bool within_reach(Vec3 x) {
-  return std::fabs(x.x) <= farthest && std::fabs(x.y) <= farthest && std::fabs(x.z) <= farthest;
+template <class Vector>
+MERCURY_HOST_DEVICE auto within_reach(Vector x) {
+  return all_of(absolute(x.x) <= farthest, absolute(x.y) <= farthest, absolute(x.z) <= farthest);
 }
 
 struct StepConstants {
@@ -24,17 +25,19 @@ MERCURY_HOST_DEVICE Vec3 multiply_add(float a, Vec3 b, Vec3 c) {
 
 // v + dt F for a unit mass: the velocity before damping and contact. Algorithm 2's prediction lacks the inertia dt v
 // as printed; it is restored here.
-MERCURY_HOST_DEVICE Vec3 accelerated(Vec3 velocity, Vec3 force, const StepConstants& step) {
+template <class Vector>
+MERCURY_HOST_DEVICE Vector accelerated(Vector velocity, Vector force, const StepConstants& step) {
   return multiply_add(step.dt, force, velocity);
 }
 
 // Ends a step at position x with undamped velocity v: contact with the floor, then damping. The velocity is summed on
 // its own, never differenced from positions, whose last digit is too coarse for that.
-template <class Hooks>
-MERCURY_HOST_DEVICE void end_step(Vec3& x, Vec3& v, const Hooks& hooks, const StepConstants& step) {
+template <class Vector, class Hooks>
+MERCURY_HOST_DEVICE void end_step(Vector& x, Vector& v, const Hooks& hooks, const StepConstants& step) {
   if constexpr (Hooks::has_floor) {
-    Vec3 displacement = step.dt * v;
-    if (hooks.floor(x, displacement)) v = step.inverse_dt * displacement;
+    Vector displacement = step.dt * v;
+    const auto touched = hooks.floor(x, displacement);
+    v = select(touched, step.inverse_dt * displacement, v);
   }
   v = step.zeta * v;
 }

@@ -43,19 +43,20 @@ MERCURY_HOST_DEVICE std::uint64_t phase_at(const MusclePhase& phase, std::int64_
   return phase.at_base + static_cast<std::uint64_t>(steps_since_base) * phase.per_step;
 }
 
-// sin of a phase: folded to a quarter turn, then the polynomial of degree 9 that is within 4e-9 of sin(pi s).
-MERCURY_HOST_DEVICE float sine_of_phase(std::uint64_t phase) {
-  const auto turns = static_cast<std::uint32_t>(phase >> 32);
-  const bool outer = ((turns ^ (turns << 1)) & 0x80000000u) != 0;
-  const auto folded = static_cast<std::int32_t>(outer ? 0x80000000u - turns : turns);
-  const float s = static_cast<float>(folded) * 4.656612873077393e-10f;  // half turns, [-1/2, 1/2]
-  const float u = s * s;
-  float p = 0.07721982151269913f;
-  p = multiply_add(p, u, -0.5980449914932251f);
+// sin of 2^-32 of a turn: folded to a quarter turn, then the polynomial of degree 9 that is within 4e-9 of sin(pi s).
+template <class Word>
+MERCURY_HOST_DEVICE auto sine_of_turns(Word turns) {
+  const Word folded = select(top_bit(turns ^ (turns + turns)), Word(0x80000000u) - turns, turns);
+  const auto s = float_of_signed(folded) * 4.656612873077393e-10f;  // half turns, [-1/2, 1/2]
+  const auto u = s * s;
+  auto p = multiply_add(0.07721982151269913f, u, -0.5980449914932251f);
   p = multiply_add(p, u, 2.5500314235687256f);
   p = multiply_add(p, u, -5.1677069664001465f);
   p = multiply_add(p, u, 3.141592502593994f);
   return p * s;
+}
+MERCURY_HOST_DEVICE float sine_of_phase(std::uint64_t phase) {
+  return sine_of_turns(static_cast<std::uint32_t>(phase >> 32));
 }
 
 // L(t) / L0.

@@ -1,4 +1,4 @@
-// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device.
+// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device; Real is a float or a vector of them.
 #pragma once
 
 #include "sim/host_device.h"
@@ -7,24 +7,28 @@
 namespace mercury {
 
 // |d|^2, kept off zero so that two masses in one place push nothing instead of dividing by zero.
-MERCURY_HOST_DEVICE float squared_length(Vec3 d) {
+template <class Vector>
+MERCURY_HOST_DEVICE auto squared_length(Vector d) {
   return multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, 1e-20f)));
 }
 
 // (|d| - L) / |d|, the part of d that a spring wants to lose.
-MERCURY_HOST_DEVICE float excess(float squared, float length) {
-  return multiply_add(-length, inverse_sqrt(squared), 1.0f);
+template <class Real>
+MERCURY_HOST_DEVICE Real excess(Real squared, Real length) {
+  return negative_multiply_add(length, inverse_sqrt(squared), 1.0f);
 }
 
 // Eq. 2 (Hooke's law): the force on the first mass is this times d = x_second - x_first.
-MERCURY_HOST_DEVICE float hooke(float squared, float length, float stiffness) {
+template <class Real>
+MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness) {
   return stiffness * excess(squared, length);
 }
 
 // Eq. 3 and 4, with the missing -L restored and the gradient's square replaced by the split masses (Tonge et al. 2012):
 // lambda / |d| with lambda = (|d| - L) / (s_a + s_b + 1/(k dt^2)). The first mass moves by this times d. Splits and
 // compliance come divided by the fixed-point scale, so that the result is in units.
-MERCURY_HOST_DEVICE float xpbd(float squared, float length, float splits, float compliance) {
+template <class Real>
+MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real splits, Real compliance) {
   return excess(squared, length) * inverse(splits + compliance);
 }
 

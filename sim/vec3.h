@@ -23,6 +23,7 @@ MERCURY_HOST_DEVICE constexpr float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y
 MERCURY_HOST_DEVICE constexpr Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+MERCURY_HOST_DEVICE constexpr Vec3 select(bool condition, Vec3 yes, Vec3 no) { return condition ? yes : no; }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
 
 }  // namespace mercury
