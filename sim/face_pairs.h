@@ -1,0 +1,22 @@
+// Faces two by two, so that masses common to both are read once and forces on them added once.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/robot.h"
+
+namespace mercury {
+
+// Two triangles (a, b, c) and (a, c, d) that share an edge. A triangle without a neighbour left has d = a: its second
+// triangle has no area and no force.
+struct FacePair {
+  std::uint16_t a = 0, b = 0, c = 0, d = 0;
+  friend constexpr bool operator==(const FacePair&, const FacePair&) = default;
+};
+
+// Every face once. A face may be told from another corner or the other way around than in the robot; its force is the
+// same.
+std::vector<FacePair> pair_faces(const Robot& robot);
+
+}  // namespace mercury
