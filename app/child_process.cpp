@@ -37,6 +37,27 @@ std::string text_of(int descriptor) {
   return text;
 }
 
+// While it lives, a write of this thread to a pipe that nobody reads is an error (EPIPE), not a signal.
+class NoBrokenPipeSignal {
+ public:
+  NoBrokenPipeSignal() {
+    sigemptyset(&broken_pipe_);
+    sigaddset(&broken_pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &broken_pipe_, &before_);
+  }
+  ~NoBrokenPipeSignal() {
+    // One that has come in meanwhile would be delivered as soon as it is let through again.
+    const timespec at_once{};
+    if (!sigismember(&before_, SIGPIPE)) sigtimedwait(&broken_pipe_, nullptr, &at_once);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoBrokenPipeSignal(const NoBrokenPipeSignal&) = delete;
+  NoBrokenPipeSignal& operator=(const NoBrokenPipeSignal&) = delete;
+
+ private:
+  sigset_t broken_pipe_, before_;
+};
+
 // What posix_spawn is told besides the program: where its standard streams go, its group and its signals.
 class SpawnSettings {
  public:
@@ -103,6 +124,7 @@ void ChildProcess::close_input() {
 }
 
 bool ChildProcess::write(std::span<const std::uint8_t> bytes) {
+  const NoBrokenPipeSignal quiet;
   while (!bytes.empty()) {
     const ssize_t count = ::write(input_, bytes.data(), bytes.size());
     if (count >= 0) {
@@ -145,8 +167,6 @@ void ChildProcess::signal(int number) {
 
 std::string ChildProcess::output() const { return text_of(output_); }
 std::string ChildProcess::messages() const { return text_of(messages_); }
-
-void ignore_broken_pipes() { ::signal(SIGPIPE, SIG_IGN); }
 
 std::string describe_exit(int status) {
   if (WIFSIGNALED(status)) {

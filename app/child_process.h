@@ -29,7 +29,6 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   // Feeds its standard input; blocks while the pipe is full. False when the child reads no more.
-  // The program must ignore SIGPIPE (ignore_broken_pipes).
   bool write(std::span<const std::uint8_t> bytes);
 
   // Closes its standard input and waits for its end. Returns the status as waitpid tells it.
@@ -51,9 +50,6 @@ class ChildProcess {
   int messages_ = -1;
   int status_ = 0;
 };
-
-// A write to a pipe that nobody reads is an error from then on, not the end of the program.
-void ignore_broken_pipes();
 
 // "ended with status 1", "was killed by signal 9 (Killed)"; empty for status 0.
 std::string describe_exit(int status);

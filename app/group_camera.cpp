@@ -61,6 +61,26 @@ Sides sides_of(std::span<const render::Bounds> boxes, const Eigen::Matrix3f& axe
   return sides;
 }
 
+// The eye moved right and up until the picture's margins left over on opposite sides are alike.
+Eigen::Vector3f balanced(std::span<const render::Bounds> boxes, const Eigen::Matrix3f& axes, Eigen::Vector3f eye) {
+  for (int pass = 0; pass < 12; ++pass) {
+    Eigen::Array2f most = Eigen::Array2f::Constant(-INFINITY), least = Eigen::Array2f::Constant(INFINITY);
+    float depth = INFINITY;
+    for (const render::Bounds& box : boxes) {
+      if (box.empty()) continue;
+      for_each_corner(box, [&](const Eigen::Vector3f& corner) {
+        const Eigen::Vector3f p = axes * corner - eye;
+        most = most.max(p.head<2>().array() / p.z());
+        least = least.min(p.head<2>().array() / p.z());
+        depth = std::min(depth, p.z());
+      });
+    }
+    // By the depth of the nearest, so that no pass goes too far.
+    eye.head<2>() += (0.5f * depth * (most + least)).matrix();
+  }
+  return eye;
+}
+
 // Mean depth of the boxes' middles before the eye, all in the eye's axes.
 float mean_depth(std::span<const render::Bounds> boxes, const Eigen::Matrix3f& axes, float eye_z) {
   float sum = 0;
@@ -85,7 +105,7 @@ render::Camera GroupCamera::follow(std::span<const render::Bounds> robots, doubl
   const float tan_y = std::tan(orbit_.field_of_view / 2);
   const Sides sides = sides_of(robots, axes, tan_y / margin_, aspect_);
   if (sides.empty()) return orbit_.camera();
-  const Eigen::Vector3f wanted = sides.best_eye();
+  const Eigen::Vector3f wanted = balanced(robots, axes, sides.best_eye());
   if (!eye_) eye_ = wanted;
   *eye_ += static_cast<float>(1 - std::exp(-dt / lag)) * (wanted - *eye_);
   eye_->z() = std::min(eye_->z(), sides_of(robots, axes, tan_y / least_margin, aspect_).nearest(eye_->x(), eye_->y()));

@@ -7,7 +7,6 @@
 #include <exception>
 #include <optional>
 
-#include "app/child_process.h"
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/interrupt.h"
@@ -145,7 +144,6 @@ class Program {
 }  // namespace
 
 int run_program(const std::vector<std::string>& arguments) {
-  ignore_broken_pipes();
   catch_interrupts();
   try {
     return Program().run(arguments);

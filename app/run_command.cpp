@@ -1,9 +1,13 @@
 // mercury run: simulate without pictures.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -95,7 +99,15 @@ RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet) {
           .robots = observer.results()};
 }
 
+// Tells before a long simulation what would fail after it.
+void require_writable(const std::string& option, const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(option, file.string() + " cannot be written: " + std::strerror(errno));
+}
+
 int run(const RunOptions& options) {
+  if (!options.csv.empty()) require_writable("--csv", options.csv);
   const Configuration configuration = options.simulation.configuration();
   const std::int64_t steps = options.simulation.steps();
   const std::vector<Robot> robots = options.robots.load();

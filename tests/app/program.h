@@ -1,0 +1,85 @@
+// Runs the real program as a child process, and gives each test a folder of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/child_process.h"
+
+namespace mercury::test {
+
+struct Outcome {
+  int status = -1;       // exit status; 128 + n when killed by signal n
+  std::string output;    // standard output
+  std::string messages;  // standard error
+};
+
+inline Outcome outcome_of(ChildProcess& child) {
+  const int status = child.finish();
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), child.output(), child.messages()};
+}
+
+inline Outcome run_program(const std::string& program, const std::vector<std::string>& arguments) {
+  ChildProcess child(program, arguments);
+  return outcome_of(child);
+}
+
+inline Outcome mercury(const std::vector<std::string>& arguments) { return run_program(MERCURY_PROGRAM, arguments); }
+
+// A folder that is there for one test, removed after it.
+class FolderTest : public testing::Test {
+ protected:
+  FolderTest() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(info->test_suite_name()) + "." + info->name();
+    for (char& letter : name)
+      if (letter == '/') letter = '-';
+    folder_ = std::filesystem::temp_directory_path() / ("mercury-" + name + "-" + std::to_string(getpid()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~FolderTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void write(const std::string& name, const std::string& text, bool executable = false) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    if (executable)
+      std::filesystem::permissions(path(name), std::filesystem::perms::owner_exec, std::filesystem::perm_options::add);
+  }
+
+  std::string read(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  // Names of what is in the folder, sorted.
+  std::vector<std::string> listing(const std::string& below = "") const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / below))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  std::filesystem::path folder_;
+};
+
+// The first stream of a video as ffprobe tells it, its frames counted by decoding them ("nb_read_frames").
+inline nlohmann::json probe(const std::string& path) {
+  const std::string text = output_of("ffprobe", {"-v", "error", "-count_frames", "-show_streams", "-of", "json", path});
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (json.is_discarded() || json.value("streams", nlohmann::json::array()).empty()) return nlohmann::json::object();
+  return json["streams"][0];
+}
+
+}  // namespace mercury::test

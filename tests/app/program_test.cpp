@@ -1,0 +1,188 @@
+// What the program says to input that it cannot use: one line, and exit status 2.
+#include <gmock/gmock.h>
+
+#include "program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct BadInput {
+  std::string name;
+  std::vector<std::string> arguments;
+  std::string message;  // after "mercury: "
+};
+
+class BadInputTest : public testing::TestWithParam<BadInput> {};
+
+TEST_P(BadInputTest, IsToldInOneLineWithStatus2) {
+  const Outcome outcome = mercury(GetParam().arguments);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_EQ(outcome.messages, "mercury: " + GetParam().message + "\n");
+}
+
+const std::vector<std::string> one{"run", "--random", "voxel:1", "--seconds", "0.01"};
+
+std::vector<std::string> with(std::vector<std::string> more) {
+  std::vector<std::string> all = one;
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, BadInputTest,
+    testing::Values(
+        BadInput{"NoCommand", {}, "no command given; see mercury --help"},
+        BadInput{"UnknownCommand", {"rendr"}, "\"rendr\" is not a command; did you mean render?; see mercury --help"},
+        BadInput{"NewWithoutKind", {"new"}, "no command given; see mercury new --help"},
+        BadInput{"UnknownOption", with({"--secnds", "2"}),
+                 "--secnds: not an option of mercury run; did you mean --seconds?; see mercury run --help"},
+        BadInput{"NoValue", with({"--dt"}), "--dt: needs a value; see mercury run --help"},
+        BadInput{"NoRobots", {"run"}, "no robots given; name files or folders, or use --random voxel:12"},
+        BadInput{"UnknownKind", {"run", "--random", "fish:2"}, "--random: \"fish\" is not a kind of robot; give voxel:N"},
+        BadInput{"NoCount", {"run", "--random", "voxel:0"},
+                 "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
+        BadInput{"NoFile", {"run", "nothing.json"}, "nothing.json: No such file or directory"}),
+    [](const auto& tested) { return tested.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Parameters, BadInputTest,
+    testing::Values(
+        BadInput{"ZeroStep", with({"--dt", "0"}), "--dt: 0 is not accepted; give a finite number > 0 s"},
+        BadInput{"StepNotANumber", with({"--dt", "nan"}), "--dt: nan is not accepted; give a finite number > 0 s"},
+        BadInput{"StepIsText", with({"--dt", "fast"}), "--dt: \"fast\" is not accepted; give a number"},
+        BadInput{"HalfANumber", with({"--dt", "1e-3s"}), "--dt: \"1e-3s\" is not accepted; give a number"},
+        BadInput{"NegativeTime", with({"--seconds", "-1"}), "--seconds: -1 is not accepted; give a finite number >= 0 s"},
+        BadInput{"EndlessTime", with({"--seconds", "inf"}), "--seconds: inf is not accepted; give a finite number >= 0 s"},
+        BadInput{"NegativeDensity", with({"--density", "-1"}),
+                 "--density: -1 is not accepted; give a finite number >= 0 kg/m3"},
+        BadInput{"DensityBeyondFloat", with({"--density", "1e99"}), "--density: \"1e99\" is out of range; give a number"},
+        BadInput{"FlowOfTwo", with({"--flow", "1,2"}), "--flow: \"1,2\" is not accepted; give three numbers, as in 0.1,0,-2"},
+        BadInput{"DensityOnLand", with({"--environment", "land", "--density", "3"}),
+                 "--density: land has no such parameter; it applies to ocean"},
+        BadInput{"FlowOnLand", with({"--environment", "land", "--flow", "1,0,0"}),
+                 "--flow: land has no such parameter; it applies to ocean and ocean-simple"},
+        BadInput{"SelfCollisionInWater", with({"--no-self-collision"}),
+                 "--no-self-collision: ocean has no such parameter; it applies to land"},
+        BadInput{"UnknownEnvironment", with({"--environment", "moon"}),
+                 "--environment: \"moon\" is not an environment; give ocean, ocean-simple or land"},
+        BadInput{"UnknownSolver", with({"--solver", "euler"}), "--solver: \"euler\" is not a solver; give force or xpbd"},
+        BadInput{"UnknownDevice", with({"--device", "tpu"}), "--device: \"tpu\" is not a device; give auto, cpu, cuda or cuda:N"},
+        BadInput{"NegativeThreads", with({"--threads", "-1"}), "--threads: -1 is not accepted; give 0 or more"},
+        BadInput{"NegativeSeed", with({"--seed", "-1"}), "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
+        BadInput{"AllAir", with({"--air", "1"}), "--air: give a share of at least 0 and below 1"},
+        BadInput{"FlatVoxels", with({"--voxels", "3x3x0"}),
+                 "--voxels: \"3x3x0\" is not accepted; give XxYxZ, or a range as in 4x3x3..7x5x4, in whole numbers above 0"}),
+    [](const auto& tested) { return tested.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Pictures, BadInputTest,
+    testing::Values(
+        BadInput{"UnknownExtension", {"render", "--random", "voxel", "-o", "a.avi"},
+                 "-o: a.avi: \".avi\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures"},
+        BadInput{"SizeIsText", {"render", "--random", "voxel", "-o", "a.mp4", "--size", "big"},
+                 "--size: \"big\" is not accepted; give WIDTHxHEIGHT, 720p, 1080p or 4k in whole numbers above 0"},
+        BadInput{"HugeSize", {"render", "--random", "voxel", "-o", "a.mp4", "--size", "100000x4"},
+                 "--size: 100000x4 is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384"},
+        BadInput{"NoFrames", {"render", "--random", "voxel", "-o", "a.mp4", "--fps", "0"},
+                 "--fps: 0 is not accepted; give a finite number > 0 frames/s"},
+        BadInput{"FastGif", {"render", "--random", "voxel", "-o", "a.gif", "--fps", "60"},
+                 "--fps: a GIF shows at most 50 frames/s; give 50 or less, or another format"},
+        BadInput{"NoSpeed", {"render", "--random", "voxel", "-o", "a.mp4", "--speed", "-2"},
+                 "--speed: -2 is not accepted; give a finite number > 0"},
+        BadInput{"UnknownGl", {"render", "--random", "voxel", "-o", "a.mp4", "--gl", "vulkan"},
+                 "--gl: \"vulkan\" is not accepted; give auto, egl, mesa, osmesa"}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(Program, TellsItsVersion) {
+  const Outcome outcome = mercury({"--version"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, StartsWith("mercury "));
+}
+
+TEST(Program, HelpNamesEveryCommandAndGoesToStandardOutput) {
+  const Outcome outcome = mercury({"--help"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.messages, "");
+  for (const char* command : {"render", "run", "new", "info"}) EXPECT_THAT(outcome.output, HasSubstr(command));
+}
+
+TEST(Program, CommandsHaveHelpOfTheirOwn) {
+  EXPECT_THAT(mercury({"render", "--help"}).output, HasSubstr("--fps"));
+  EXPECT_THAT(mercury({"new", "voxel", "--help"}).output, HasSubstr("--symmetry"));
+}
+
+TEST(Program, OutputThatCannotBeWrittenIsAnError) {
+  const Outcome outcome =
+      run_program("sh", {"-c", std::string(MERCURY_PROGRAM) + " run --random voxel --seconds 0.01 >/dev/full"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages, "mercury: standard output cannot be written\n");
+}
+
+class ConfigFileTest : public FolderTest {
+ protected:
+  Outcome run_with(const std::string& toml, std::vector<std::string> more = {}) {
+    write("a.toml", toml);
+    std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01", "--json", "--config", path("a.toml")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return mercury(arguments);
+  }
+  nlohmann::json configuration_with(const std::string& toml, std::vector<std::string> more = {}) {
+    return nlohmann::json::parse(run_with(toml, more).output, nullptr, false)["configuration"];
+  }
+};
+
+TEST_F(ConfigFileTest, SetsOptions) {
+  const auto configuration =
+      configuration_with("dt = 0.002\nsolver = \"xpbd\"\nflow = [0.5, 0, -1]\n[run]\ndensity = 900\n[render]\nfps = 3\n");
+  EXPECT_EQ(configuration["dt"], 0.002);
+  EXPECT_EQ(configuration["solver"], "xpbd");
+  EXPECT_EQ(configuration["flow"], nlohmann::json({0.5, 0.0, -1.0}));
+  EXPECT_EQ(configuration["density"], 900.0);
+}
+
+TEST_F(ConfigFileTest, CommandLineCountsMoreThanTheFileAndItsTableMoreThanItsTop) {
+  const std::string toml = "dt = 0.002\ndamping = 1\n[run]\ndamping = 2\n";
+  const auto configuration = configuration_with(toml, {"--dt", "0.004"});
+  EXPECT_EQ(configuration["dt"], 0.004);
+  EXPECT_EQ(configuration["damping"], 2.0);
+}
+
+TEST_F(ConfigFileTest, SwitchesAreTrueOrFalse) {
+  EXPECT_EQ(configuration_with("environment = \"land\"\nno-self-collision = true\n")["self_collision"], false);
+  EXPECT_EQ(configuration_with("environment = \"land\"\nno-self-collision = false\n")["self_collision"], true);
+}
+
+TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
+  const std::string file = path("a.toml");
+  const auto expect_error = [&](const std::string& toml, const std::string& message) {
+    const Outcome outcome = run_with(toml);
+    EXPECT_EQ(outcome.status, 2) << toml;
+    EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
+  };
+  expect_error("dt = 0.002\ndensity = -5\n", ":2: --density: -5 is not accepted; give a finite number >= 0 kg/m3");
+  expect_error("\n\nsolver = \"euler\"\n", ":3: --solver: \"euler\" is not a solver; give force or xpbd");
+  expect_error("speeed = 3\n", ":1: \"speeed\" is not an option; mercury run --help lists them");
+  expect_error("[walk]\nspeed = 3\n", ":1: [walk] is not a command");
+  expect_error("strict = 3\n", ":1: --strict is a switch; give true or false");
+  expect_error("dt = true\n", ":1: --dt is not a switch; give a value");
+  expect_error("environment = \"land\"\ndensity = 3\n", ":2: --density: land has no such parameter; it applies to ocean");
+}
+
+TEST_F(ConfigFileTest, WhatIsNoTomlIsToldWithItsLine) {
+  const Outcome outcome = run_with("dt = 0.001\nthis is no toml\n");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path("a.toml") + ":2: "));
+}
+
+TEST_F(ConfigFileTest, FileMustExist) {
+  const Outcome outcome = mercury({"run", "--random", "voxel", "--config", path("none.toml")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.messages, "mercury: --config: " + path("none.toml") + " cannot be read\n");
+}
+
+}  // namespace
+}  // namespace mercury::test

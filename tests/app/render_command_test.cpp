@@ -1,0 +1,143 @@
+// mercury render: short real videos, from the command line to the file.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include "program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::HasSubstr;
+
+class RenderCommand : public FolderTest {
+ protected:
+  std::vector<std::string> command(const std::string& output, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"render", "--random", "voxel:2", "--size", "160x90", "-o", path(output)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+};
+
+TEST_F(RenderCommand, VideoHasTheFramesThatWereAskedFor) {
+  const Outcome outcome = mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const auto stream = probe(path("a.mp4"));
+  EXPECT_EQ(stream["width"], 160);
+  EXPECT_EQ(stream["height"], 90);
+  EXPECT_EQ(stream["nb_read_frames"], "10");
+  EXPECT_EQ(stream["r_frame_rate"], "20/1");
+  EXPECT_EQ(outcome.output, "");
+  // Which device, which GL, which encoder.
+  EXPECT_THAT(outcome.messages, HasSubstr("simulating 2 robots on "));
+  EXPECT_THAT(outcome.messages, HasSubstr("drawing with "));
+  EXPECT_THAT(outcome.messages, HasSubstr("encoding H.264 by ffmpeg"));
+  EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
+}
+
+TEST_F(RenderCommand, SpeedShortensTheVideo) {
+  ASSERT_EQ(mercury(command("a.mp4", {"--fps", "20", "--seconds", "1", "--speed", "4"})).status, 0);
+  EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "5");
+}
+
+TEST_F(RenderCommand, QuietSaysNothing) {
+  const Outcome outcome = mercury(command("a.gif", {"--fps", "20", "--seconds", "0.1", "--quiet"}));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.messages, "");
+  EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "2");
+}
+
+TEST_F(RenderCommand, OddSizesAreRoundedUpAndTold) {
+  const Outcome outcome = mercury(command("a.webm", {"--seconds", "0.1", "--size", "161x91"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("needs even sides: drawn at 162x92"));
+  EXPECT_EQ(probe(path("a.webm"))["width"], 162);
+}
+
+TEST_F(RenderCommand, FramesOfAFolderShowMovingRobots) {
+  ASSERT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "2"})).status, 0);
+  ASSERT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
+  EXPECT_NE(read("frames/frame-00000.png"), read("frames/frame-00001.png"));
+}
+
+TEST_F(RenderCommand, SameCommandGivesTheSamePictures) {
+  ASSERT_EQ(mercury(command("a", {"--fps", "2", "--seconds", "1", "--environment", "land"})).status, 0);
+  ASSERT_EQ(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})).status, 0);
+  for (const std::string& frame : listing("a")) EXPECT_EQ(read("a/" + frame), read("b/" + frame)) << frame;
+}
+
+TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {
+  write("dying", "#!/bin/sh\necho 'out of ink' >&2\nexit 4\n", true);
+  const Outcome outcome = mercury(command("a.mp4", {"--quiet", "--seconds", "1", "--ffmpeg", path("dying")}));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages, "mercury: " + path("a.mp4") + ": the encoder " + path("dying") +
+                                  " ended with status 4: out of ink\n");
+  EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
+}
+
+TEST_F(RenderCommand, MissingEncoderIsToldBeforeAnythingIsDrawn) {
+  const Outcome outcome = run_program(
+      "sh", {"-c", "PATH=/nowhere exec \"$0\" render --random voxel -o \"$1\"", MERCURY_PROGRAM, path("a.mp4")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages,
+            "mercury: ffmpeg was not found: install the package ffmpeg (apt install ffmpeg), name the program with "
+            "--ffmpeg, or write PNG pictures into a folder (-o FOLDER)\n");
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+TEST_F(RenderCommand, FileThatGrowsBeyondTheLimitIsTold) {
+  const Outcome outcome = run_program(
+      "sh", {"-c", "ulimit -f 1; exec \"$0\" render --random voxel:2 --size 320x180 --seconds 1 --quiet -o \"$1\"",
+             MERCURY_PROGRAM, path("a.mp4")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages,
+            "mercury: " + path("a.mp4") + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept\n");
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+// An endless film, stopped once the encoder has begun to write.
+class InterruptedFilm : public RenderCommand {
+ protected:
+  std::unique_ptr<ChildProcess> begin() {
+    auto child = std::make_unique<ChildProcess>(MERCURY_PROGRAM, command("a.mp4", {"--seconds", "100000"}));
+    while (!writing()) std::this_thread::yield();
+    return child;
+  }
+
+  bool writing() const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      std::error_code gone;
+      if (entry.file_size(gone) > 0 && !gone) return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(InterruptedFilm, LeavesAVideoThatPlays) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const auto child = begin();
+    child->signal(signal);
+    const Outcome outcome = outcome_of(*child);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.messages, HasSubstr("stopped early"));
+    EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
+    EXPECT_GE(std::stoi(probe(path("a.mp4")).value("nb_read_frames", "0")), 1);
+    std::filesystem::remove(path("a.mp4"));
+  }
+}
+
+TEST_F(InterruptedFilm, SecondInterruptEndsAtOnceAndLeavesNothing) {
+  // An encoder that never ends keeps the program waiting.
+  write("stuck", "#!/bin/sh\nexec sleep 20\n", true);
+  ChildProcess child(MERCURY_PROGRAM, command("b.mp4", {"--seconds", "100000", "--ffmpeg", path("stuck")}));
+  while (child.messages().find("encoding") == std::string::npos) std::this_thread::yield();
+  child.signal(SIGINT);
+  while (listing().size() > 1) {  // until the second signal has come after the first
+    child.signal(SIGINT);
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(outcome_of(child).status, 128 + SIGINT);
+  EXPECT_EQ(listing(), std::vector<std::string>{"stuck"});
+}
+
+}  // namespace
+}  // namespace mercury::test

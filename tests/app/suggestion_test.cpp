@@ -1,0 +1,22 @@
+#include "app/suggestion.h"
+
+#include <gtest/gtest.h>
+
+namespace mercury::test {
+namespace {
+
+const std::vector<std::string> names{"--seconds", "--seed", "--solver", "--damping", "--density"};
+
+TEST(Suggestion, NamesTheNearest) {
+  EXPECT_EQ(suggestion("--secnds", names), "; did you mean --seconds?");
+  EXPECT_EQ(suggestion("--sede", names), "; did you mean --seed?");
+  EXPECT_EQ(suggestion("--dam", names), "; did you mean --damping?");
+}
+
+TEST(Suggestion, IsSilentWhenNothingIsNear) {
+  EXPECT_EQ(suggestion("--frobnicate", names), "");
+  EXPECT_EQ(suggestion("x", {}), "");
+}
+
+}  // namespace
+}  // namespace mercury::test
