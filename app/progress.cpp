@@ -87,7 +87,9 @@ Progress::~Progress() {
 void Progress::update(std::int64_t done) {
   if (quiet_) return;
   const Clock::time_point now = Clock::now();
-  if (terminal_ ? now - last_ < bar_period : now - last_ < line_period) return;
+  // Lines stay, so they come at growing intervals.
+  const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);
+  if (now - last_ < period) return;
   last_ = now;
   shown_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
