@@ -1,5 +1,6 @@
 #include "app/group_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <variant>
@@ -25,6 +26,18 @@ Vec3 flow_of(const Environment& environment) {
           return Vec3{};
       },
       environment);
+}
+
+// Height of the sand under a group that swims: half the group's height below it, and twice its tallest robot.
+float sand_below(std::span<const render::Bounds> robots) {
+  render::Bounds group;
+  float tallest = 0;
+  for (const render::Bounds& robot : robots) {
+    if (robot.empty()) continue;
+    group.extend(robot);
+    tallest = std::max(tallest, robot.high.z() - robot.low.z());
+  }
+  return group.empty() ? 0 : group.low.z() - 0.5f * (group.high.z() - group.low.z()) - 2 * tallest;
 }
 
 Eigen::Vector3f mean_position(const Robot& robot) {
@@ -61,6 +74,7 @@ GroupScene::GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f
   scene_.surroundings = surroundings_of(environment);
   scene_.flow = eigen(flow_of(environment));
   update(simulation.time(), simulation.telemetry());
+  scene_.floor = scene_.surroundings == render::Surroundings::land ? 0 : sand_below(bounds_);
 }
 
 void GroupScene::set_bodies(render::Renderer& renderer) const {
@@ -85,7 +99,6 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry) {
   scene_.placements = placements_;
   scene_.looks = looks_;
   scene_.time = time;
-  if (scene_.surroundings == render::Surroundings::land) scene_.floor = 0;
 }
 
 }  // namespace mercury

@@ -15,6 +15,8 @@ struct BadInput {
   std::string message;  // after "mercury: "
 };
 
+void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
+
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadInputTest, IsToldInOneLineWithStatus2) {
