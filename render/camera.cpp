@@ -29,6 +29,27 @@ Axes axes_of(const Camera& camera) {
   return {right, back.cross(right), back};
 }
 
+// A part of the picture along one axis, as tangents from the line of sight.
+struct Slot {
+  float low, high;
+};
+
+struct Interval {
+  float low = -1e30f, high = 1e30f;
+  bool empty() const { return low > high; }
+  float middle() const { return 0.5f * (low + high); }
+};
+
+// How far the target may be shifted along an axis so that all points, seen from a distance, lie within the slot.
+Interval shifts(std::span<const Vector3f> points, int axis, Slot slot, float distance) {
+  Interval interval;
+  for (const Vector3f& p : points) {
+    interval.low = std::max(interval.low, p[axis] - slot.high * (distance - p.z()));
+    interval.high = std::min(interval.high, p[axis] - slot.low * (distance - p.z()));
+  }
+  return interval;
+}
+
 std::vector<Vector3f> corners_of(std::span<const Bounds> boxes) {
   std::vector<Vector3f> corners;
   for (const Bounds& box : boxes)
@@ -135,27 +156,24 @@ void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, con
   distance = 1;
   const Axes axes = axes_of(camera());
   const float half = std::tan(0.5f * field_of_view);
-  // Tangents from the axis to the edges of the part of the picture that may be filled.
-  const float to_right = half * aspect * (1 - 2 * free.right), to_left = half * aspect * (1 - 2 * free.left);
-  const float to_top = half * (1 - 2 * free.top), to_bottom = half * (1 - 2 * free.bottom);
-  // A corner at (x, y, z) from the target, in the picture's axes, is inside if x <= (d - z) to_right and so on.
-  // Moving the target sideways balances what is left over on both sides.
-  Vector3f shift = Vector3f::Zero();
-  for (int pass = 0; pass < 8; ++pass) {
-    float right = -1e30f, left = -1e30f, above = -1e30f, below = -1e30f;
-    for (const Vector3f& corner : corners) {
-      const Vector3f p = corner - target - shift;
-      const float x = p.dot(axes.right), y = p.dot(axes.up), z = p.dot(axes.back);
-      right = std::max(right, x / to_right + z);
-      left = std::max(left, -x / to_left + z);
-      above = std::max(above, y / to_top + z);
-      below = std::max(below, -y / to_bottom + z);
-    }
-    distance = std::max(1e-3f, std::max({right, left, above, below}) * margin);
-    shift += (right - left) / (1 / to_right + 1 / to_left) * axes.right +
-             (above - below) / (1 / to_top + 1 / to_bottom) * axes.up;
+  std::vector<Vector3f> seen;  // corners along the picture's axes, from the target
+  float nearest = -1e30f;
+  for (const Vector3f& corner : corners) {
+    const Vector3f p = corner - target;
+    seen.push_back({p.dot(axes.right), p.dot(axes.up), p.dot(axes.back)});
+    nearest = std::max(nearest, seen.back().z());
   }
-  target += shift;
+  // The nearest distance at which there is a sideways shift that both axes allow.
+  const Slot across{half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)};
+  const Slot upward{half * (2 * free.bottom - 1), half * (1 - 2 * free.top)};
+  float low = nearest, high = nearest + 1e6f;
+  for (int i = 0; i < 60; ++i) {
+    const float middle = i < 30 ? nearest + std::sqrt(std::max(low - nearest, 1e-5f) * (high - nearest)) : 0.5f * (low + high);
+    const bool fits = !shifts(seen, 0, across, middle).empty() && !shifts(seen, 1, upward, middle).empty();
+    (fits ? high : low) = middle;
+  }
+  distance = std::max(1e-3f, high * margin);
+  target += shifts(seen, 0, across, distance).middle() * axes.right + shifts(seen, 1, upward, distance).middle() * axes.up;
 }
 
 Orbit top_view(const Bounds& bounds, float aspect) {

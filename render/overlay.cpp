@@ -170,7 +170,7 @@ void Overlay::legend(const Legend& legend) {
   }
   for (const auto& [color, name] : legend.swatches) widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
   widest = std::max(widest, text_width(title, size));
-  const float bar = legend.scale ? std::clamp(0.36f * height_, 6 * size, 16 * size) : 0;
+  const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
   const float rows = 1.25f * size * float(legend.swatches.size());
   const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + rows;
   const Rectangle panel{width_ - widest - 3 * pad, 0.5f * (height_ - down) - pad, widest + 2 * pad, down + 1.6f * pad};
@@ -180,7 +180,7 @@ void Overlay::legend(const Legend& legend) {
   text(title, left, y, size);
   y += 1.5f * size;
   if (legend.scale) {
-    const Rectangle place{left, y + 0.3f * size, 1.1f * size, bar};
+    const Rectangle place{std::round(left), std::round(y + 0.3f * size), std::round(1.1f * size), bar};
     scale_bar(place, legend.scale->map);
     const float range = legend.scale->high - legend.scale->low;
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,0 +1,117 @@
+#include "render/colormap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace mercury::render {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+// CIE lightness from linear sRGB's luminance.
+float lightness(Color color) {
+  const auto c = linear_of(color);
+  const float y = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+  return y > 0.008856f ? 116 * std::cbrt(y) - 16 : 903.3f * y;
+}
+
+std::array<float, 3> lab(std::array<float, 3> c) {
+  const auto f = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116; };
+  const float x = f((0.4124f * c[0] + 0.3576f * c[1] + 0.1805f * c[2]) / 0.9505f);
+  const float y = f(0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2]);
+  const float z = f((0.0193f * c[0] + 0.1192f * c[1] + 0.9505f * c[2]) / 1.089f);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+// What eyes without the medium-wave cones see (Machado, Oliveira and Fernandes 2009, severity 1).
+std::array<float, 3> deuteranope(Color color) {
+  const auto c = linear_of(color);
+  return {std::max(0.0f, 0.367322f * c[0] + 0.860646f * c[1] - 0.227968f * c[2]),
+          std::max(0.0f, 0.280085f * c[0] + 0.672501f * c[1] + 0.047413f * c[2]),
+          std::max(0.0f, -0.011820f * c[0] + 0.042940f * c[1] + 0.968881f * c[2])};
+}
+
+float distance(std::array<float, 3> a, std::array<float, 3> b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+TEST(Color, EveryCodeSurvivesLinearLight) {
+  for (int i = 0; i < 256; ++i) {
+    const Color grey{std::uint8_t(i), std::uint8_t(i), std::uint8_t(i), 255};
+    EXPECT_EQ(color_of_linear(linear_of(grey)), grey);
+  }
+  EXPECT_NEAR(linear_of(rgb(0xbcbcbc))[0], 0.5f, 0.005f);  // sRGB's middle grey of light
+}
+
+TEST(Colormap, ViridisIsThePublishedOne) {
+  EXPECT_EQ(color_at(Colormap::viridis, 0), rgb(0x440154));
+  EXPECT_EQ(color_at(Colormap::viridis, 1), rgb(0xfde725));
+  const Color middle = color_at(Colormap::viridis, 0.5f);  // (33, 145, 140) there
+  EXPECT_NEAR(middle.r, 33, 4);
+  EXPECT_NEAR(middle.g, 145, 4);
+  EXPECT_NEAR(middle.b, 140, 4);
+}
+
+TEST(Colormap, AmountsGetLighterAllTheWay) {
+  for (const Colormap map : {Colormap::viridis, Colormap::magma})
+    for (int i = 1; i <= 64; ++i)
+      EXPECT_GT(lightness(color_at(map, float(i) / 64)), lightness(color_at(map, float(i - 1) / 64)) - 0.1f);
+}
+
+TEST(Colormap, DivergingIsGreyInTheMiddleAndEquallyDarkAtBothEnds) {
+  const auto middle = lab(linear_of(color_at(Colormap::diverging, 0.5f)));
+  EXPECT_LT(std::hypot(middle[1], middle[2]), 4);
+  EXPECT_NEAR(lightness(color_at(Colormap::diverging, 0)), lightness(color_at(Colormap::diverging, 1)), 4);
+}
+
+TEST(Colormap, ClampsAndToleratesOddScales) {
+  EXPECT_EQ(color_at(Colormap::turbo, 7.0f, 0, 1), color_at(Colormap::turbo, 1));
+  EXPECT_EQ(color_at(Colormap::turbo, -7.0f, 0, 1), color_at(Colormap::turbo, 0));
+  EXPECT_EQ(color_at(Colormap::turbo, 3.0f, 3, 3), color_at(Colormap::turbo, 0.5f));
+  EXPECT_EQ(color_at(Colormap::turbo, 1.0f, 3, 1), color_at(Colormap::turbo, 1));  // high below low runs backwards
+  EXPECT_EQ(color_at(Colormap::turbo, std::nanf("")), rgb(0x808080));
+}
+
+TEST(Colormap, NamesGoBothWays) {
+  for (int i = 0; i < colormap_count; ++i) EXPECT_EQ(colormap_named(name_of(Colormap(i))), Colormap(i));
+  EXPECT_THROW(colormap_named("jet"), std::invalid_argument);
+}
+
+TEST(MuscleColor, PhasesAreToldApartWithAndWithoutGreenCones) {
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < a; ++b) {
+      const Color first = muscle_color(float(a) * pi / 2, 0.5f), second = muscle_color(float(b) * pi / 2, 0.5f);
+      EXPECT_GT(distance(lab(linear_of(first)), lab(linear_of(second))), 30);
+      EXPECT_GT(distance(lab(deuteranope(first)), lab(deuteranope(second))), 14);
+    }
+}
+
+TEST(MuscleColor, FasterIsDarker) {
+  for (int phase = 0; phase < 4; ++phase)
+    EXPECT_GT(lightness(muscle_color(float(phase) * pi / 2, 0)), lightness(muscle_color(float(phase) * pi / 2, 1)) + 8);
+}
+
+TEST(MuscleColor, TurnsWithThePhase) {
+  EXPECT_EQ(muscle_color(0.3f, 0.5f), muscle_color(0.3f + 2 * pi, 0.5f));
+  EXPECT_EQ(muscle_color(-pi / 2, 0.5f), muscle_color(3 * pi / 2, 0.5f));
+}
+
+TEST(Oklch, KeepsToColorsThatCanBeShown) {
+  const Color strong = oklch(0.6f, 0.5f, 2.5f);  // no screen shows this chroma
+  EXPECT_NEAR(lightness(strong), lightness(oklch(0.6f, 0.05f, 2.5f)), 6);
+}
+
+TEST(Ticks, AreRoundAndInside) {
+  EXPECT_EQ(ticks(0, 1, 6), (std::vector<float>{0, 0.2f, 0.4f, 0.6f, 0.8f, 1}));
+  EXPECT_EQ(ticks(-0.13f, 0.11f, 3), (std::vector<float>{-0.1f, 0, 0.1f}));
+  EXPECT_EQ(ticks(5, 5), std::vector<float>{5});
+  for (const float tick : ticks(13, 97)) {
+    EXPECT_GE(tick, 13);
+    EXPECT_LE(tick, 97);
+  }
+}
+
+}  // namespace
+}  // namespace mercury::render

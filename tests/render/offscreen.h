@@ -1,0 +1,68 @@
+// What tests that draw have in common: a context, shared because making one takes long, and ways to look at pictures.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/context.h"
+#include "render/readback.h"
+#include "render/renderer.h"
+
+namespace mercury::render {
+
+// Null where no context can be had; `why` then says why.
+inline Context* shared_context(std::string* why = nullptr) {
+  static std::string reason;
+  static const std::unique_ptr<Context> context = [] {
+    try {
+      return make_context();
+    } catch (const ContextError& error) {
+      reason = error.what();
+      return std::unique_ptr<Context>();
+    }
+  }();
+  if (why) *why = reason;
+  return context.get();
+}
+
+// Skips its tests without a context, and fails them on any message of the driver.
+class Offscreen : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string why;
+    context_ = shared_context(&why);
+    if (!context_) GTEST_SKIP() << "no OpenGL here: " << why;
+    context_->make_current();
+    context_->take_messages();
+  }
+  void TearDown() override {
+    if (!context_) return;
+    for (const std::string& message : context_->take_messages()) ADD_FAILURE() << "OpenGL says: " << message;
+  }
+  Renderer make_renderer(int width = 160, int height = 120) {
+    return Renderer(*context_, {.width = width, .height = height, .quality = Quality::low});
+  }
+  Context* context_ = nullptr;
+};
+
+inline Eigen::Vector3i pixel(const Image& image, int x, int y) {
+  const std::size_t at = 3 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x));
+  return {image.bytes[at], image.bytes[at + 1], image.bytes[at + 2]};
+}
+
+inline int largest_difference(const Eigen::Vector3i& a, const Eigen::Vector3i& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+// Pixels that differ by more than `tolerance` steps in some channel.
+inline int count_differing(const Image& a, const Image& b, int tolerance) {
+  int count = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) count += largest_difference(pixel(a, x, y), pixel(b, x, y)) > tolerance;
+  return count;
+}
+
+}  // namespace mercury::render

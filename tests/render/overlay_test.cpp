@@ -1,0 +1,116 @@
+#include "render/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include "render/font.h"
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Vector3f;
+
+Overlay make_overlay() { return Overlay(640, 360, 16, style_of(Surroundings::water, Theme::dark)); }
+
+std::vector<Rectangle> boxes_of(const Overlay& overlay) {
+  std::vector<Rectangle> boxes;
+  for (const OverlayQuad& quad : overlay.quads())
+    if (quad.kind == OverlayQuad::box) boxes.push_back(quad.place);
+  return boxes;
+}
+
+Bounds box_at(float x, float y) { return {Vector3f(x - 0.1f, y - 0.1f, -0.1f), Vector3f(x + 0.1f, y + 0.1f, 0.1f)}; }
+
+TEST(Font, ReadsUtf8AndMarksBrokenBytes) {
+  EXPECT_EQ(characters_of("a\u00e9\u03c0\U0001f916"), (std::vector<int>{'a', 0xe9, 0x3c0, 0x1f916}));
+  EXPECT_EQ(characters_of("\xc3"), std::vector<int>{0xfffd});
+  EXPECT_EQ(characters_of("\xff" "b"), (std::vector<int>{0xfffd, 'b'}));
+}
+
+TEST(Font, HasGlyphsForUnitsAndTheReplacementForOthers) {
+  for (const int code : {int('0'), int('Z'), 0x2212, 0x3c0, 0xb7, 0xd7}) EXPECT_EQ(glyph_of(code).code, code);
+  EXPECT_EQ(glyph_of(0x1f916).code, 0xfffd);
+}
+
+TEST(Font, WidthGrowsWithTextAndSize) {
+  EXPECT_FLOAT_EQ(text_width("abab", 16), 2 * text_width("ab", 16));
+  EXPECT_FLOAT_EQ(text_width("ab", 32), 2 * text_width("ab", 16));
+}
+
+TEST(TickText, TellsNeighboursApartAndNoMore) {
+  EXPECT_EQ(tick_text(0.2f, 0.2f), "0.2");
+  EXPECT_EQ(tick_text(0.25f, 0.25f), "0.25");
+  EXPECT_EQ(tick_text(20, 5), "20");
+  EXPECT_EQ(tick_text(-0.4f, 0.2f), "\u22120.4");
+  EXPECT_EQ(tick_text(1e-9f, 0.1f), "0.0");
+  EXPECT_EQ(tick_text(2e-5f, 1e-5f), "2e-05");
+}
+
+TEST(RoundLength, IsOneTwoOrFive) {
+  EXPECT_FLOAT_EQ(round_length(0.99f), 0.5f);
+  EXPECT_FLOAT_EQ(round_length(1), 1);
+  EXPECT_FLOAT_EQ(round_length(48), 20);
+  EXPECT_FLOAT_EQ(round_length(0.0071f), 0.005f);
+}
+
+TEST(Overlay, LabelStandsAboveItsBody) {
+  Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
+  Overlay overlay = make_overlay();
+  const std::vector<Bounds> bodies{box_at(0, 0)};
+  const std::vector<Label> labels{{0, "eel"}};
+  overlay.labels(labels, bodies, orbit.camera());
+  const std::vector<Rectangle> boxes = boxes_of(overlay);
+  ASSERT_EQ(boxes.size(), 1u);
+  const Vector3f middle = orbit.camera().project({0, 0, 0}, 640, 360);
+  EXPECT_NEAR(boxes[0].x + boxes[0].width / 2, middle.x(), 1);
+  EXPECT_LT(boxes[0].y + boxes[0].height, middle.y());
+}
+
+TEST(Overlay, OfTwoLabelsAtOnePlaceTheNearerStays) {
+  const Orbit orbit{.azimuth = -1.57f, .elevation = 0.02f, .distance = 5};
+  Overlay overlay = make_overlay();
+  const std::vector<Bounds> bodies{box_at(0, 0.5f), box_at(0, 0)};
+  const std::vector<Label> labels{{0, "behind"}, {1, "before"}};
+  overlay.labels(labels, bodies, orbit.camera());
+  EXPECT_EQ(boxes_of(overlay).size(), 1u);
+  EXPECT_EQ(overlay.quads().size(), 1 + std::string("before").size());
+}
+
+TEST(Overlay, NoLabelForWhatIsBehindTheCameraOrHidden) {
+  const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
+  Overlay overlay = make_overlay();
+  const std::vector<Bounds> bodies{box_at(0, -20), Bounds{}};
+  const std::vector<Label> labels{{0, "behind"}, {1, "hidden"}, {7, "nobody"}};
+  overlay.labels(labels, bodies, orbit.camera());
+  EXPECT_TRUE(overlay.quads().empty());
+}
+
+TEST(Overlay, EverythingStaysInsideThePicture) {
+  Overlay overlay = make_overlay();
+  overlay.legend({"strain", "1", Scale{-0.2f, 0.2f, Colormap::diverging}, {{rgb(0xff0000), "muscle 1"}}});
+  overlay.clock("12.3 s");
+  overlay.caption("Mercury\n12 robots");
+  overlay.length(Orbit{}.camera());
+  for (const OverlayQuad& quad : overlay.quads()) {
+    if (quad.kind == OverlayQuad::glyph) continue;  // their margins may reach over the edge
+    EXPECT_GE(quad.place.x, 0);
+    EXPECT_GE(quad.place.y, 0);
+    EXPECT_LE(quad.place.x + quad.place.width, 640);
+    EXPECT_LE(quad.place.y + quad.place.height, 360);
+  }
+}
+
+TEST(Overlay, ScaleBarIsAsLongAsItSays) {
+  Orbit orbit{.target = {0, 0, 0}, .azimuth = -1.5707963f, .elevation = 0, .distance = 8};
+  Overlay overlay = make_overlay();
+  overlay.length(orbit.camera());
+  // The longest box without round corners is the bar; it stands for a round length at the target's distance.
+  float across = 0;
+  for (const OverlayQuad& quad : overlay.quads())
+    if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.place.width);
+  const float pixels_a_metre = orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
+  const float metres = across / pixels_a_metre;
+  EXPECT_NEAR(metres, round_length(metres * 1.001f), 1e-3f);
+}
+
+}  // namespace
+}  // namespace mercury::render

@@ -1,0 +1,45 @@
+#include "render/png.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace mercury::render {
+namespace {
+
+class Png : public testing::Test {
+ protected:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "mercury_png_test";
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+};
+
+TEST_F(Png, ReadsWhatItWrote) {
+  Image image{3, 2, PixelFormat::rgb, {}};
+  for (int i = 0; i < 18; ++i) image.bytes.push_back(std::uint8_t(13 * i));
+  const std::string path = folder_ / "a.png";
+  write_png(path, image);
+  const Image back = read_png(path);
+  EXPECT_EQ(back.width, 3);
+  EXPECT_EQ(back.height, 2);
+  EXPECT_EQ(back.bytes, image.bytes);
+}
+
+TEST_F(Png, LeavesNothingBehindWhenItCannotWrite) {
+  const Image image{1, 1, PixelFormat::rgb, {1, 2, 3}};
+  const std::string path = folder_ / "missing" / "a.png";
+  try {
+    write_png(path, image);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), path + ": No such file or directory");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(Png, RefusesPlanes) {
+  EXPECT_THROW(write_png(folder_ / "a.png", Image{2, 2, PixelFormat::yuv420, {0, 0, 0, 0, 0, 0}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mercury::render
