@@ -1,0 +1,12 @@
+// Stands in for alpha_body.cpp in a build without CGAL (-DMERCURY_NN=OFF).
+#include "robots/alpha_body.h"
+
+#include "sim/error.h"
+
+namespace mercury {
+
+AlphaBody alpha_body(std::span<const Vec3>, double) {
+  throw InputError("network robots", "this program was built without them (MERCURY_NN=OFF)");
+}
+
+}  // namespace mercury

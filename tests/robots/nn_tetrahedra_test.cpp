@@ -1,0 +1,59 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "robots/tetrahedra.h"
+
+namespace mercury {
+namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+// With the points (0,0,0), (1,0,0), (0,1,0), (0,0,1): outside is away from the point that a side lacks.
+TEST(Tetrahedra, SkinOfOneLooksOutward) {
+  const std::vector<Tetrahedron> one = {{0, 1, 2, 3}};
+  EXPECT_THAT(skin_of(one), UnorderedElementsAre(Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2},
+                                                 Triangle{1, 2, 3}));
+}
+
+TEST(Tetrahedra, ASideBetweenTwoIsNoSkin) {
+  // Point 4 lies beyond the side 1-2-3.
+  const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  const auto skin = skin_of(two);
+  EXPECT_EQ(skin.size(), 6u);
+  EXPECT_THAT(skin, testing::Not(testing::Contains(Triangle{1, 2, 3})));
+  EXPECT_THAT(skin, testing::Contains(Triangle{1, 2, 4}));
+}
+
+TEST(Tetrahedra, EdgesAreListedOnce) {
+  const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  EXPECT_THAT(edges_of(two), ElementsAre(Edge(0, 1), Edge(0, 2), Edge(0, 3), Edge(1, 2), Edge(1, 3), Edge(1, 4),
+                                         Edge(2, 3), Edge(2, 4), Edge(3, 4)));
+}
+
+TEST(Tetrahedra, NeighboursShareASide) {
+  const std::vector<Tetrahedron> three = {{0, 1, 2, 3}, {1, 2, 3, 4}, {3, 4, 5, 6}};  // the third shares an edge only
+  const auto neighbours = neighbours_of(three);
+  EXPECT_EQ(neighbours[0][0], 1u);
+  EXPECT_EQ(neighbours[0][1], no_neighbour);
+  EXPECT_EQ(neighbours[1][0], 0u);
+  EXPECT_EQ(neighbours[2][0], no_neighbour);
+}
+
+TEST(Tetrahedra, TheLargestBodyHoldsMostPointsAndIsJoinedBySides) {
+  const std::vector<Tetrahedron> tetrahedra = {{4, 5, 6, 7}, {0, 1, 2, 3}, {1, 2, 3, 4}};
+  const auto neighbours = neighbours_of(tetrahedra);
+  const SolidBody all = largest_body(tetrahedra, neighbours, 3);
+  EXPECT_THAT(all.tetrahedra, UnorderedElementsAre(1, 2));
+  EXPECT_EQ(all.points, 5u);
+  EXPECT_THAT(largest_body(tetrahedra, neighbours, 2).tetrahedra, ElementsAre(0));  // equals: the earliest
+  EXPECT_TRUE(largest_body(tetrahedra, neighbours, 0).tetrahedra.empty());
+}
+
+TEST(Tetrahedra, ComponentsAreNamedByTheirLowestPoint) {
+  const std::vector<Edge> edges = {{4, 5}, {1, 2}, {2, 5}};
+  EXPECT_THAT(components(7, edges), ElementsAre(0, 1, 1, 3, 1, 1, 6));
+}
+
+}  // namespace
+}  // namespace mercury
