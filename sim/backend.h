@@ -23,12 +23,21 @@ struct RobotStatus {
   std::uint32_t bad_mass = no_mass;  // lowest mass that left the finite, if one did
 };
 
+struct RobotReport {
+  Telemetry telemetry;  // everything but what follows from the status
+  RobotStatus status;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
 
   virtual std::string device_name() const = 0;
   virtual std::vector<std::string> notes() const = 0;
+  // As in Simulation.
+  virtual std::size_t robots_at_once() const = 0;
+  virtual double spring_limit() const = 0;
+  virtual double busy_seconds() const = 0;
 
   // Takes these robots in place of all before, at rest in their files' positions, with their own materials. `robots`
   // outlives the backend.
@@ -52,8 +61,8 @@ class Backend {
   virtual void write_materials(std::size_t robot, std::span<const Material> table) = 0;
 
   virtual void set_pulls(std::span<const Pull> pulls) = 0;
-  // Everything but exploded_at and first_bad_spring.
-  virtual std::vector<Telemetry> telemetry(const Clock& clock) const = 0;
+  // One a robot.
+  virtual std::vector<RobotReport> report(const Clock& clock) const = 0;
 };
 
 std::unique_ptr<Backend> make_cpu_backend(const Device& device);

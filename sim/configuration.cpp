@@ -58,6 +58,7 @@ std::string name_of(const Device& device) {
     case DeviceKind::cpu: return "cpu";
     case DeviceKind::cuda: break;
   }
+  if (device.index == Device::all_devices) return "cuda:all";
   return device.index == 0 ? "cuda" : "cuda:" + std::to_string(device.index);
 }
 
@@ -79,13 +80,14 @@ Device device_named(std::string_view name) {
   if (name == "auto") return {};
   if (name == "cpu") return {.kind = DeviceKind::cpu};
   if (name == "cuda") return {.kind = DeviceKind::cuda};
+  if (name == "cuda:all") return {.kind = DeviceKind::cuda, .index = Device::all_devices};
   if (name.starts_with("cuda:")) {
     const std::string_view digits = name.substr(5);
     Device device{.kind = DeviceKind::cuda};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), device.index);
     if (error == std::errc{} && end == digits.data() + digits.size() && device.index >= 0) return device;
   }
-  throw InputError("--device", "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda or cuda:N");
+  throw InputError("--device", "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
 Vec3 gravity_of(const Environment& environment) {

@@ -49,8 +49,9 @@ using Environment = std::variant<Ocean, OceanSimple, Land>;
 enum class DeviceKind { automatic, cpu, cuda };
 
 struct Device {
+  static constexpr int all_devices = -1;    // a batch is shared out over every CUDA device
   DeviceKind kind = DeviceKind::automatic;  // automatic: CUDA if a device is there, else the CPU
-  int index = 0;                            // which CUDA device
+  int index = 0;                            // which CUDA device, or all_devices
   int threads = 0;                          // CPU threads; 0 = all cores
   friend bool operator==(const Device&, const Device&) = default;
 };
@@ -64,7 +65,7 @@ struct Configuration {
   friend bool operator==(const Configuration&, const Configuration&) = default;
 };
 
-// "force", "xpbd"; "ocean", "ocean-simple", "land"; "auto", "cpu", "cuda", "cuda:1".
+// "force", "xpbd"; "ocean", "ocean-simple", "land"; "auto", "cpu", "cuda", "cuda:1", "cuda:all".
 std::string_view name_of(Solver solver);
 std::string_view name_of(const Environment& environment);
 std::string name_of(const Device& device);

@@ -8,6 +8,7 @@
 #include "sim/backend.h"
 #include "sim/error.h"
 #include "sim/measures.h"
+#include "sim/split_backend.h"
 
 namespace mercury {
 namespace {
@@ -15,7 +16,12 @@ namespace {
 std::unique_ptr<Backend> make_backend(const Device& device) {
   const bool cuda = device.kind == DeviceKind::cuda ||
                     (device.kind == DeviceKind::automatic && cuda_device_count() > device.index);
-  return cuda ? make_cuda_backend(device) : make_cpu_backend(device);
+  if (!cuda) return make_cpu_backend(device);
+  if (device.index != Device::all_devices) return make_cuda_backend(device);
+  std::vector<std::unique_ptr<Backend>> parts;
+  for (int index = 0; index < std::max(1, cuda_device_count()); ++index)
+    parts.push_back(make_cuda_backend({.kind = DeviceKind::cuda, .index = index}));
+  return make_split_backend(std::move(parts));
 }
 
 void validate_named(const Robot& robot, std::size_t index) {
@@ -150,7 +156,8 @@ std::size_t Simulation::add(std::span<const Robot> robots) {
     parts_->backend->write(i, before.states[i].positions, before.states[i].velocities);
     parts_->backend->set_status(i, before.statuses[i]);
   }
-  for (std::size_t i = first; i < size(); ++i) parts_->put_at_rest(i);
+  if (std::holds_alternative<Land>(parts_->configuration.environment))
+    for (std::size_t i = first; i < size(); ++i) parts_->put_at_rest(i);
   return first;
 }
 
@@ -164,6 +171,10 @@ double Simulation::time() const { return time_of(parts_->clock); }
 std::int64_t Simulation::steps() const { return parts_->clock.step; }
 std::string Simulation::device_name() const { return parts_->backend->device_name(); }
 std::vector<std::string> Simulation::notes() const { return parts_->backend->notes(); }
+
+std::size_t Simulation::robots_at_once() const { return parts_->backend->robots_at_once(); }
+double Simulation::spring_limit() const { return parts_->backend->spring_limit(); }
+double Simulation::busy_seconds() const { return parts_->backend->busy_seconds(); }
 
 void Simulation::step(std::int64_t steps) {
   if (steps < 0) throw std::invalid_argument("a number of steps is at least 0");
@@ -224,9 +235,12 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
 }
 
 std::vector<Telemetry> Simulation::telemetry() const {
-  std::vector<Telemetry> all = parts_->backend->telemetry(parts_->clock);
-  const std::vector<RobotStatus> statuses = parts_->backend->statuses();
-  for (std::size_t i = 0; i < all.size(); ++i) parts_->complete(all[i], i, statuses[i]);
+  const std::vector<RobotReport> reports = parts_->backend->report(parts_->clock);
+  std::vector<Telemetry> all(reports.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = reports[i].telemetry;
+    parts_->complete(all[i], i, reports[i].status);
+  }
   return all;
 }
 Telemetry Simulation::telemetry(std::size_t robot) const {

@@ -58,6 +58,14 @@ class Simulation {
   // Things worth a line to the user, such as a robot too large for the chip; empty = nothing.
   std::vector<std::string> notes() const;
 
+  // How many of its robots the device steps at the same time; batches of a multiple of that leave nothing idle.
+  std::size_t robots_at_once() const;
+  // Springs a second that the device could evaluate if nothing but its busiest pipe counted (docs/performance.md), or 0
+  // where that is not known.
+  double spring_limit() const;
+  // How long all calls of step() took so far [s], by the device's own clock.
+  double busy_seconds() const;
+
   // Advances every robot that has not exploded by `steps` time steps. Returns when done.
   void step(std::int64_t steps = 1);
 

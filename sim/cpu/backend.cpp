@@ -8,6 +8,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 
 #include "sim/cpu/step.h"
@@ -33,6 +34,10 @@ class CpuBackend final : public Backend {
   }
   std::vector<std::string> notes() const override { return {}; }
 
+  std::size_t robots_at_once() const override { return static_cast<std::size_t>(arena_.max_concurrency()); }
+  double spring_limit() const override { return 0; }
+  double busy_seconds() const override { return busy_seconds_; }
+
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     bodies_.clear();
     bodies_.resize(robots.size());
@@ -47,10 +52,12 @@ class CpuBackend final : public Backend {
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
+    const auto start = std::chrono::steady_clock::now();
     for_each_body([&](std::size_t i) {
       update_phases(bodies_[i], clock);
       advance(bodies_[i], setting_, clock, steps);
     });
+    busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
@@ -93,9 +100,9 @@ class CpuBackend final : public Backend {
     for (const Pull& pull : pulls) bodies_[pull.robot].pulls.push_back(pull);
   }
 
-  std::vector<Telemetry> telemetry(const Clock& clock) const override {
-    std::vector<Telemetry> all(bodies_.size());
-    for_each_body([&](std::size_t i) { all[i] = measure_state(bodies_[i], configuration_, clock); });
+  std::vector<RobotReport> report(const Clock& clock) const override {
+    std::vector<RobotReport> all(bodies_.size());
+    for_each_body([&](std::size_t i) { all[i] = {measure_state(bodies_[i], configuration_, clock), bodies_[i].status}; });
     return all;
   }
 
@@ -117,6 +124,7 @@ class CpuBackend final : public Backend {
   std::vector<Body> bodies_;
   Configuration configuration_;
   StepSetting setting_;
+  double busy_seconds_ = 0;
 };
 
 }  // namespace

@@ -35,6 +35,16 @@ class CudaBackend final : public Backend {
     return {"the largest robot does not fit on the chip of " + name_ + ": it is stepped in device memory, more slowly"};
   }
 
+  std::size_t robots_at_once() const override {
+    use_device();
+    return batch_.size() == 0 ? 0 : robots_in_flight(configuration_.solver, hooks_, shape_);
+  }
+  double spring_limit() const override {
+    use_device();
+    return cuda::spring_limit(configuration_.solver);
+  }
+  double busy_seconds() const override { return busy_seconds_; }
+
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     use_device();
     batch_ = Batch();
@@ -59,12 +69,15 @@ class CudaBackend final : public Backend {
     StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
     if (const Land* land = std::get_if<Land>(&configuration_.environment))
       arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
+    Event start, end;
+    start.record();
     for (std::int64_t done = 0; done < steps; done += arguments.steps) {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));
       launch_steps(configuration_.solver, hooks_, arguments, nullptr);
     }
-    check(cudaDeviceSynchronize(), "stepping");
+    end.record();
+    busy_seconds_ += end.seconds_since(start);
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
@@ -120,26 +133,26 @@ class CudaBackend final : public Backend {
     batch_.set_pulls(pulls);
   }
 
-  std::vector<Telemetry> telemetry(const Clock& clock) const override {
-    std::vector<Telemetry> all(batch_.size());
+  std::vector<RobotReport> report(const Clock& clock) const override {
+    std::vector<RobotReport> all(batch_.size());
     if (all.empty()) return all;
     use_device();
-    const_cast<Batch&>(batch_).update_phases(clock);
-    DeviceArray<DeviceTelemetry> device(all.size());
-    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment),
-                     batch_.rows_placed(), device.data());
-    std::vector<DeviceTelemetry> sums(all.size());
-    device.read(0, sums);
+    batch_.update_phases(clock);
+    if (sums_.size() != all.size()) sums_ = MappedArray<DeviceTelemetry>(all.size());
+    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment), batch_.rows_placed(), sums_.on_device());
+    check(cudaDeviceSynchronize(), "reading telemetry");
     for (std::size_t i = 0; i < all.size(); ++i) {
+      const DeviceTelemetry& sums = sums_[i];
       const auto masses = static_cast<double>(batch_.robots()[i]->masses.size());
       const auto mean = [&](const double* sum) {
         return Vec3{static_cast<float>(sum[0] / masses), static_cast<float>(sum[1] / masses), static_cast<float>(sum[2] / masses)};
       };
-      all[i].center_of_mass = mean(sums[i].position);
-      all[i].velocity = mean(sums[i].velocity);
-      all[i].kinetic_energy = sums[i].kinetic_energy;
-      all[i].elastic_energy = sums[i].elastic_energy;
-      all[i].largest_strain = sums[i].largest_strain;
+      all[i].telemetry.center_of_mass = mean(sums.position);
+      all[i].telemetry.velocity = mean(sums.velocity);
+      all[i].telemetry.kinetic_energy = sums.kinetic_energy;
+      all[i].telemetry.elastic_energy = sums.elastic_energy;
+      all[i].telemetry.largest_strain = sums.largest_strain;
+      all[i].status = {sums.exploded_step, sums.bad_mass};
     }
     return all;
   }
@@ -179,11 +192,13 @@ class CudaBackend final : public Backend {
 
   int device_;
   std::string name_;
-  Batch batch_;
+  mutable Batch batch_;  // its phases follow the clock when somebody asks
+  mutable MappedArray<DeviceTelemetry> sums_;
   Configuration configuration_;
   AnyHooks hooks_ = OceanHooks(Ocean{});
   StepConstants constants_;
   Shape shape_;
+  double busy_seconds_ = 0;
 };
 
 }  // namespace

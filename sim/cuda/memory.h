@@ -17,6 +17,27 @@ inline void check(cudaError_t error, const char* what) {
   if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
 }
 
+// A point in the device's stream of work.
+class Event {
+ public:
+  Event() { check(cudaEventCreate(&event_), "making an event"); }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  void record() { check(cudaEventRecord(event_), "recording an event"); }
+  // Waits for this event.
+  double seconds_since(const Event& start) const {
+    float milliseconds = 0;
+    check(cudaEventSynchronize(event_), "stepping");
+    check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "reading events");
+    return static_cast<double>(milliseconds) * 1e-3;
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
 // An array in device memory.
 template <class T>
 class DeviceArray {
@@ -55,6 +76,37 @@ class DeviceArray {
   void clear() {
     if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "clearing device memory");
   }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+// An array of host memory that kernels write to directly: a few numbers a robot come back without a copy.
+template <class T>
+class MappedArray {
+ public:
+  MappedArray() = default;
+  explicit MappedArray(std::size_t size) : size_(size) {
+    if (size > 0)
+      check(cudaHostAlloc(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaHostAllocMapped), "allocating mapped memory");
+  }
+  ~MappedArray() { cudaFreeHost(data_); }
+  MappedArray(MappedArray&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  MappedArray& operator=(MappedArray&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+
+  T* on_device() const {
+    void* pointer = nullptr;
+    check(cudaHostGetDevicePointer(&pointer, data_, 0), "mapping memory");
+    return static_cast<T*>(pointer);
+  }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  std::size_t size() const { return size_; }
 
  private:
   T* data_ = nullptr;

@@ -88,14 +88,19 @@ auto kernel_for(const Shape& shape) {
   return shape.on_chip ? step_kernel<solver, Hooks, OnChip, 2> : step_kernel<solver, Hooks, OffChip, 2>;
 }
 
-template <Solver solver, class Hooks>
-void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
-  const auto kernel = kernel_for<solver, Hooks>(arguments.shape);
-  const Shape& shape = arguments.shape;
+template <class Kernel>
+void prepare(Kernel kernel, const Shape& shape) {
   const auto bytes = static_cast<int>(shape.shared_bytes);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, cudaSharedmemCarveoutMaxShared),
         "preferring shared memory");
+}
+
+template <Solver solver, class Hooks>
+void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
+  const auto kernel = kernel_for<solver, Hooks>(arguments.shape);
+  const Shape& shape = arguments.shape;
+  prepare(kernel, shape);
   const std::uint32_t blocks = (arguments.batch.robot_count + shape.robots_per_block - 1) / shape.robots_per_block;
   const std::uint32_t threads = shape.robots_per_block * shape.warps_per_robot * lanes;
   kernel<<<blocks, threads, shape.shared_bytes, stream>>>(arguments, hooks);
@@ -181,6 +186,28 @@ Shape choose_shape(Solver solver, const Environment& environment, const BatchVie
   shape.on_chip = false;
   fit_one(shape, groups, rows, limits);
   return shape;
+}
+
+std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape) {
+  return std::visit(
+      [&](const auto& kind) {
+        using Hooks = std::decay_t<decltype(kind)>;
+        const auto kernel = solver == Solver::force ? kernel_for<Solver::force, Hooks>(shape) : kernel_for<Solver::xpbd, Hooks>(shape);
+        prepare(kernel, shape);
+        int blocks = 0;
+        const auto threads = static_cast<int>(shape.robots_per_block * shape.warps_per_robot * lanes);
+        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, shape.shared_bytes), "asking for occupancy");
+        return static_cast<std::uint32_t>(blocks) * shape.robots_per_block * device_limits().multiprocessors;
+      },
+      hooks);
+}
+
+double spring_limit(Solver solver) {
+  int device = 0, kilohertz = 0;
+  check(cudaGetDevice(&device), "asking for the device");
+  check(cudaDeviceGetAttribute(&kilohertz, cudaDevAttrClockRate, device), "asking for the clock rate");
+  const double passes = solver == Solver::force ? 10 : 11;
+  return 1e3 * kilohertz * device_limits().multiprocessors * lanes / passes;
 }
 
 void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream) {

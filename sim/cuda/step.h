@@ -39,6 +39,13 @@ std::uint32_t working_rows(Solver solver);
 // The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
 Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws);
 
+// Robots that the present device steps at the same time.
+std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape);
+
+// Springs a second if only the shared memory pipe counted: a row of 32 springs takes ten passes through it (four of the
+// record, the position and the rest length, two of the material, three additions, and one more where XPBD reads splits).
+double spring_limit(Solver solver);
+
 // Asynchronous; errors through cudaGetLastError.
 void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream);
 

@@ -86,7 +86,8 @@ __global__ void telemetry_kernel(BatchView batch, Clock clock, float stiffness_s
   }
   if (threadIdx.x > 0) return;
   const double* sums = shares[0].sums;
-  out[robot] = {{sums[0], sums[1], sums[2]}, {sums[3], sums[4], sums[5]}, sums[6], sums[7], shares[0].strain};
+  const DeviceStatus status = batch.statuses[robot];
+  out[robot] = {{sums[0], sums[1], sums[2]}, {sums[3], sums[4], sums[5]}, sums[6], sums[7], shares[0].strain, status.bad_mass, status.exploded_step};
 }
 
 }  // namespace

@@ -9,6 +9,8 @@ struct DeviceTelemetry {
   double position[3], velocity[3];  // sums over the masses
   double kinetic_energy, elastic_energy;
   float largest_strain;
+  std::uint32_t bad_mass;
+  long long exploded_step;
 };
 
 // One block a robot; the order of every sum is fixed by the robot alone. `rows` = as the records are placed

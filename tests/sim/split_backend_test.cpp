@@ -1,0 +1,49 @@
+#include "sim/split_backend.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/bodies.h"
+
+namespace mercury {
+namespace {
+
+TEST(SplitBackend, GivesWhatOnePartGivesForEveryRobot) {
+  std::vector<Robot> robots;
+  for (unsigned seed = 0; seed < 5; ++seed) robots.push_back(bodies::random_voxels({.x = 2, .y = 2, .z = 1 + static_cast<int>(seed)}, seed));
+  std::vector<const Robot*> pointers;
+  for (const Robot& robot : robots) pointers.push_back(&robot);
+
+  const auto one = make_cpu_backend({});
+  std::vector<std::unique_ptr<Backend>> parts;
+  for (int part = 0; part < 3; ++part) parts.push_back(make_cpu_backend({}));
+  const auto split = make_split_backend(std::move(parts));
+
+  const Clock start;
+  for (Backend* backend : {one.get(), split.get()}) {
+    backend->load(pointers, {});
+    const Pull pull{.robot = 3, .mass = 1, .target = {1, 2, 3}, .stiffness = 10};
+    backend->set_pulls(std::span(&pull, 1));
+    backend->step(start, 50);
+  }
+  std::size_t masses = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::size_t n = robots[i].masses.size();
+    masses += n;
+    std::vector<Vec3> x1(n), v1(n), x2(n), v2(n);
+    one->read(i, x1, v1);
+    split->read(i, x2, v2);
+    EXPECT_EQ(x1, x2) << i;
+    EXPECT_EQ(v1, v2) << i;
+  }
+  std::vector<Vec3> all1(masses), all2(masses);
+  one->read_positions(all1);
+  split->read_positions(all2);
+  EXPECT_EQ(all1, all2);
+  const auto report1 = one->report(start), report2 = split->report(start);
+  ASSERT_EQ(report2.size(), robots.size());
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    EXPECT_EQ(report1[i].telemetry.elastic_energy, report2[i].telemetry.elastic_energy);
+}
+
+}  // namespace
+}  // namespace mercury
