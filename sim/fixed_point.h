@@ -28,7 +28,9 @@ MERCURY_HOST_DEVICE auto to_fixed_plus_magic(Real value_per_distance, Real dista
   return bits_of(multiply_add(value_per_distance, distance, rounding_magic));
 }
 MERCURY_HOST_DEVICE std::int32_t to_fixed_small(float value_per_distance, float distance) {
-  return to_fixed_plus_magic(value_per_distance, distance) - rounding_magic_bits;
+  // Unsigned, since a value out of range wraps around; its robot has exploded and the sum is thrown away.
+  const auto bits = static_cast<std::uint32_t>(to_fixed_plus_magic(value_per_distance, distance));
+  return static_cast<std::int32_t>(bits - static_cast<std::uint32_t>(rounding_magic_bits));
 }
 
 // Whether face and contact forces, in units, fit; false for NaN as well.
