@@ -19,7 +19,7 @@ struct Cell {
 MERCURY_HOST_DEVICE std::int32_t cell_coordinate(float x, float inverse_size) {
   constexpr float most = 1e9f;
   const float scaled = std::floor(x * inverse_size);
-  return static_cast<std::int32_t>(scaled < -most ? -most : scaled > most ? most : scaled);
+  return static_cast<std::int32_t>(!(scaled > -most) ? -most : scaled > most ? most : scaled);  // NaN as well
 }
 
 MERCURY_HOST_DEVICE Cell cell_of(Vec3 x, float inverse_size) {
