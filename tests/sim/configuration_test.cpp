@@ -65,7 +65,8 @@ TEST(Configuration, NamesAndTheirReverse) {
   EXPECT_EQ(device_named("cpu").kind, DeviceKind::cpu);
   EXPECT_EQ(device_named("cuda"), (Device{DeviceKind::cuda, 0, 0}));
   EXPECT_EQ(device_named("cuda:3"), (Device{DeviceKind::cuda, 3, 0}));
-  for (const char* name : {"auto", "cpu", "cuda", "cuda:1"}) EXPECT_EQ(name_of(device_named(name)), name);
+  EXPECT_EQ(device_named("cuda:all"), (Device{DeviceKind::cuda, Device::all_devices, 0}));
+  for (const char* name : {"auto", "cpu", "cuda", "cuda:1", "cuda:all"}) EXPECT_EQ(name_of(device_named(name)), name);
 }
 
 TEST(Configuration, UnknownNamesAreAnsweredWithWhatIsAccepted) {
@@ -74,7 +75,7 @@ TEST(Configuration, UnknownNamesAreAnsweredWithWhatIsAccepted) {
             "--environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
   for (const char* name : {"gpu", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
     EXPECT_EQ(message_of([&] { device_named(name); }),
-              "--device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda or cuda:N");
+              "--device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
 TEST(Configuration, TimeStepAndDampingAreChecked) {
