@@ -11,7 +11,8 @@
 #include <chrono>
 #include <optional>
 
-#include "sim/cpu/step.h"
+#include "sim/cpu/backend.h"
+#include "sim/cpu/pack.h"
 #include "sim/cpu/telemetry.h"
 
 namespace mercury {
@@ -21,8 +22,8 @@ using namespace cpu;
 
 class CpuBackend final : public Backend {
  public:
-  explicit CpuBackend(const Device& device)
-      : arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
+  CpuBackend(const Device& device, const Kernel& kernel)
+      : kernel_(kernel), arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
     // Without this, more threads than cores are refused, with a warning on stderr.
     if (device.threads > oneapi::tbb::info::default_concurrency())
       allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(device.threads));
@@ -30,7 +31,7 @@ class CpuBackend final : public Backend {
 
   std::string device_name() const override {
     const int threads = arena_.max_concurrency();
-    return "CPU, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    return "CPU, " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") + std::string(kernel_.name);
   }
   std::vector<std::string> notes() const override { return {}; }
 
@@ -41,7 +42,12 @@ class CpuBackend final : public Backend {
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     bodies_.clear();
     bodies_.resize(robots.size());
-    for_each_body([&](std::size_t i) { bodies_[i] = make_body(*robots[i]); });
+    for_each_body([&](std::size_t i) {
+      bodies_[i] = make_body(*robots[i], kernel_.lanes);
+      const std::vector<Vec3> at_rest(robots[i]->masses.size());
+      set_state(bodies_[i], robots[i]->masses, at_rest);
+    });
+    packs_.clear();
     configure(configuration);
   }
 
@@ -53,33 +59,32 @@ class CpuBackend final : public Backend {
 
   void step(const Clock& clock, std::int64_t steps) override {
     const auto start = std::chrono::steady_clock::now();
-    for_each_body([&](std::size_t i) {
-      update_phases(bodies_[i], clock);
-      advance(bodies_[i], setting_, clock, steps);
+    if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()));
+    arena_.execute([&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, packs_.size(),
+                                [&](std::size_t i) { advance(kernel_, packs_[i], bodies_, setting_, clock, steps); });
     });
     busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
     const Body& body = bodies_[robot];
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = body.x[i];
-    for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = body.v[i];
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = body.position(i);
+    for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = body.velocity(i);
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    Body& body = bodies_[robot];
-    for (std::size_t i = 0; i < positions.size(); ++i) body.x.set(i, positions[i]);
-    for (std::size_t i = 0; i < velocities.size(); ++i) body.v.set(i, velocities[i]);
+    set_state(bodies_[robot], positions, velocities);
   }
 
   void read_positions(std::span<Vec3> out) const override {
     for (const Body& body : bodies_)
-      for (std::size_t i = 0; i < body.x.x.size(); ++i, out = out.subspan(1)) out.front() = body.x[i];
+      for (std::size_t i = 0; i < body.robot->masses.size(); ++i, out = out.subspan(1)) out.front() = body.position(i);
   }
 
   void read_velocities(std::span<Vec3> out) const override {
     for (const Body& body : bodies_)
-      for (std::size_t i = 0; i < body.v.x.size(); ++i, out = out.subspan(1)) out.front() = body.v[i];
+      for (std::size_t i = 0; i < body.robot->masses.size(); ++i, out = out.subspan(1)) out.front() = body.velocity(i);
   }
 
   RobotStatus status(std::size_t robot) const override { return bodies_[robot].status; }
@@ -92,8 +97,12 @@ class CpuBackend final : public Backend {
 
   void write_materials(std::span<const Material> tables) override {
     for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });
+    packs_.clear();
   }
-  void write_materials(std::size_t robot, std::span<const Material> table) override { replace_table(robot, table); }
+  void write_materials(std::size_t robot, std::span<const Material> table) override {
+    replace_table(robot, table);
+    packs_.clear();
+  }
 
   void set_pulls(std::span<const Pull> pulls) override {
     for (Body& body : bodies_) body.pulls.clear();
@@ -119,9 +128,11 @@ class CpuBackend final : public Backend {
     update_laws(bodies_[robot], configuration_);
   }
 
+  const Kernel kernel_;
   std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
+  std::vector<Pack> packs_;  // empty = to be made before the next step
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;
@@ -129,6 +140,10 @@ class CpuBackend final : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_cpu_backend(const Device& device) { return std::make_unique<CpuBackend>(device); }
+std::unique_ptr<Backend> make_cpu_backend(const Device& device) { return cpu::make_backend(device, cpu::kernels().front()); }
+
+std::unique_ptr<Backend> cpu::make_backend(const Device& device, const Kernel& kernel) {
+  return std::make_unique<CpuBackend>(device, kernel);
+}
 
 }  // namespace mercury

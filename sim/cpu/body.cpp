@@ -1,71 +1,70 @@
 #include "sim/cpu/body.h"
 
-#include <bit>
+#include <algorithm>
+#include <limits>
 
 namespace mercury::cpu {
-namespace {
 
-Springs copy_springs(const Robot& robot) {
-  Springs springs;
-  const std::vector<std::uint32_t> at = springs_at_masses(robot);
-  for (const Spring& spring : robot.springs) {
-    springs.a.push_back(spring.a);
-    springs.b.push_back(spring.b);
-    springs.material.push_back(spring.material);
-    springs.rest_length.push_back(spring.rest_length);
-    springs.splits.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
-  }
-  return springs;
-}
-
-Neighbours find_neighbours(const Robot& robot) {
-  Neighbours neighbours;
-  const std::vector<std::uint32_t> at = springs_at_masses(robot);
-  neighbours.start.assign(at.size() + 1, 0);
-  for (std::size_t i = 0; i < at.size(); ++i) neighbours.start[i + 1] = neighbours.start[i] + at[i];
-  neighbours.mass.resize(neighbours.start.back());
-  std::vector<std::uint32_t> next(neighbours.start.begin(), neighbours.start.end() - 1);
-  for (const Spring& spring : robot.springs) {
-    neighbours.mass[next[spring.a]++] = spring.b;
-    neighbours.mass[next[spring.b]++] = spring.a;
-  }
-  return neighbours;
-}
-
-}  // namespace
-
-Body make_body(const Robot& robot) {
+Body make_body(const Robot& robot, std::size_t lanes) {
   Body body;
   body.robot = &robot;
   body.measures = measure(robot);
-  const std::size_t masses = robot.masses.size();
-  body.x.resize(masses);
-  body.v.resize(masses);
-  for (std::size_t i = 0; i < masses; ++i) body.x.set(i, robot.masses[i]);
-  body.force.assign(masses);
-  body.springs = copy_springs(robot);
-  body.neighbours = find_neighbours(robot);
-  body.grid.head.resize(std::bit_ceil(2 * masses));
-  body.grid.next.resize(masses);
+  body.places = arrange(robot, lanes);
+  body.springs = plan_springs(robot, body.places);
+  body.faces = plan_faces(robot, body.places);
+  body.near_pairs = NearPairs(robot, body.places);
   body.materials.assign(max_materials, {});
   std::ranges::copy(materials_of(robot), body.materials.begin());
+  const std::size_t padded = body.places.padded();
+  body.x.assign(padded, 0);
+  body.v.assign(padded, 0);
+  body.sums.own.assign(padded, 0);
+  body.sums.reaction.assign(reaction_arrays * padded, 0);
+  body.sums.rows.assign(4 * padded, 0);
+  body.x_rows.assign(4 * padded, 0);
+  body.v_rows.assign(4 * padded, 0);
+  body.splits.assign(padded, 0);
   return body;
 }
 
 void update_laws(Body& body, const Configuration& configuration) {
   body.scale = fixed_point_scale(body.measures, body.materials, configuration);
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
+  std::array<float, max_materials> hardness;
   for (std::size_t id = 0; id < max_materials; ++id) {
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
-    body.law.stiffness[id] = static_cast<float>(stiffness) * body.scale.force;
-    body.law.compliance[id] =
-        static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
+    hardness[id] = configuration.solver == Solver::force
+                       ? static_cast<float>(stiffness) * body.scale.force
+                       : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
+  }
+  hardness[air] = configuration.solver == Solver::force ? 0 : std::numeric_limits<float>::infinity();
+  SpringPlan& springs = body.springs;
+  for (std::size_t i = 0; i < springs.hardness.size(); ++i) springs.hardness[i] = hardness[springs.material[i]];
+
+  const std::vector<std::uint32_t> at = springs_at_masses(*body.robot);
+  for (std::size_t mass = 0; mass < at.size(); ++mass) {
+    const std::size_t place = body.places.of_mass[mass];
+    body.splits[place] = static_cast<float>(at[mass]) / body.scale.correction;
+    body.x_rows[4 * place + 3] = body.splits[place];
   }
 }
 
-void update_phases(Body& body, const Clock& clock) {
-  body.phases.resize(max_materials);
-  for (std::size_t id = 0; id < max_materials; ++id) body.phases[id] = muscle_phase(body.materials[id], clock);
+void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  const auto set = [](Triples<float>& values, std::size_t place, Vec3 value) {
+    values.x[place] = value.x;
+    values.y[place] = value.y;
+    values.z[place] = value.z;
+  };
+  for (std::size_t mass = 0; mass < positions.size(); ++mass) set(body.x, body.places.of_mass[mass], positions[mass]);
+  for (std::size_t mass = 0; mass < velocities.size(); ++mass) set(body.v, body.places.of_mass[mass], velocities[mass]);
+  for (const std::uint32_t place : body.places.stand_ins) {
+    set(body.x, place, positions[0]);
+    set(body.v, place, {});
+  }
+  body.compact = false;
+  body.rows_are_current = false;
+  body.written = true;
+  body.near_pairs.forget();
 }
 
 }  // namespace mercury::cpu

@@ -1,4 +1,4 @@
-// One robot as the CPU steps it: structure of arrays, so that loops over masses and springs become vector code.
+// One robot as the CPU steps it: structure of arrays, so that a vector holds the same quantity of several masses.
 #pragma once
 
 #include <array>
@@ -6,83 +6,68 @@
 #include <vector>
 
 #include "sim/backend.h"
+#include "sim/cpu/aligned.h"
+#include "sim/cpu/near_pairs.h"
+#include "sim/cpu/places.h"
+#include "sim/cpu/spring_plan.h"
 #include "sim/measures.h"
 
 namespace mercury::cpu {
 
-struct Vectors {
-  std::vector<float> x, y, z;
-  void resize(std::size_t n) {
-    x.resize(n);
-    y.resize(n);
-    z.resize(n);
-  }
-  Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
-  void set(std::size_t i, Vec3 value) {
-    x[i] = value.x;
-    y[i] = value.y;
-    z[i] = value.z;
+// Three numbers a place.
+template <class T>
+struct Triples {
+  Aligned<T> x, y, z;
+  void assign(std::size_t n, T value) {
+    x.assign(n, value);
+    y.assign(n, value);
+    z.assign(n, value);
   }
 };
 
+// What acts on the masses in the present phase of a step, in units of FixedPointScale.
 struct Sums {
-  std::vector<std::int32_t> x, y, z;
-  void assign(std::size_t n) {
-    x.assign(n, 0);
-    y.assign(n, 0);
-    z.assign(n, 0);
-  }
-};
-
-struct Springs {
-  std::vector<std::uint16_t> a, b;
-  std::vector<MaterialId> material;
-  std::vector<float> rest_length;
-  std::vector<float> splits;  // s_a + s_b
-};
-
-// Masses that a spring joins to each mass, those of mass i at [start[i], start[i + 1]).
-struct Neighbours {
-  std::vector<std::uint32_t> start;
-  std::vector<std::uint16_t> mass;
-  bool joined(std::uint16_t i, std::uint16_t j) const {
-    for (std::uint32_t k = start[i]; k < start[i + 1]; ++k)
-      if (mass[k] == j) return true;
-    return false;
-  }
-};
-
-struct ContactGrid {
-  std::vector<std::uint16_t> head, next;  // buckets, masses
-};
-
-// What a material is at the present step.
-struct SpringLaw {
-  std::array<float, max_materials> factor{};      // L / L0
-  std::array<float, max_materials> stiffness{};   // in units of force a metre
-  std::array<float, max_materials> compliance{};  // 1/(k dt^2), divided by the scale of corrections
+  Triples<std::int32_t> own;       // of the springs that a mass owns
+  Triples<std::int32_t> reaction;  // of the runs it is partner in, pulls and contacts: reaction_arrays one after the other
+  Aligned<std::int32_t> rows;      // of the rows it is partner in and of faces: x, y, z and a fourth without meaning
 };
 
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  Vectors x, v;
-  Sums force;
-  Springs springs;
-  Neighbours neighbours;
-  ContactGrid grid;
-  std::vector<Material> materials;  // max_materials elements
-  std::vector<MusclePhase> phases;  // likewise, for the present clock base
+  Places places;
+  SpringPlan springs;
+  std::vector<std::uint32_t> faces;  // plan_faces()
+  NearPairs near_pairs;
+  std::vector<Material> materials;   // max_materials elements
   FixedPointScale scale;
-  SpringLaw law;
+
+  Triples<float> x, v;               // during XPBD's springs: the prediction and v + dt F
+  Aligned<float> x_rows, v_rows;     // the same four to a place, for masses that are collected one by one; the fourth
+                                     // of x is the number of springs at the mass
+  Aligned<float> splits;             // number of springs at the mass over the scale of corrections
+  Sums sums;
+
+  // No two masses are farther apart than a spring may be long, so that springs need not be looked at.
+  bool compact = false;
+  bool rows_are_current = false;     // x_rows and v_rows
+  bool written = true;               // the state came from outside and may be anything
   RobotStatus status;
   std::vector<Pull> pulls;
+
+  Vec3 position(std::size_t mass) const { return at(x, places.of_mass[mass]); }
+  Vec3 velocity(std::size_t mass) const { return at(v, places.of_mass[mass]); }
+  static Vec3 at(const Triples<float>& values, std::size_t place) {
+    return {values.x[place], values.y[place], values.z[place]};
+  }
 };
 
-Body make_body(const Robot& robot);
+// A body for kernels of so many lanes, its state not set yet.
+Body make_body(const Robot& robot, std::size_t lanes);
+
 // What depends on materials and configuration.
 void update_laws(Body& body, const Configuration& configuration);
-// Phases for a clock whose base or time step is new.
-void update_phases(Body& body, const Clock& clock);
+
+void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities);
 
 }  // namespace mercury::cpu

@@ -1,11 +1,12 @@
-// One robot's steps on the CPU, for every pair of solver and environment.
+// What a step of the CPU is told, and the parts of it that are not vector code.
 #pragma once
 
 #include <variant>
 
-#include "sim/cpu/body.h"
 #include "sim/environments.h"
 #include "sim/integration.h"
+
+#include "sim/cpu/body.h"
 
 namespace mercury::cpu {
 
@@ -24,7 +25,14 @@ struct StepSetting {
 
 StepSetting setting_of(const Configuration& configuration);
 
-// Advances a body that has not exploded; stops where it explodes.
-void advance(Body& body, const StepSetting& setting, const Clock& clock, std::int64_t steps);
+// Adds the forces of pulls and of contacts between listed pairs to the sums.
+void add_pulls(Body& body);
+void add_contacts(Body& body, float stiffness);
+
+// A state from outside may hold masses that are out of reach already. Notes the lowest and returns false if it does.
+bool accept_state(Body& body);
+
+// Notes that a step ended in an explosion and clears what it left half done.
+void explode(Body& body, std::int64_t step);
 
 }  // namespace mercury::cpu

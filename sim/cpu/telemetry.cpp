@@ -24,10 +24,10 @@ struct Sum {
 Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock) {
   Telemetry result;
   Sum position, velocity;
-  const std::size_t masses = body.x.x.size();
+  const std::size_t masses = body.robot->masses.size();
   for (std::size_t i = 0; i < masses; ++i) {
-    const Vec3 v = body.v[i];
-    position.add(body.x[i]);
+    const Vec3 v = body.velocity(i);
+    position.add(body.position(i));
     velocity.add(v);
     result.kinetic_energy += 0.5 * (static_cast<double>(v.x) * static_cast<double>(v.x) +
                                     static_cast<double>(v.y) * static_cast<double>(v.y) +
@@ -39,7 +39,7 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
   std::array<float, max_materials> factor{};
   for (std::size_t id = 0; id < max_materials; ++id) factor[id] = muscle_factor(body.materials[id], clock);
   for (const Spring& spring : body.robot->springs) {
-    const float distance = length(body.x[spring.b] - body.x[spring.a]);
+    const float distance = length(body.position(spring.b) - body.position(spring.a));
     const float rest = spring.rest_length;
     const auto stretch = static_cast<double>(distance - rest * factor[spring.material]);
     result.elastic_energy += 0.5 * static_cast<double>(scale * body.materials[spring.material].stiffness) * stretch * stretch;

@@ -1,0 +1,230 @@
+#include "bench/cpu_plain_loop.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sim/contact.h"
+#include "sim/fixed_point.h"
+
+namespace mercury::bench {
+
+PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
+    : robot_(robot), configuration_(configuration), measures_(measure(robot)), faces_(pair_faces(robot)) {
+  std::array<Material, max_materials> materials{};
+  std::ranges::copy(materials_of(robot), materials.begin());
+  scale_ = fixed_point_scale(measures_, materials, configuration);
+  const Clock clock{.dt = configuration.dt};
+  const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
+  for (std::size_t id = 0; id < max_materials; ++id) {
+    const double stiffness = scale * static_cast<double>(materials[id].stiffness);
+    stiffness_[id] = static_cast<float>(stiffness) * scale_.force;
+    compliance_[id] = static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / scale_.correction;
+    phases_[id] = muscle_phase(materials[id], clock);
+  }
+  if (const Land* land = std::get_if<Land>(&configuration.environment); land && land->self_collision)
+    contact_stiffness_ = land->contact_stiffness * land->stiffness_scale;
+  constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
+                static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
+  const std::size_t masses = robot.masses.size();
+  state_ = {robot.masses, std::vector<Vec3>(masses)};
+  sums_.resize(masses);
+  neighbours_.resize(masses);
+  heads_.resize(std::bit_ceil(2 * masses));
+  links_.resize(masses);
+  const std::vector<std::uint32_t> at = springs_at_masses(robot);
+  for (const Spring& spring : robot.springs) {
+    splits_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
+    neighbours_[spring.a].push_back(spring.b);
+    neighbours_[spring.b].push_back(spring.a);
+  }
+}
+
+void PlainLoop::update_muscles() {
+  const std::span<const Material> materials = materials_of(robot_);
+  for (std::size_t id = 0; id < materials.size(); ++id)
+    if (measures_.used[id]) factor_[id] = muscle_factor(materials[id].amplitude, phase_at(phases_[id], now_));
+}
+
+// Adds every spring's contribution, `law(squared, length, spring)` times d. False if one is beyond the stretch limit.
+template <class Law>
+bool PlainLoop::add_springs(const Law& law) {
+  float longest = 0;
+  for (std::size_t s = 0; s < robot_.springs.size(); ++s) {
+    const Spring& spring = robot_.springs[s];
+    const Vec3 d = state_.positions[spring.b] - state_.positions[spring.a];
+    const float squared = squared_length(d);
+    longest = squared > longest ? squared : longest;
+    const float per_distance = law(squared, spring.rest_length * factor_[spring.material], s);
+    const std::int32_t fx = to_fixed_small(per_distance, d.x), fy = to_fixed_small(per_distance, d.y),
+                       fz = to_fixed_small(per_distance, d.z);
+    Sum &a = sums_[spring.a], &b = sums_[spring.b];
+    a.x += fx;
+    a.y += fy;
+    a.z += fz;
+    b.x -= fx;
+    b.y -= fy;
+    b.z -= fz;
+  }
+  return longest <= measures_.squared_stretch_limit();
+}
+
+bool PlainLoop::add_spring_forces() {
+  return add_springs([&](float squared, float length, std::size_t s) {
+    return hooke(squared, length, stiffness_[robot_.springs[s].material]);
+  });
+}
+
+bool PlainLoop::add_spring_corrections() {
+  const float inverse_scale = 1 / scale_.correction;
+  return add_springs([&](float squared, float length, std::size_t s) {
+    return xpbd(squared, length, splits_[s] * inverse_scale, compliance_[robot_.springs[s].material]);
+  });
+}
+
+void PlainLoop::add(std::size_t mass, Vec3 units) {
+  sums_[mass].x += round_to_int(units.x);
+  sums_[mass].y += round_to_int(units.y);
+  sums_[mass].z += round_to_int(units.z);
+}
+
+// A third of each face's force to each of its masses. False, and the lowest mass noted, if a force is out of range.
+template <class Hooks>
+bool PlainLoop::add_face_forces(const Hooks& hooks) {
+  constexpr float third = 1.0f / 3.0f;
+  bool fit = true;
+  for (const auto& [a, b, c, d] : faces_) {
+    const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
+    const Vec3 to_c = x[c] - x[a], shared = v[a] + v[c];
+    const Vec3 first = third * scale_.force * hooks.on_face(0.5f * cross(x[b] - x[a], to_c), third * (shared + v[b]));
+    const Vec3 second = third * scale_.force * hooks.on_face(0.5f * cross(to_c, x[d] - x[a]), third * (shared + v[d]));
+    if (!fits(first) || !fits(second)) {
+      bad_mass_ = std::min({bad_mass_, std::uint32_t{a}, std::uint32_t{b}, std::uint32_t{c}, std::uint32_t{d}});
+      fit = false;
+      continue;
+    }
+    add(a, first);
+    add(b, first);
+    add(c, first);
+    add(a, second);
+    add(c, second);
+    add(d, second);
+  }
+  return fit;
+}
+
+bool PlainLoop::joined(std::uint16_t i, std::uint16_t j) const { return std::ranges::find(neighbours_[i], j) != neighbours_[i].end(); }
+
+void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
+  const Vec3 d = state_.positions[j] - state_.positions[i];
+  const float squared = squared_length(d);
+  if (!(squared < distance * distance) || joined(i, j)) return;
+  const Vec3 units = repulsion(squared, distance, contact_stiffness_ * scale_.force) * d;
+  add(i, units);
+  add(j, -units);
+}
+
+void PlainLoop::add_contacts() {
+  const float distance = measures_.contact_distance();
+  if (contact_stiffness_ == 0 || distance == 0) return;
+  // Cells a little larger than the distance, so that rounding cannot part masses that touch.
+  const float inverse_size = 1 / (1.01f * distance);
+  const auto mask = static_cast<std::uint32_t>(heads_.size() - 1);
+  std::ranges::fill(heads_, end_of_list);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    std::uint16_t& head = heads_[bucket_of(cell_of(state_.positions[i], inverse_size), mask)];
+    links_[i] = head;
+    head = static_cast<std::uint16_t>(i);
+  }
+  for (std::size_t mass = 0; mass < links_.size(); ++mass) {
+    const auto i = static_cast<std::uint16_t>(mass);
+    const Cell cell = cell_of(state_.positions[i], inverse_size);
+    for (int n = 0; n < half_neighbourhood; ++n) {
+      const Cell other = neighbour_cell(cell, n);
+      for (std::uint16_t j = heads_[bucket_of(other, mask)]; j != end_of_list; j = links_[j])
+        if ((n > 0 || j > i) && cell_of(state_.positions[j], inverse_size) == other) add_contact(i, j, distance);
+    }
+  }
+}
+
+void PlainLoop::add_pulls() {
+  for (const Pull& pull : pulls_) {
+    const Vec3 units = pull.stiffness * scale_.force * (pull.target - state_.positions[pull.mass]);
+    if (fits(units)) add(pull.mass, units);
+  }
+}
+
+template <class Hooks>
+bool PlainLoop::add_environment(const Hooks& hooks) {
+  add_pulls();
+  if constexpr (Hooks::has_contacts) add_contacts();
+  if constexpr (Hooks::has_faces) return add_face_forces(hooks);
+  return true;
+}
+
+Vec3 PlainLoop::take(std::size_t mass, float inverse_scale) {
+  const Sum sum = sums_[mass];
+  sums_[mass] = {};
+  return inverse_scale * Vec3{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
+}
+
+// Stores a mass's new state unless it left the finite; then the mass stays and the robot has exploded.
+bool PlainLoop::keep(std::size_t mass, Vec3 x, Vec3 v) {
+  if (within_reach(x)) {
+    state_.positions[mass] = x;
+    state_.velocities[mass] = v;
+    return true;
+  }
+  bad_mass_ = std::min(bad_mass_, static_cast<std::uint32_t>(mass));
+  return false;
+}
+
+// Algorithm 1.
+template <class Hooks>
+bool PlainLoop::step_force(const Hooks& hooks) {
+  if (!add_environment(hooks) || !add_spring_forces()) return false;
+  bool finite = true;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    Vec3 v = state_.velocities[i];
+    const Vec3 force = take(i, 1 / scale_.force) + hooks.on_mass(v);
+    v = accelerated(v, force, constants_);
+    Vec3 x = multiply_add(constants_.dt, v, state_.positions[i]);
+    end_step(x, v, hooks, constants_);
+    finite &= keep(i, x, v);
+  }
+  return finite;
+}
+
+// Algorithm 2. Between prediction and correction the state holds the prediction and the accelerated velocity.
+template <class Hooks>
+bool PlainLoop::step_xpbd(const Hooks& hooks) {
+  if (!add_environment(hooks)) return false;
+  bool finite = true;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const Vec3 v = state_.velocities[i];
+    const Vec3 predicted = accelerated(v, take(i, 1 / scale_.force) + hooks.on_mass(v), constants_);
+    finite &= keep(i, multiply_add(constants_.dt, predicted, state_.positions[i]), predicted);
+  }
+  if (!finite || !add_spring_corrections()) return false;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const Vec3 correction = take(i, 1 / scale_.correction);
+    Vec3 x = state_.positions[i] + correction;
+    Vec3 v = multiply_add(constants_.inverse_dt, correction, state_.velocities[i]);
+    end_step(x, v, hooks, constants_);
+    finite &= keep(i, x, v);
+  }
+  return finite;
+}
+
+void PlainLoop::step(std::int64_t steps) {
+  const auto step_once = [&](const auto& kind) {
+    const auto hooks = hooks_of(kind);
+    return configuration_.solver == Solver::force ? step_force(hooks) : step_xpbd(hooks);
+  };
+  for (std::int64_t n = 0; n < steps && exploded_step_ < 0; ++n, ++now_) {
+    update_muscles();
+    if (!std::visit(step_once, configuration_.environment)) exploded_step_ = now_;
+  }
+}
+
+}  // namespace mercury::bench

@@ -1,0 +1,79 @@
+// The same physics as a plain loop: one spring after the other, one float at a time, as one would write it down first.
+// What vector code is measured against, and what it must agree with bit for bit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/environments.h"
+#include "sim/face_pairs.h"
+#include "sim/integration.h"
+#include "sim/measures.h"
+#include "sim/muscle.h"
+#include "sim/robot.h"
+#include "sim/simulation.h"
+
+namespace mercury::bench {
+
+class PlainLoop {
+ public:
+  // The robot at rest in its file's position; it must outlive this.
+  PlainLoop(const Robot& robot, const Configuration& configuration);
+
+  void set_state(const State& state) { state_ = state; }
+  const State& state() const { return state_; }
+  void set_pulls(std::span<const Pull> pulls) { pulls_.assign(pulls.begin(), pulls.end()); }
+
+  // Advances unless the robot has exploded.
+  void step(std::int64_t steps);
+  std::int64_t exploded_step() const { return exploded_step_; }  // -1 = not exploded
+  std::uint32_t bad_mass() const { return bad_mass_; }           // lowest mass that left the finite
+
+ private:
+  struct Sum {
+    std::int32_t x = 0, y = 0, z = 0;
+  };
+
+  void update_muscles();
+  template <class Law>
+  bool add_springs(const Law& law);
+  bool add_spring_forces();
+  bool add_spring_corrections();
+  template <class Hooks>
+  bool add_face_forces(const Hooks& hooks);
+  void add_contacts();
+  void add_contact(std::uint16_t i, std::uint16_t j, float distance);
+  void add_pulls();
+  template <class Hooks>
+  bool add_environment(const Hooks& hooks);
+  template <class Hooks>
+  bool step_force(const Hooks& hooks);
+  template <class Hooks>
+  bool step_xpbd(const Hooks& hooks);
+  void add(std::size_t mass, Vec3 units);
+  Vec3 take(std::size_t mass, float inverse_scale);
+  bool keep(std::size_t mass, Vec3 x, Vec3 v);
+  bool joined(std::uint16_t i, std::uint16_t j) const;
+
+  const Robot& robot_;
+  const Configuration configuration_;
+  const RobotMeasures measures_;
+  FixedPointScale scale_;
+  StepConstants constants_;
+  float contact_stiffness_ = 0;
+  State state_;
+  std::vector<Sum> sums_;
+  std::vector<float> splits_;                          // of each spring, s_a + s_b
+  std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
+  std::array<MusclePhase, max_materials> phases_{};
+  std::vector<FacePair> faces_;
+  std::vector<std::vector<std::uint16_t>> neighbours_;
+  std::vector<std::uint16_t> heads_, links_;           // buckets of the contact grid, masses
+  std::vector<Pull> pulls_;
+  std::int64_t now_ = 0, exploded_step_ = -1;
+  std::uint32_t bad_mass_ = 0xffffffffu;
+};
+
+}  // namespace mercury::bench

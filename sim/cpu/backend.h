@@ -1,0 +1,13 @@
+// The CPU backend with a kernel of choice; make_cpu_backend() takes the best.
+#pragma once
+
+#include <memory>
+
+#include "sim/backend.h"
+#include "sim/cpu/kernel.h"
+
+namespace mercury::cpu {
+
+std::unique_ptr<Backend> make_backend(const Device& device, const Kernel& kernel);
+
+}  // namespace mercury::cpu

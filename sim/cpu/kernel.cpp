@@ -1,0 +1,28 @@
+#include "sim/cpu/kernel.h"
+
+#include <hwy/targets.h>
+
+#include <vector>
+
+#include "sim/cpu/kernel_list.h"
+
+namespace mercury::cpu {
+namespace {
+
+std::vector<Kernel> usable_kernels() {
+  const std::int64_t supported = hwy::SupportedTargets();
+  std::vector<Kernel> usable;
+  if ((supported & HWY_AVX3) != 0) usable.push_back(avx512_kernel);
+  if ((supported & HWY_AVX2) != 0) usable.push_back(avx2_kernel);
+  if ((supported & HWY_SSE4) != 0) usable.push_back(sse4_kernel);
+  return usable;
+}
+
+}  // namespace
+
+std::span<const Kernel> kernels() {
+  static const std::vector<Kernel> usable = usable_kernels();
+  return usable;
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,13 @@
+#include <hwy/detect_targets.h>
+#undef HWY_TARGET
+#define HWY_TARGET HWY_AVX3
+
+#include "sim/cpu/kernel_target.h"
+
+#include "sim/cpu/kernel_list.h"
+
+namespace mercury::cpu {
+
+const Kernel avx512_kernel{"AVX-512", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance};
+
+}  // namespace mercury::cpu

@@ -1,0 +1,137 @@
+// A vector of floats that computes as a float does, for the instruction set that the including file is compiled for:
+// with the names of sim/host_device.h the equations of sim/ hold for several masses or springs at once.
+//
+// Products and sums are never fused, square roots and divisions are IEEE's: every lane holds the bits that a float would.
+#pragma once
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "sim/material.h"
+#include "sim/vec3.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mercury::cpu::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr hn::CappedTag<float, 8> floats;
+inline constexpr hn::RebindToSigned<decltype(floats)> integers;
+inline constexpr hn::RebindToUnsigned<decltype(floats)> words;
+inline constexpr std::size_t lane_count = hn::MaxLanes(floats);
+
+struct Mask {
+  hn::Mask<decltype(floats)> m;
+};
+
+struct Lanes {
+  hn::Vec<decltype(floats)> v;
+  Lanes() = default;
+  HWY_INLINE Lanes(hn::Vec<decltype(floats)> vector) : v(vector) {}
+  HWY_INLINE Lanes(float all) : v(hn::Set(floats, all)) {}
+};
+
+struct Integers {
+  hn::Vec<decltype(integers)> v;
+};
+
+struct Words {
+  hn::Vec<decltype(words)> v;
+  Words() = default;
+  HWY_INLINE Words(hn::Vec<decltype(words)> vector) : v(vector) {}
+  HWY_INLINE explicit Words(std::uint32_t all) : v(hn::Set(words, all)) {}
+};
+
+HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
+HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
+HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
+HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
+HWY_INLINE Lanes operator-(Lanes a) { return hn::Neg(a.v); }
+HWY_INLINE Mask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
+HWY_INLINE Mask operator<=(Lanes a, Lanes b) { return {hn::Le(a.v, b.v)}; }
+HWY_INLINE Mask operator>(Lanes a, Lanes b) { return {hn::Lt(b.v, a.v)}; }
+
+HWY_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) { return a * b + c; }
+HWY_INLINE Lanes negative_multiply_add(Lanes a, Lanes b, Lanes c) { return c - a * b; }
+HWY_INLINE Lanes absolute(Lanes a) { return hn::Abs(a.v); }
+HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
+HWY_INLINE Lanes inverse(Lanes a) { return Lanes(1.0f) / a; }
+HWY_INLINE Lanes inverse_sqrt(Lanes a) { return inverse(square_root(a)); }
+HWY_INLINE Lanes select(Mask condition, Lanes yes, Lanes no) { return hn::IfThenElse(condition.m, yes.v, no.v); }
+HWY_INLINE Lanes smaller(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
+HWY_INLINE Lanes larger(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
+HWY_INLINE Mask all_of(Mask a, Mask b, Mask c) { return {hn::And(hn::And(a.m, b.m), c.m)}; }
+HWY_INLINE Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
+HWY_INLINE bool every(Mask a) { return hn::AllTrue(floats, a.m); }
+// One bit a lane, the first lowest.
+HWY_INLINE std::uint32_t bits_of(Mask a) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(floats, a.m, bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+}
+HWY_INLINE float smallest(Lanes a) { return hn::GetLane(hn::MinOfLanes(floats, a.v)); }
+HWY_INLINE float largest(Lanes a) { return hn::GetLane(hn::MaxOfLanes(floats, a.v)); }
+
+HWY_INLINE Integers operator+(Integers a, Integers b) { return {hn::Add(a.v, b.v)}; }
+HWY_INLINE Integers operator-(Integers a, Integers b) { return {hn::Sub(a.v, b.v)}; }
+HWY_INLINE Integers bits_of(Lanes a) { return {hn::BitCast(integers, a.v)}; }
+HWY_INLINE Integers round_to_int(Lanes a) { return {hn::NearestInt(a.v)}; }
+HWY_INLINE Lanes float_of(Integers a) { return hn::ConvertTo(floats, a.v); }
+HWY_INLINE Integers no_integers() { return {hn::Zero(integers)}; }
+
+HWY_INLINE Words operator+(Words a, Words b) { return hn::Add(a.v, b.v); }
+HWY_INLINE Words operator-(Words a, Words b) { return hn::Sub(a.v, b.v); }
+HWY_INLINE Words operator^(Words a, Words b) { return hn::Xor(a.v, b.v); }
+HWY_INLINE Mask top_bit(Words a) {
+  return {hn::MaskFromVec(hn::BitCast(floats, hn::BroadcastSignBit(hn::BitCast(integers, a.v))))};
+}
+HWY_INLINE Words select(Mask condition, Words yes, Words no) {
+  return hn::BitCast(words, hn::IfThenElse(condition.m, hn::BitCast(floats, yes.v), hn::BitCast(floats, no.v)));
+}
+HWY_INLINE Lanes float_of_signed(Words a) { return hn::ConvertTo(floats, hn::BitCast(integers, a.v)); }
+
+// Loads and stores of consecutive elements; `aligned` ones start at a multiple of lane_count.
+HWY_INLINE Lanes load_aligned(const float* from) { return hn::Load(floats, from); }
+HWY_INLINE Integers load_aligned(const std::int32_t* from) { return {hn::Load(integers, from)}; }
+HWY_INLINE Words load_aligned(const std::uint32_t* from) { return hn::Load(words, from); }
+HWY_INLINE Lanes load(const float* from) { return hn::LoadU(floats, from); }
+HWY_INLINE Integers load(const std::int32_t* from) { return {hn::LoadU(integers, from)}; }
+HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); }
+HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, integers, to); }
+HWY_INLINE void store_aligned(Words a, std::uint32_t* to) { hn::Store(a.v, words, to); }
+HWY_INLINE void store(Integers a, std::int32_t* to) { hn::StoreU(a.v, integers, to); }
+// table[id] for each lane's id.
+HWY_INLINE Lanes look_up(const float* table, const MaterialId* ids) {
+  const auto narrow = hn::LoadU(hn::Rebind<MaterialId, decltype(integers)>(), ids);
+  return hn::GatherIndex(floats, table, hn::PromoteTo(integers, narrow));
+}
+
+// Three of them, as Vec3 is three floats.
+struct Lanes3 {
+  Lanes x, y, z;
+};
+HWY_INLINE Lanes3 operator+(Lanes3 a, Lanes3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Lanes3 operator-(Lanes3 a, Lanes3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Lanes3 operator-(Vec3 a, Lanes3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Lanes3 operator*(Lanes s, Lanes3 a) { return {s * a.x, s * a.y, s * a.z}; }
+HWY_INLINE Lanes3 multiply_add(Lanes a, Lanes3 b, Lanes3 c) {
+  return {multiply_add(a, b.x, c.x), multiply_add(a, b.y, c.y), multiply_add(a, b.z, c.z)};
+}
+HWY_INLINE Lanes3 cross(Lanes3 a, Lanes3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+HWY_INLINE Lanes3 select(Mask condition, Lanes3 yes, Lanes3 no) {
+  return {select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z)};
+}
+
+struct Integers3 {
+  Integers x, y, z;
+};
+HWY_INLINE Integers3 operator+(Integers3 a, Integers3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Integers3 operator-(Integers3 a, Integers3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Integers3 round_to_int(Lanes3 a) { return {round_to_int(a.x), round_to_int(a.y), round_to_int(a.z)}; }
+HWY_INLINE Lanes3 float_of(Integers3 a) { return {float_of(a.x), float_of(a.y), float_of(a.z)}; }
+
+}  // namespace mercury::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

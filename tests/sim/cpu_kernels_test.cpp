@@ -1,0 +1,175 @@
+// Whatever the instruction set, the CPU computes the bits of the plain loop over one spring after the other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "bench/cpu_plain_loop.h"
+#include "bodies.h"
+#include "sim/cpu/backend.h"
+
+namespace mercury {
+namespace {
+
+struct Case {
+  cpu::Kernel kernel;
+  Solver solver;
+  std::string_view environment;
+};
+
+std::vector<Case> every_case() {
+  std::vector<Case> cases;
+  for (const cpu::Kernel& kernel : cpu::kernels())
+    for (const Solver solver : {Solver::force, Solver::xpbd})
+      for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
+        cases.push_back({kernel, solver, environment});
+  return cases;
+}
+
+std::string name_of_case(const testing::TestParamInfo<Case>& info) {
+  std::string name;
+  for (const std::string_view part : {info.param.kernel.name, name_of(info.param.solver), info.param.environment}) {
+    if (!name.empty()) name += '_';
+    for (const char c : part)
+      if (c != '-') name += c;
+  }
+  return name;
+}
+
+// The same robot with its masses numbered in any order, so that neighbours do not follow one another.
+Robot scrambled(const Robot& robot, std::uint64_t seed) {
+  std::vector<std::uint16_t> place(robot.masses.size());
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = static_cast<std::uint16_t>(i);
+  std::mt19937_64 random(seed);
+  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random() % i]);
+  Robot result = robot;
+  for (std::size_t i = 0; i < place.size(); ++i) result.masses[place[i]] = robot.masses[i];
+  for (Spring& spring : result.springs) {
+    spring.a = place[spring.a];
+    spring.b = place[spring.b];
+  }
+  for (Face& face : result.faces) face = {place[face.a], place[face.b], place[face.c]};
+  return result;
+}
+
+// Without some of its springs and faces.
+Robot torn(const Robot& robot, std::uint64_t seed) {
+  Robot result = robot;
+  std::mt19937_64 random(seed);
+  std::erase_if(result.springs, [&](const Spring&) { return random() % 3 == 0; });
+  std::erase_if(result.faces, [&](const Face&) { return random() % 5 == 0; });
+  return result;
+}
+
+// Two bodies in one place, which no spring joins.
+Robot entangled(const Robot& robot) {
+  Robot result = robot;
+  const auto masses = static_cast<std::uint16_t>(robot.masses.size());
+  for (const Vec3 x : robot.masses) result.masses.push_back(x + Vec3{0.03f, 0.02f, 0.04f});
+  for (const Spring& s : robot.springs)
+    result.springs.push_back({static_cast<std::uint16_t>(s.a + masses), static_cast<std::uint16_t>(s.b + masses), s.material, s.rest_length});
+  return result;
+}
+
+std::vector<Robot> zoo() {
+  const Robot lattice = bodies::random_voxels({.x = 5, .y = 4, .z = 3}, 1);
+  std::vector<Robot> robots = {lattice,
+                               bodies::random_voxels({.x = 17, .y = 2, .z = 2}, 2),
+                               bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3),
+                               scrambled(lattice, 4),
+                               torn(lattice, 5),
+                               scrambled(torn(lattice, 6), 7),
+                               entangled(bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 8)),
+                               bodies::pair({50, 0.5f, 3, 0.2f}),
+                               bodies::point({0, 0, 1})};
+  robots.push_back(lattice);  // every spring twice
+  robots.back().springs.insert(robots.back().springs.end(), lattice.springs.begin(), lattice.springs.end());
+  return robots;
+}
+
+class CpuKernel : public testing::TestWithParam<Case> {
+ protected:
+  Configuration configuration() const {
+    return {.solver = GetParam().solver, .environment = environment_named(GetParam().environment), .device = {.threads = 1}};
+  }
+
+  // The state after steps that are cut into calls, and what became of the robot.
+  struct Result {
+    State state;
+    std::int64_t exploded_step;
+    std::uint32_t bad_mass;
+  };
+  Result by_kernel(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps) const {
+    const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
+    const Robot* const pointer = &robot;
+    const Configuration told = configuration();
+    backend->load({&pointer, 1}, told);
+    backend->write(0, start.positions, start.velocities);
+    backend->set_pulls(pulls);
+    Clock clock{.dt = told.dt};
+    for (std::int64_t call : {std::int64_t{1}, std::int64_t{40}, steps - 41}) {
+      backend->step(clock, call);
+      clock.step += call;
+    }
+    Result result{{std::vector<Vec3>(robot.masses.size()), std::vector<Vec3>(robot.masses.size())}, -1, 0};
+    backend->read(0, result.state.positions, result.state.velocities);
+    result.exploded_step = backend->status(0).exploded_step;
+    result.bad_mass = backend->status(0).bad_mass;
+    return result;
+  }
+  Result by_plain_loop(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps) const {
+    bench::PlainLoop loop(robot, configuration());
+    loop.set_state(start);
+    loop.set_pulls(pulls);
+    loop.step(steps);
+    return {loop.state(), loop.exploded_step(), loop.bad_mass()};
+  }
+
+  void expect_same(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps,
+                   const std::string& which) const {
+    const Result got = by_kernel(robot, start, pulls, steps), wanted = by_plain_loop(robot, start, pulls, steps);
+    EXPECT_EQ(got.exploded_step, wanted.exploded_step) << which;
+    EXPECT_EQ(got.bad_mass, wanted.bad_mass) << which;
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < robot.masses.size(); ++i)
+      if (got.state.positions[i] != wanted.state.positions[i] || got.state.velocities[i] != wanted.state.velocities[i]) ++different;
+    EXPECT_EQ(different, 0u) << which << ", masses that differ, of " << robot.masses.size();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, CpuKernel, testing::ValuesIn(every_case()), name_of_case);
+
+TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
+  const std::vector<Robot> robots = zoo();
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    State start = bodies::shaken(robots[i], 0.01f, 0.5f, i);
+    for (Vec3& x : start.positions) x.z += 0.3f;
+    const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
+    expect_same(robots[i], start, pulls, 500, "robot " + std::to_string(i));
+  }
+}
+
+// 30 m/s: the list of near masses is made anew again and again, and the robots go far.
+TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopForFastRobots) {
+  const std::vector<Robot> robots = zoo();
+  for (const std::size_t i : {1u, 3u, 6u}) {
+    State start = bodies::shaken(robots[i], 0.02f, 3, i);
+    for (Vec3& v : start.velocities) v += Vec3{20, 20, -10};
+    expect_same(robots[i], start, {}, 300, "robot " + std::to_string(i));
+  }
+}
+
+TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
+  const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 1);
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<std::pair<Vec3, Vec3>> ways = {{{}, {1e10f, 0, 0}}, {{}, {0, 0, infinity}}, {{}, {2e4f, 0, 0}},
+                                                   {{0, 500, 1}, {}},   {{0, 0, 9e5f}, {0, 0, 1e9f}}};
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    State start = bodies::shaken(robot, 0.01f, 0.3f, way);
+    start.positions[20] += ways[way].first;
+    start.velocities[20] += ways[way].second;
+    expect_same(robot, start, {}, 60, "way " + std::to_string(way));
+  }
+}
+
+}  // namespace
+}  // namespace mercury
