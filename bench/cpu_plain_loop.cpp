@@ -22,8 +22,8 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
     compliance_[id] = static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / scale_.correction;
     phases_[id] = muscle_phase(materials[id], clock);
   }
-  if (const Land* land = std::get_if<Land>(&configuration.environment); land && land->self_collision)
-    contact_stiffness_ = land->contact_stiffness * land->stiffness_scale;
+  if (const Land* land = std::get_if<Land>(&configuration.environment))
+    contact_stiffness_ = contact_stiffness_of(*land, configuration.solver, configuration.dt);
   constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                 static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
   const std::size_t masses = robot.masses.size();

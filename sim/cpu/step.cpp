@@ -17,8 +17,8 @@ StepSetting setting_of(const Configuration& configuration) {
   StepSetting setting;
   setting.solver = configuration.solver;
   setting.hooks = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
-  if (const Land* land = std::get_if<Land>(&configuration.environment); land && land->self_collision)
-    setting.contact.stiffness = land->contact_stiffness * land->stiffness_scale;
+  if (const Land* land = std::get_if<Land>(&configuration.environment))
+    setting.contact.stiffness = contact_stiffness_of(*land, configuration.solver, configuration.dt);
   setting.constants = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                        static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
   return setting;
