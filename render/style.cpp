@@ -8,14 +8,14 @@ using Eigen::Vector3f;
 Style dark_water() {
   Style s;
   s.to_key = {-0.34f, -0.22f, 0.92f};
-  s.key_light = {2.00f, 2.30f, 2.30f};
-  s.sky_light = {0.12f, 0.30f, 0.44f};
-  s.ground_light = {0.03f, 0.08f, 0.12f};
+  s.key_light = {2.35f, 2.35f, 2.20f};
+  s.sky_light = {0.22f, 0.34f, 0.44f};
+  s.ground_light = {0.09f, 0.13f, 0.16f};
   s.key_size = 0.10f;
   s.backdrop_high = {0.010f, 0.120f, 0.200f};
   s.backdrop_low = {0.003f, 0.034f, 0.070f};
-  s.floor_color = {0.050f, 0.105f, 0.130f};
-  s.fog = {0.90f, 0.55f, 0.46f};
+  s.floor_color = {0.030f, 0.092f, 0.125f};
+  s.fog = {0.70f, 0.50f, 0.44f};
   s.caustics = 0.55f;
   s.glow = 1.5f;
   s.vignette = 0.45f;
@@ -25,14 +25,14 @@ Style dark_water() {
 Style light_water() {
   Style s;
   s.to_key = {-0.34f, -0.22f, 0.92f};
-  s.key_light = {2.35f, 2.35f, 2.15f};
-  s.sky_light = {0.34f, 0.56f, 0.66f};
-  s.ground_light = {0.20f, 0.26f, 0.26f};
+  s.key_light = {2.55f, 2.40f, 2.15f};
+  s.sky_light = {0.44f, 0.56f, 0.62f};
+  s.ground_light = {0.28f, 0.31f, 0.29f};
   s.key_size = 0.10f;
   s.backdrop_high = {0.22f, 0.60f, 0.74f};
   s.backdrop_low = {0.08f, 0.38f, 0.54f};
   s.floor_color = {0.46f, 0.47f, 0.40f};
-  s.fog = {0.95f, 0.42f, 0.34f};
+  s.fog = {0.70f, 0.38f, 0.32f};
   s.caustics = 0.40f;
   s.glow = 0.6f;
   s.vignette = 0.15f;

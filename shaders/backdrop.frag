@@ -6,6 +6,17 @@
 layout(location = 0) in vec2 place;
 layout(location = 0) out vec4 color;
 
+// Beams of light in the water, more or less than the mean: the caustics' pattern, gathered along the line of sight.
+float shafts(vec3 direction) {
+  float sum = 0.0;
+  for (int i = 1; i <= 6; ++i) {
+    vec3 point = frame.eye.xyz + direction * frame.water.w * (0.4 + 0.45 * float(i));
+    vec2 place = point.xy - frame.to_key.xy / frame.to_key.z * point.z;
+    sum += textureLod(caustics_tile, place * (1.1 / frame.water.w), 3.0).r - 1.0;
+  }
+  return 0.30 * sum / 6.0 * smoothstep(-0.05, 0.25, direction.z) * 2.0;
+}
+
 void main() {
   vec3 across = vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
   vec3 sight = transpose(mat3(frame.view)) * across;  // length 1 along the line of sight's axis
@@ -13,7 +24,9 @@ void main() {
   vec3 direction = normalize(sight);
   bool floor_seen = int(frame.water.x) != AROUND_NONE && steps > 0.0 && steps < 0.5 * frame.depth.y;
   if (!floor_seen) {
-    color = vec4(backdrop(direction), 0.0);
+    vec3 light = backdrop(direction);
+    if (frame.water.y > 0.0 && direction.z > -0.05) light *= 1.0 + shafts(direction);
+    color = vec4(light, 0.0);
     return;
   }
   vec3 point = frame.eye.xyz + steps * sight;
