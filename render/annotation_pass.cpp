@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/bindings.h"
+#include "render/frame_block.h"
 
 namespace mercury::render {
 namespace {
@@ -93,7 +94,13 @@ void AnnotationPass::draw_paths(std::span<const Path> paths, float width) {
 }
 
 void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count) const {
-  const float half_side = 0.8f * (camera.eye - camera.target).norm();
+  const Octave octave = octave_of((camera.eye - camera.target).norm());
+  if (octave.share_of_double < 1) draw_particles(scene, camera, count, 1.1f * octave.size, 1 - octave.share_of_double);
+  if (octave.share_of_double > 0) draw_particles(scene, camera, count, 2.2f * octave.size, octave.share_of_double);
+}
+
+void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count, float half_side,
+                                    float share) const {
   const Vector3f sight = (camera.target - camera.eye).normalized();
   const Vector3f middle = camera.target - 0.2f * half_side * sight;
   const auto drift = [&](float speed) { return float(std::remainder(double(speed) * scene.time, 2.0 * half_side)); };
@@ -102,6 +109,7 @@ void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, in
   glUniform4f(0, middle.x(), middle.y(), middle.z(), half_side);
   glUniform4f(1, scene.flow.x(), scene.flow.y(), scene.flow.z(), exposure);
   glUniform3f(2, drift(scene.flow.x()), drift(scene.flow.y()), drift(scene.flow.z()));
+  glUniform1f(3, share);
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 6 * count);
 }

@@ -16,6 +16,8 @@ class AnnotationPass {
   void draw_particles(const Scene& scene, const Camera& camera, int count) const;
 
  private:
+  void draw_particles(const Scene& scene, const Camera& camera, int count, float half_side, float share) const;
+
   VertexArray empty_;
   Program arrow_, path_, particle_;
   Buffer arrows_, points_;

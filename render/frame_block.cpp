@@ -23,6 +23,13 @@ float stepped(float size) {
 
 }  // namespace
 
+Octave octave_of(float distance) {
+  const float power = std::log2(std::max(distance, 1e-6f));
+  const float whole = std::floor(power);
+  const float t = std::clamp((power - whole - 0.35f) / 0.3f, 0.0f, 1.0f);
+  return {std::exp2(whole), t * t * (3 - 2 * t)};
+}
+
 ShadowFit fit_shadow(const Bounds& casters, const Vector3f& to_key, int side) {
   const Vector3f back = to_key.normalized();
   const Vector3f right = Vector3f::UnitY().cross(back).normalized();
@@ -46,7 +53,7 @@ ShadowFit fit_shadow(const Bounds& casters, const Vector3f& to_key, int side) {
 }
 
 FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, const ShadowFit& shadow,
-                       const Bounds& bodies, int width, int height) {
+                       const Bounds& bodies, int ground_side, int width, int height) {
   FrameBlock b;
   const float aspect = float(width) / float(height);
   b.view = camera.view();
@@ -78,8 +85,12 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   const Vector3f margin = Vector3f::Constant(0.1f * shade.radius() + drop * style.key_size);
   const Vector3f size = shade.high - shade.low + 2 * margin;
   const float side = stepped(std::max(size.x(), size.y()));
-  b.ground = {shade.center().x() - 0.5f * side, shade.center().y() - 0.5f * side, side, scene.floor};
+  const float texel = side / float(ground_side);
+  const auto corner = [&](float middle) { return texel * std::round((middle - 0.5f * side) / texel); };
+  b.ground = {corner(shade.center().x()), corner(shade.center().y()), side, scene.floor};
   b.water = {float(scene.surroundings), style.caustics, bodies.empty() ? 0.0f : bodies.high.z(), distance};
+  const Octave octave = octave_of(distance);
+  b.octave = {octave.size, 2 * octave.size, octave.share_of_double, 0};
   return b;
 }
 

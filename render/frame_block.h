@@ -12,8 +12,15 @@ namespace mercury::render {
 struct FrameBlock {
   Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow;
   Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color,
-      fog, cut, screen, depth, shadow_size, ground, water;
+      fog, cut, screen, depth, shadow_size, ground, water, octave;
 };
+
+// Sizes for patterns that stay in their place in the world and yet suit any distance: a power of two, and the share of
+// its double, which is faded over to as the distance grows.
+struct Octave {
+  float size = 1, share_of_double = 0;
+};
+Octave octave_of(float distance);
 
 // The light's view of all that can throw a shadow.
 struct ShadowFit {
@@ -24,6 +31,6 @@ struct ShadowFit {
 ShadowFit fit_shadow(const Bounds& casters, const Eigen::Vector3f& to_key, int side);
 
 FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, const ShadowFit& shadow,
-                       const Bounds& bodies, int width, int height);
+                       const Bounds& bodies, int ground_side, int width, int height);
 
 }  // namespace mercury::render

@@ -97,7 +97,10 @@ void LightPass::draw_caustics() const {
   glBindVertexArray(caustics_grid_.get());
   glDrawElements(GL_TRIANGLES, 6 * caustics_cells * caustics_cells, GL_UNSIGNED_INT, nullptr);
   glDisable(GL_BLEND);
+  // Where few rays cross, the finest level is ragged: it is averaged and then left out.
+  glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 0);
   glGenerateTextureMipmap(caustics_.get());
+  glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 1);
 }
 
 void LightPass::begin_shadow() {

@@ -192,6 +192,7 @@ void Overlay::legend(const Legend& legend) {
     y += bar + 0.6f * size;
   }
   for (const auto& [color, name] : legend.swatches) {
+    box({left - 1, y + 0.12f * size - 1, 0.95f * size + 2, 0.95f * size + 2}, 0.2f * size + 1, style_.text, 0.35f);
     box({left, y + 0.12f * size, 0.95f * size, 0.95f * size}, 0.2f * size, color, 1);
     text(name, left + 1.5f * size, y + 0.1f * size, 0.9f * size);
     y += 1.25f * size;

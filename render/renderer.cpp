@@ -225,7 +225,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   const std::vector<Bounds> boxes = placed(body_bounds(), scene.placements);
   const Bounds group = joined(boxes);
   const ShadowFit shadow = fit_shadow(group, style.to_key, p.settings.shadow_side);
-  const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.width, p.height);
+  const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.settings.ground_side, p.width, p.height);
   p.frame.write(&block, sizeof block);
   p.bind();
   glDisable(GL_BLEND);

@@ -12,7 +12,7 @@ float shafts(vec3 direction) {
   for (int i = 1; i <= 6; ++i) {
     vec3 point = frame.eye.xyz + direction * frame.water.w * (0.4 + 0.45 * float(i));
     vec2 place = point.xy - frame.to_key.xy / frame.to_key.z * point.z;
-    sum += textureLod(caustics_tile, place * (1.1 / frame.water.w), 3.0).r - 1.0;
+    sum += textureLod(caustics_tile, place * (0.8 / frame.octave.x), 3.0).r - 1.0;
   }
   return 0.30 * sum / 6.0 * smoothstep(-0.05, 0.25, direction.z) * 2.0;
 }

@@ -32,11 +32,13 @@ vec3 land(vec2 place, vec2 pixel, float open) {
 // Nothing stands on the sand, so that it sees the whole sky.
 vec3 sand(vec2 place) {
   float key = key_on_floor(place);
-  vec3 tile = texture(sand_tile, place * (2.6 / frame.water.w)).rgb;
+  vec3 tile = vec3(0.0);
+  if (frame.octave.z < 1.0) tile += (1.0 - frame.octave.z) * texture(sand_tile, place * (1.9 / frame.octave.x)).rgb;
+  if (frame.octave.z > 0.0) tile += frame.octave.z * texture(sand_tile, place * (1.9 / frame.octave.y)).rgb;
   vec2 slope = (tile.xy - 0.5) * 1.1;
   vec3 normal = normalize(vec3(-slope, 1.0));
   float n_l = max(dot(normal, frame.to_key.xyz), 0.0);
-  vec3 light = frame.key_light.rgb * key * n_l / 1.6 * caustics(vec3(place, frame.ground.w), 1.2) +
+  vec3 light = frame.key_light.rgb * key * n_l / 1.6 * caustics(vec3(place, frame.ground.w), 0.4) +
                frame.sky_light.rgb * (0.7 + 0.3 * normal.z);
   return frame.floor_color.rgb * (0.75 + 0.5 * tile.z) * light;
 }

@@ -20,6 +20,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 shadow_size;              // width and depth of what the shadow map covers [m]
   vec4 ground;                   // corner x, y and side of the floor's map of light, height of the floor [m]
   vec4 water;                    // Surroundings, strength of caustics, height of the highest body, distance to target
+  vec4 octave;                   // a power of two near the distance to the target, its double, weight of the latter
 } frame;
 
 #define AROUND_NONE 0

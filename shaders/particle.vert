@@ -3,6 +3,7 @@
 #include "ribbon.glsl"
 layout(location = 0) uniform vec4 box;   // centre of the water that is drawn, half its side [m]
 layout(location = 1) uniform vec4 flow;  // [m/s]; w = time of exposure [s]
+layout(location = 3) uniform float share;  // of this set of specks in what is seen
 layout(location = 2) uniform vec3 drift; // flow times time, taken modulo the box's side in double precision [m]
 
 layout(location = 0) out vec2 place;
@@ -43,6 +44,6 @@ void main() {
   float range = distance(center, frame.eye.xyz);
   float nearness = smoothstep(0.25, 0.8, range / frame.water.w);
   opacity = inside * nearness * (radius * radius) / (shown * shown) * sqrt(slenderness) * exp(-0.5 * range / frame.water.w);
-  opacity *= step(frame.ground.w, center.z);
+  opacity *= share * step(frame.ground.w, center.z);
   gl_Position = frame.view_projection * vec4(world, 1.0);
 }

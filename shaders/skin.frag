@@ -86,7 +86,7 @@ void main() {
   vec3 key = frame.key_light.rgb;
   if (dot(normal, frame.to_key.xyz) > -0.25) {
     key *= key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
-    if (frame.water.y > 0.0) key *= caustics(world, 1.8);
+    if (frame.water.y > 0.0) key *= caustics(world, 1.0);
   } else {
     key = vec3(0.0);  // its own back is turned to the light
   }
