@@ -46,6 +46,7 @@ class Program {
     add_render_command(app_, choose);
     add_run_command(app_, choose);
     add_new_command(app_, choose);
+    add_bench_command(app_, choose);
     add_info_command(app_, choose);
   }
 
