@@ -66,6 +66,15 @@ void require_base(int id) {
 
 }  // namespace
 
+std::vector<Material> material_table(std::span<const Material, base_material_count> bases) {
+  std::vector<Material> table(default_material_count);
+  for (std::size_t id = 1; id < table.size(); ++id) {
+    const auto [i, j] = defaults.pairs[id];
+    table[id] = i == j ? bases[i - 1u] : mean(bases[i - 1u], bases[j - 1u]);
+  }
+  return table;
+}
+
 std::span<const Material> default_materials() { return defaults.materials; }
 
 std::string default_material_name(MaterialId id) {

@@ -31,6 +31,10 @@ inline constexpr int max_materials = 256;            // air and up to 255 more
 // stiffness and amplitude are the means of both; frequency and phase the means over the partners that move.
 std::span<const Material> default_materials();
 
+// The table that other base materials give, `bases` being ids 1..22: air, then these, then their pairs, by the ids and
+// means of the defaults.
+std::vector<Material> material_table(std::span<const Material, base_material_count> bases);
+
 // "air", "muscle 1" .. "muscle 20", "tissue", "bone", "muscle 1 + bone", ...
 std::string default_material_name(MaterialId id);
 

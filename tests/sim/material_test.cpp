@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 
@@ -49,6 +50,17 @@ TEST(Materials, APassivePartnerLowersTheAmplitudeNotTheFrequency) {
   EXPECT_EQ(pair.frequency, materials[20].frequency);
   EXPECT_EQ(pair.phase, materials[20].phase);
   EXPECT_EQ(materials[combine(tissue, bone)], (Material{70, 0, 0, 0}));
+}
+
+TEST(Materials, ATableOfTheDefaultBasesIsTheDefaultTable) {
+  const auto materials = default_materials();
+  const auto bases = materials.subspan<1, base_material_count>();
+  EXPECT_TRUE(std::ranges::equal(material_table(bases), materials));
+  std::vector<Material> others(bases.begin(), bases.end());
+  others[4] = {80, 0.2f, 7, 1};
+  const auto table = material_table(std::span<const Material, base_material_count>(others));
+  EXPECT_EQ(table[5], (Material{80, 0.2f, 7, 1}));
+  EXPECT_EQ(table[combine(5, tissue)], (Material{60, 0.1f, 7, 1}));
 }
 
 TEST(Materials, NamesAreDistinct) {

@@ -1,0 +1,29 @@
+// The sample robots. Each says in its origin where it lives.
+#pragma once
+
+#include <vector>
+
+#include "sim/robot.h"
+
+namespace mercury::library {
+
+// Swimmers: muscles of some 100 kPa, stiff enough to bend a body against water, in waves that run from head to tail.
+Robot eel();
+Robot fish();
+Robot ray();
+Robot manta();
+Robot jellyfish();
+Robot squid();
+Robot turtle();
+
+// Crawlers: legs whose feet run round ellipses, bodies that lift themselves over the ground in waves.
+Robot quadruped();
+Robot beetle();
+Robot inchworm();
+Robot caterpillar();
+Robot sea_star();
+Robot hopper();
+
+std::vector<Robot> all_designs();
+
+}  // namespace mercury::library

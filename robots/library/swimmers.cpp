@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robots/library/body.h"
+#include "robots/library/designs.h"
+
+namespace mercury::library {
+namespace {
+
+constexpr float turn = 2 * std::numbers::pi_v<float>;
+
+// A wave of muscle that runs down a body.
+struct Wave {
+  float stiffness = 6000;  // [N/m]
+  float amplitude = 0.3f;  // at its strongest
+  float frequency = 5;     // [rad/s]
+  float waves = 1;         // wavelengths on the way
+  int segments = 10;       // muscles on the way; each and its antagonist count, so at most 10
+};
+
+// The muscle at `way` (0 to 1) of the wave; `strength` scales the amplitude, and turns the muscle into its antagonist
+// where it is negative.
+MaterialId muscle_of(Body& body, const Wave& wave, float way, float strength) {
+  const int segment = std::clamp(static_cast<int>(way * static_cast<float>(wave.segments)), 0, wave.segments - 1);
+  const float middle = (static_cast<float>(segment) + 0.5f) / static_cast<float>(wave.segments);
+  return body.muscle(
+      {wave.stiffness, wave.amplitude * strength, wave.frequency, -turn * wave.waves * middle});
+}
+
+float sign(float x) { return x < 0 ? -1.f : 1.f; }
+
+Robot eel_of(const Wave& wave) {
+  Body body("eel", "ocean", 28, 2, 3);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const bool tip = x == 0 || x == body.nx() - 1;
+    if (tip && z != 1) return air;
+    return muscle_of(body, wave, 1 - along(x, body.nx()), sign(from_middle(y, 2)));
+  });
+  return body.robot();
+}
+
+Robot fish_of(const Wave& wave) {
+  Body body("fish", "ocean", 24, 2, 7);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float height = std::abs(from_middle(z, body.nz()));
+    const bool is_tail_fin = x < 3;
+    // A deep body that narrows to the tail's stem, and a forked fin.
+    const float half_height = is_tail_fin ? 3.2f - 0.9f * static_cast<float>(x)
+                                          : 2.4f * std::sin(turn / 2 * std::pow(along(x - 3, body.nx() - 2), 0.7f)) + 0.9f;
+    if (height > half_height || (x == 0 && height < 1.5f)) return air;
+    return muscle_of(body, wave, 1 - along(x, body.nx()), sign(from_middle(y, 2)));
+  });
+  return body.robot();
+}
+
+// Fin rays of bone lie across the wings, so that muscles between them bend the sheet along the wave alone.
+Robot ray_of(const Wave& wave) {
+  Body body("ray", "ocean", 20, 17, 2);
+  body.set_bone_stiffness(wave.stiffness);
+  body.set_tissue_stiffness(wave.stiffness / 4);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float out = std::abs(from_middle(y, body.ny())) / 8;
+    const float ahead = from_middle(x, body.nx()) / 9.5f;
+    const bool is_tail = out < 0.1f;
+    const float half_length = 0.75f * std::sqrt(std::max(0.f, 1.02f - out * out));
+    if (std::abs(ahead - 0.25f) > half_length && !(is_tail && ahead < 0)) return air;
+    if (is_tail && ahead < -0.5f) return tissue;
+    if (x % 2 == 0) return bone;
+    return muscle_of(body, wave, 1 - along(x, body.nx()), sign(from_middle(z, 2)));
+  });
+  return body.robot();
+}
+
+Robot manta_of(const Wave& wave) {
+  Body body("manta", "ocean", 17, 23, 2);
+  body.set_bone_stiffness(wave.stiffness);
+  body.set_tissue_stiffness(wave.stiffness / 4);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float out = std::abs(from_middle(y, body.ny())) / 11;
+    const float behind_head = 1 - along(x, body.nx());
+    // Wings swept back: the leading edge falls off faster than the trailing edge.
+    const float leading = 0.12f + 0.4f * out * out, trailing = 0.7f - 0.05f * out;
+    const bool is_tail = out < 0.05f;
+    const bool is_horn = std::abs(out - 2.f / 11) < 0.05f && behind_head < 0.2f;
+    if (!is_tail && !is_horn && (behind_head < leading || behind_head > trailing)) return air;
+    if (is_tail && behind_head < 0.1f) return air;
+    if (is_tail && behind_head > 0.7f) return tissue;
+    if (is_horn || x % 2 == 0) return bone;
+    return muscle_of(body, wave, behind_head / 0.8f, sign(from_middle(z, 2)));
+  });
+  return body.robot();
+}
+
+// A bell whose rim contracts, and a soft skirt that follows late.
+Robot jellyfish_of(const Wave& wave) {
+  Body body("jellyfish", "ocean", 13, 13, 10);
+  body.set_bone_stiffness(wave.stiffness);
+  body.set_tissue_stiffness(wave.stiffness / 6);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float dx = from_middle(x, body.nx()), dy = from_middle(y, body.ny());
+    const float height = static_cast<float>(z) - 3.5f;  // above the rim
+    const float radius = std::hypot(dx, dy);
+    if (height < 0) {
+      if (radius < 1.2f && z > 0) return tissue;  // the stalk, which the bell's middle carries
+      return radius > 5.2f && radius < 6.4f ? tissue : air;
+    }
+    const float distance = std::hypot(radius, height * 1.1f);
+    if (radius < 1.2f && height < 5) return tissue;
+    if (distance > 6.4f || distance < 4.6f) return air;
+    const float from_apex = std::atan2(radius, height * 1.1f) / (turn / 4);
+    return from_apex < 0.45f ? bone : muscle_of(body, wave, (from_apex - 0.45f) / 0.55f, 1);
+  });
+  return body.robot();
+}
+
+// The mantle glides, three pairs of arms behind it wave.
+Robot squid_of(const Wave& wave) {
+  Body body("squid", "ocean", 28, 8, 4);
+  body.set_bone_stiffness(wave.stiffness);
+  body.set_tissue_stiffness(wave.stiffness / 2);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float side = std::abs(from_middle(y, body.ny())), height = std::abs(from_middle(z, body.nz()));
+    const int behind_tip = body.nx() - 1 - x;
+    if (behind_tip < 12) {
+      const float mantle = std::min(2.2f, 0.8f + 0.5f * static_cast<float>(behind_tip));
+      const float fin = behind_tip < 6 ? 1 + static_cast<float>(behind_tip) / 2 : 0;
+      if (std::hypot(side, height) < mantle) return height > 1 ? tissue : bone;
+      return height < 1 && side < fin ? tissue : air;
+    }
+    if (behind_tip < 14) return height < 1 ? bone : air;
+    const bool is_arm = side < 1 || side > 2;
+    const int longest = side < 1 ? 24 : 28;
+    if (height > 1 || !is_arm || behind_tip >= longest) return air;
+    return muscle_of(body, wave, static_cast<float>(behind_tip - 14) / 14, sign(from_middle(z, body.nz())));
+  });
+  return body.robot();
+}
+
+// Each flipper is a band that waves from its root to its tip; the fore ones sweep back.
+Robot turtle_of(const Wave& wave) {
+  Body body("turtle", "ocean", 20, 21, 4);
+  body.set_bone_stiffness(wave.stiffness);
+  body.set_tissue_stiffness(wave.stiffness / 4);
+  body.fill([&](int x, int y, int z) -> MaterialId {
+    const float side = std::abs(from_middle(y, body.ny())), ahead = static_cast<float>(x) - 12;
+    const float height = from_middle(z, body.nz());
+    const bool in_fin_layers = std::abs(height) < 1;
+    const float shell = std::hypot(ahead / 5, side / 3.6f);
+    if (shell < 1) return std::abs(height) < 1 || (height > 0 && shell < 0.75f) ? bone : air;
+    if (!in_fin_layers) return air;
+    if (side < 1.2f && ahead > 0) return bone;  // the head
+    // Along and across the fore flipper, which leaves the shoulder at 45 degrees.
+    const float fore_along = ((side - 2) - (ahead - 3)) * 0.7071f, fore_across = ((side - 2) + (ahead - 3)) * 0.7071f;
+    if (fore_along > 0 && std::abs(fore_across) < 1.6f) return muscle_of(body, wave, fore_along / 12, sign(height));
+    if (side > 0.8f && side < 3.2f && ahead < 0) return muscle_of(body, wave, (-3 - ahead) / 10, sign(height));
+    return air;
+  });
+  return body.robot();
+}
+
+}  // namespace
+
+// Tuned by simulation: what carries each farthest in 20 s.
+Robot eel() { return eel_of({.waves = 1.4f}); }
+Robot fish() { return fish_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
+Robot ray() { return ray_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 6, .waves = 1.2f}); }
+Robot manta() { return manta_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 9, .waves = 0.8f}); }
+Robot jellyfish() { return jellyfish_of({.stiffness = 15000, .frequency = 8, .waves = 1.8f, .segments = 5}); }
+Robot squid() { return squid_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
+Robot turtle() { return turtle_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
+
+}  // namespace mercury::library
