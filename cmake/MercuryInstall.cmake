@@ -26,9 +26,12 @@ target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DI
   sim/vec3.h)
 target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
   robots/file.h
+  robots/inspect.h
+  robots/origin.h
   robots/random.h
   robots/random_voxel.h
-  robots/voxel.h)
+  robots/voxel.h
+  robots/voxel_evolution.h)
 
 set(mercury_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mercury)
 install(TARGETS mercury_sim mercury_robots EXPORT mercury
