@@ -27,6 +27,8 @@ target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DI
 target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
   robots/file.h
   robots/inspect.h
+  robots/network.h
+  robots/nn_robot.h
   robots/origin.h
   robots/random.h
   robots/random_voxel.h
