@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownEnvironment", with({"--environment", "moon"}),
                  "--environment: \"moon\" is not an environment; give ocean, ocean-simple or land"},
         BadInput{"UnknownSolver", with({"--solver", "euler"}), "--solver: \"euler\" is not a solver; give force or xpbd"},
-        BadInput{"UnknownDevice", with({"--device", "tpu"}), "--device: \"tpu\" is not a device; give auto, cpu, cuda or cuda:N"},
+        BadInput{"UnknownDevice", with({"--device", "tpu"}), "--device: \"tpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all"},
         BadInput{"NegativeThreads", with({"--threads", "-1"}), "--threads: -1 is not accepted; give 0 or more"},
         BadInput{"NegativeSeed", with({"--seed", "-1"}), "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
         BadInput{"AllAir", with({"--air", "1"}), "--air: give a share of at least 0 and below 1"},
