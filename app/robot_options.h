@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ class RobotOptions {
   std::vector<Robot> load() const;
 
   bool empty() const { return paths_.empty() && random_.empty(); }
+
+  // Of the random robots; nothing when there are none.
+  std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
 
  private:
   std::vector<Robot> random_robots(const std::string& request) const;

@@ -9,10 +9,12 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/option_values.h"
 #include "app/progress.h"
+#include "app/recorder.h"
 #include "app/report.h"
 #include "app/robot_options.h"
 #include "app/simulation_options.h"
@@ -24,11 +26,14 @@ namespace mercury {
 namespace {
 
 constexpr double sample_period = 0.1;  // between looks at the telemetry [s]
+constexpr double recorded_rate = 30;   // frames a second of simulated time, where --every says nothing else
 
 struct RunOptions {
   RobotOptions robots;
   SimulationOptions simulation;
-  std::string csv, config;
+  std::string csv, config, record;
+  std::optional<std::int64_t> every;
+  bool compress = false;
   bool json = false, strict = false, quiet = false;
 };
 
@@ -78,15 +83,35 @@ class Observer {
   std::vector<double> way_, strain_;
 };
 
-RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet) {
+// Nothing when no recording is asked for. Throws InputError.
+std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
+  if (options.every && *options.every < 1)
+    throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
+  if (options.record.empty()) {
+    if (options.every || options.compress)
+      throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
+    return nullptr;
+  }
+  const double dt = simulation.configuration().dt;
+  const auto default_every = static_cast<std::int64_t>(std::clamp(1 / (recorded_rate * dt), 1.0, 1e15) + 0.5);
+  return std::make_unique<Recorder>(simulation, options.record,
+                                    RecordingOptions{.every = options.every.value_or(default_every),
+                                                     .last_step = steps,
+                                                     .seed = options.robots.seed(),
+                                                     .deflate = options.compress ? 1 : 0});
+}
+
+RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder) {
   Stepper stepper(simulation);
   Observer observer(simulation);
   Progress progress("simulating", "steps", steps, quiet);
   const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
   bool on = true;
   while (on && simulation.steps() < steps) {
-    on = stepper.advance_to(std::min(steps, (simulation.steps() / period + 1) * period));
-    observer.observe();
+    const std::int64_t sample = std::min(steps, (simulation.steps() / period + 1) * period);
+    on = stepper.advance_to(recorder ? std::min(sample, recorder->next_step()) : sample);
+    if (recorder && on) recorder->observe();
+    if (simulation.steps() == sample || !on) observer.observe();
     progress.update(simulation.steps());
   }
   return {.configuration = simulation.configuration(),
@@ -114,7 +139,9 @@ int run(const RunOptions& options) {
   Simulation simulation(configuration, robots);
   for (const std::string& note : simulation.notes()) fmt::print(stderr, "mercury: {}\n", note);
 
-  const RunReport report = simulate(simulation, steps, options.quiet);
+  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
+  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
+  if (recorder) recorder->finish();
   if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
   fmt::print("{}", options.json ? json_of(report) : table_of(report));
 
@@ -136,6 +163,9 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   CLI::App* command = program.add_subcommand("run", "Simulate without pictures: a table, CSV or JSON");
   options->robots.add_to(*command);
   add_text(*command, "--csv", options->csv, "Also write one line a robot into this file", "FILE");
+  add_text(*command, "--record", options->record, "Record all masses' positions and velocities (H5MD 1.1)", "FILE.h5");
+  add_number(*command, "--every", options->every, "Steps between recorded frames (default 1/30 s)", "N");
+  command->add_flag("--compress", options->compress, "Compress the recording: smaller, slower");
   command->add_flag("--json", options->json, "Print JSON rather than a table");
   command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
   command->add_flag("--quiet", options->quiet, "No progress on standard error");
@@ -147,6 +177,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "largest of any spring, both looked at every 0.1 s.\n\n"
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
+      "  mercury run robots/eel.json --record eel.h5 --every 10\n"
       "  mercury run robots/ --environment land --solver xpbd --dt 0.005 --json > land.json");
   command->callback([options, choose] { choose([options] { return run(*options); }); });
 }
