@@ -82,6 +82,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   try {
     file_ = create_file(unfinished_.path());
   } catch (const Error& error) {
+    if (error.number() == ENOSPC || error.number() == EDQUOT) throw write_failure(path_, error);
     const char* reason = error.number() != 0 ? std::strerror(error.number()) : error.what();
     throw InputError(option, path.string() + " cannot be written: " + reason);
   }
