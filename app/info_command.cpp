@@ -1,4 +1,4 @@
-// mercury info: what a robot file holds, or what this machine can do.
+// mercury info: what a robot file or trajectory holds, or what this machine can do.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,9 +6,12 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/configuration_json.h"
 #include "app/group_layout.h"
 #include "app/machine.h"
 #include "app/option_values.h"
+#include "app/trajectory_layout.h"
+#include "app/trajectory_reader.h"
 #include "app/version.h"
 #include "robots/file.h"
 
@@ -64,10 +67,47 @@ int tell_machine(const std::string& ffmpeg) {
   return 0;
 }
 
+// "ocean, density 1000, ..." as the options would say it.
+std::string environment_text(const Configuration& configuration) {
+  std::string text(name_of(configuration.environment));
+  const nlohmann::ordered_json json = json_of(configuration);
+  for (auto item = std::next(json.find("environment")); item != json.end(); ++item)
+    text += fmt::format(", {} {}", item.key(), item.value().dump());
+  return text;
+}
+
+void describe(const TrajectoryReader& trajectory) {
+  constexpr std::size_t shown = 20;
+  const Configuration& configuration = trajectory.configuration();
+  fmt::print("{}\n", trajectory.path().string());
+  line("recorded by", trajectory.program() + " on " + trajectory.device_name());
+  line("frames", trajectory.frames() == 0 ? "none"
+                                          : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(),
+                                                        trajectory.every(), trajectory.time(0),
+                                                        trajectory.time(trajectory.frames() - 1)));
+  line("solver", fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt, configuration.damping));
+  line("environment", environment_text(configuration));
+  if (trajectory.seed()) line("seed", fmt::to_string(*trajectory.seed()));
+  line("robots", fmt::format("{}, {} masses", trajectory.robots().size(), trajectory.mass_count()));
+  for (std::size_t i = 0; i < std::min(shown, trajectory.robots().size()); ++i) {
+    const auto& [robot, group, exploded_at, bad_spring] = trajectory.robots()[i];
+    std::string text = fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
+    if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
+    if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
+    fmt::print("    {}: {}\n", group, text);
+  }
+  if (trajectory.robots().size() > shown) fmt::print("    and {} more\n", trajectory.robots().size() - shown);
+}
+
 int tell(const InfoOptions& options) {
   if (options.paths.empty()) return tell_machine(options.ffmpeg);
-  for (const Robot& robot : load_robots(std::vector<std::filesystem::path>(options.paths.begin(), options.paths.end())))
-    describe(robot);
+  for (const std::filesystem::path path : options.paths) {
+    if (is_trajectory_name(path)) {
+      describe(TrajectoryReader(path));
+    } else {
+      for (const Robot& robot : load_robots(std::span(&path, 1))) describe(robot);
+    }
+  }
   return 0;
 }
 
@@ -75,8 +115,8 @@ int tell(const InfoOptions& options) {
 
 void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = program.add_subcommand("info", "What a robot file holds; without one, what this machine can do");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  CLI::App* command = program.add_subcommand("info", "What a robot or trajectory file holds; without one, what this machine can do");
+  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, trajectories (.h5)")->type_name("PATH");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The encoder to look at (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
   command->callback([options, choose] { choose([options] { return tell(*options); }); });

@@ -88,6 +88,12 @@ void read_materials(hid_t group, Robot& robot) {
   }
 }
 
+template <class Value>
+std::size_t last_not_above(const std::vector<Value>& rising, Value value) {
+  const auto after = std::upper_bound(rising.begin(), rising.end(), value);
+  return after == rising.begin() ? 0 : static_cast<std::size_t>(after - rising.begin()) - 1;
+}
+
 std::size_t chunk_length(hid_t dataset) {
   const Handle properties(H5Dget_create_plist(dataset));
   if (H5Pget_layout(properties) != H5D_CHUNKED) return 1;
@@ -187,10 +193,8 @@ void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
       throw Error(std::string(element) + "/value has another shape than its masses and the file's frames");
 }
 
-std::size_t TrajectoryReader::frame_at(double time) const {
-  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
-  return after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
-}
+std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }
+std::size_t TrajectoryReader::frame_of_step(std::int64_t step) const { return last_not_above(steps_, step); }
 
 std::span<const Vec3> TrajectoryReader::read(Block& block, std::size_t frame) {
   if (frame >= frames()) throw std::out_of_range("frame " + std::to_string(frame) + " of " + std::to_string(frames()));

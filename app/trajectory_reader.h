@@ -28,6 +28,7 @@ class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::filesystem::path& path);
 
+  const std::filesystem::path& path() const { return path_; }
   const std::vector<RecordedRobot>& robots() const { return robots_; }  // in the order of the batch
   const Configuration& configuration() const { return configuration_; }
   const std::string& device_name() const { return device_name_; }    // what ran it, for people
@@ -38,8 +39,9 @@ class TrajectoryReader {
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
   double time(std::size_t frame) const { return times_.at(frame); }  // [s]
-  // The last frame at or before a time; 0 for a time before the first.
+  // The last frame at or before a time or step; 0 for one before the first.
   std::size_t frame_at(double time) const;
+  std::size_t frame_of_step(std::int64_t step) const;
 
   std::size_t mass_count() const { return offsets_.back(); }         // of all robots together
   std::span<const std::size_t> mass_offsets() const { return offsets_; }  // size() + 1 elements

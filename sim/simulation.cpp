@@ -127,11 +127,15 @@ struct Simulation::Parts {
 };
 
 Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots)
+    : Simulation(configuration, robots, (validate(configuration), make_backend(configuration.device))) {}
+
+Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots,
+                       std::unique_ptr<Backend> backend)
     : parts_(std::make_unique<Parts>()) {
   validate(configuration);
   parts_->configuration = configuration;
   parts_->clock.dt = configuration.dt;
-  parts_->backend = make_backend(configuration.device);
+  parts_->backend = std::move(backend);
   parts_->load();
   if (!robots.empty()) add(robots);
 }

@@ -39,6 +39,9 @@ class Simulation {
   // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), DeviceError
   // when the device asked for is not there.
   explicit Simulation(const Configuration& configuration = {}, std::span<const Robot> robots = {});
+  // Stepped by a backend of the caller's (sim/backend.h), as a recording that is played back; the configuration's
+  // device counts for nothing.
+  Simulation(const Configuration& configuration, std::span<const Robot> robots, std::unique_ptr<Backend> backend);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

@@ -1,11 +1,9 @@
 // What is recorded is what was simulated, bit for bit, and enough to simulate it again.
 #include <gmock/gmock.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
+#include <cstring>
 
-#include "app/trajectory_layout.h"
+#include "app/trajectory_playback.h"
 #include "app/trajectory_reader.h"
 #include "program.h"
 #include "recording_bodies.h"
@@ -215,6 +213,59 @@ TEST_F(Recording, IsThereOnlyWhenItIsWhole) {
   record(simulation, file(), 2, 1);
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
   EXPECT_EQ(TrajectoryReader(file()).frames(), 2u);
+}
+
+TEST_F(Recording, PlayedBackItIsTheSimulationAgain) {
+  Configuration configuration = on_cpu();
+  configuration.environment = Land{};
+  const std::vector<Robot> robots{small_voxel_robot(1), own_materials("own")};
+  Simulation simulation(configuration, robots);
+  record(simulation, file(), 100, 20);
+
+  Simulation again(configuration, robots), played = playback(std::make_shared<TrajectoryReader>(file()));
+  ASSERT_EQ(played.size(), again.size());
+  for (int frame = 0; frame <= 5; ++frame) {
+    EXPECT_EQ(played.time(), again.time());
+    EXPECT_TRUE(same_bits(all_positions(played), all_positions(again))) << frame;
+    EXPECT_EQ(played.hash(0), again.hash(0));
+    EXPECT_EQ(played.telemetry(1).elastic_energy, again.telemetry(1).elastic_energy);
+    again.step(20);
+    played.step(7);
+    played.step(13);
+  }
+  played.step(1000);  // after the end nothing moves
+  EXPECT_TRUE(same_bits(all_positions(played), all_positions(simulation)));
+  played.reset();
+  EXPECT_TRUE(same_bits(all_positions(played), all_positions(Simulation(configuration, robots))));
+}
+
+TEST_F(Recording, PlayedBackBetweenFramesItIsBetweenThem) {
+  Simulation simulation(on_cpu(), std::vector{pair("pair")});
+  record(simulation, file(), 100, 100);
+  Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
+  const std::vector<Vec3> first = all_positions(played), last = all_positions(simulation);
+  ASSERT_NE(first, last);
+  played.step(25);
+  const std::vector<Vec3> between = all_positions(played);
+  for (std::size_t i = 0; i < between.size(); ++i)
+    EXPECT_NEAR(between[i].x, 0.75f * first[i].x + 0.25f * last[i].x, 1e-7f);
+}
+
+TEST_F(Recording, PlayedBackARobotExplodesWhenItDid) {
+  Configuration configuration = on_cpu();
+  configuration.dt = 1;
+  Simulation simulation(configuration, std::vector{pair("wild")});
+  record(simulation, file(), 60, 1);
+  const Telemetry end = simulation.telemetry(0);
+  ASSERT_TRUE(end.exploded);
+  Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
+  while (played.time() < end.exploded_at) {
+    EXPECT_FALSE(played.telemetry(0).exploded) << played.time();
+    played.step();
+  }
+  EXPECT_TRUE(played.telemetry(0).exploded);
+  EXPECT_EQ(played.telemetry(0).exploded_at, end.exploded_at);
+  EXPECT_EQ(played.telemetry(0).first_bad_spring, end.first_bad_spring);
 }
 
 std::string refusal(const std::string& path) {
