@@ -65,8 +65,10 @@ namespace {
 
 void GLAPIENTRY on_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                            const void* user) {
-  // Notifications tell where buffers live, and "other" carries shader statistics: neither is misuse.
-  if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_OTHER) return;
+  // Notifications tell where buffers live, "other" carries shader statistics, "performance" that a shader is recompiled:
+  // none is misuse.
+  if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_OTHER || type == GL_DEBUG_TYPE_PERFORMANCE)
+    return;
   std::string line = length < 0 ? std::string(text) : std::string(text, std::size_t(length));
   while (!line.empty() && (line.back() == '\n' || line.back() == '\0')) line.pop_back();
   auto& messages = *const_cast<ContextMessages*>(static_cast<const ContextMessages*>(user));

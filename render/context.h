@@ -57,8 +57,8 @@ class Context {
   bool is_software() const { return software_; }
   // CUDA ordinal of the card that draws; -1 = none or unknown.
   int cuda_device() const { return cuda_device_; }
-  // Errors, undefined and deprecated behaviour and performance warnings that the driver has reported since the last
-  // call; empty when all is well. "high: GL_INVALID_OPERATION in ...".
+  // Errors, undefined, deprecated and unportable behaviour that the driver has reported since the last call; empty when
+  // all is well. "high: GL_INVALID_OPERATION in ...". Hints on speed are left out: every driver has its own.
   std::vector<std::string> take_messages();
 
  protected:

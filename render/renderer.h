@@ -53,7 +53,7 @@ class Renderer {
   std::span<const std::uint32_t> mass_offsets() const;
 
   // The GL buffer of 3 * mass_count() floats from which everything is drawn: fill it with CUDA, glNamedBufferSubData or
-  // Scene::positions. It changes only in set_bodies().
+  // Scene::positions. Its storage is made anew in set_bodies() and only there: unregister it from CUDA before.
   unsigned position_buffer() const;
 
   // The box around each body in its own coordinates, as position_buffer() stands now. Waits for the card.

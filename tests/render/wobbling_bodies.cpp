@@ -124,6 +124,52 @@ WobblingBody make_wobbling_body(int side, std::uint32_t seed) {
   return Builder(grid).build();
 }
 
+WobblingBody make_blob(int splits, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  constexpr float g = 1.618034f;
+  std::vector<Eigen::Vector3f> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
+                                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<std::uint32_t> faces{0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
+                                   7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10,
+                                   8, 6, 7, 9, 8, 1};
+  for (int split = 0; split < splits; ++split) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [entry, fresh] = middles.try_emplace({std::min(a, b), std::max(a, b)}, std::uint32_t(points.size()));
+      if (fresh) points.push_back(0.5f * (points[a] + points[b]));
+      return entry->second;
+    };
+    std::vector<std::uint32_t> finer;
+    for (std::size_t i = 0; i < faces.size(); i += 3) {
+      const std::uint32_t a = faces[i], b = faces[i + 1], c = faces[i + 2];
+      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), {a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca});
+    }
+    faces = finer;
+  }
+  std::array<Eigen::Vector3f, 5> bumps;
+  for (Eigen::Vector3f& bump : bumps) bump = 2.5f * Eigen::Vector3f(normal(random), normal(random), normal(random));
+  WobblingBody body;
+  for (Eigen::Vector3f& point : points) {
+    point.normalize();
+    float radius = 0.35f;
+    for (const Eigen::Vector3f& bump : bumps) radius += 0.045f * std::sin(bump.dot(point) + bump.x());
+    for (int axis = 0; axis < 3; ++axis) body.rest.push_back(radius * point[axis] + 0.008f * normal(random));
+  }
+  body.faces = faces;
+  for (std::size_t i = 0; i < faces.size(); i += 3) {
+    const Eigen::Vector3f at = points[faces[i]];
+    body.face_looks.push_back(std::uint32_t(7 * std::floor(3 + 2 * at.x()) + std::floor(3 + 2 * at.z())) % 22);
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      if (faces[i + corner] < faces[i + (corner + 1) % 3]) {
+        body.springs.insert(body.springs.end(), {faces[i + corner], faces[i + (corner + 1) % 3]});
+        body.spring_looks.push_back(body.face_looks.back());
+      }
+  }
+  return body;
+}
+
 std::vector<Look> wobbling_looks(double time) {
   std::vector<Look> looks;
   for (int m = 0; m < 20; ++m) {
@@ -155,7 +201,8 @@ WobblingGroup make_wobbling_group(int count, int side, std::uint32_t seed, float
   const int columns = std::max(1, int(std::lround(std::sqrt(1.4 * count))));
   const int rows = (count + columns - 1) / columns;
   for (int i = 0; i < count; ++i) {
-    group.bodies.push_back(make_wobbling_body(side, seed + std::uint32_t(i)));
+    const std::uint32_t own = seed + std::uint32_t(i);
+    group.bodies.push_back(side == 0 ? make_blob(2, own) : make_wobbling_body(side, own));
     const float column = float(i % columns) - 0.5f * float(columns - 1);
     const float row = float(i / columns) - 0.5f * float(rows - 1);
     Placement placement;

@@ -20,6 +20,9 @@ struct WobblingBody {
 // A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; every voxel one of 22 looks.
 WobblingBody make_wobbling_body(int side, std::uint32_t seed);
 
+// A bumpy ball of about half a metre, of triangles alone: an icosahedron, each side split into 4 `splits` times.
+WobblingBody make_blob(int splits, std::uint32_t seed);
+
 // The 22 looks: muscles at their activation, tissue, bone.
 std::vector<Look> wobbling_looks(double time);
 
@@ -31,6 +34,7 @@ struct WobblingGroup {
   std::vector<Body> views() const;
   std::vector<float> positions(double time) const;
 };
+// side 0 = blobs instead of voxels.
 WobblingGroup make_wobbling_group(int count, int side, std::uint32_t seed, float spacing);
 
 }  // namespace mercury::render
