@@ -22,6 +22,7 @@ struct Moment {
   double time;
   std::unique_ptr<PositionSnapshot> positions;
   std::vector<Telemetry> telemetry;
+  SceneDetails details;
 };
 
 // The first exception of several threads.
@@ -42,7 +43,7 @@ class FirstError {
 
 class Production {
  public:
-  Production(const FilmSet& set, const FilmSettings& settings) : set_(set), settings_(settings) {}
+  Production(const FilmSet& set, const FilmTiming& timing, bool quiet) : set_(set), timing_(timing), quiet_(quiet) {}
 
   FilmResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -77,12 +78,16 @@ class Production {
     Stepper stepper(set_.simulation);
     const std::int64_t first = set_.simulation.steps();
     const double dt = set_.simulation.configuration().dt;
-    for (std::int64_t frame = 0; frame < settings_.frames; ++frame) {
-      if (!stepper.advance_to(first + step_of_frame(frame, settings_.frames_per_second, settings_.speed, dt))) {
+    for (std::int64_t frame = 0; frame < timing_.frames; ++frame) {
+      if (!stepper.advance_to(first + step_of_frame(frame, timing_, dt))) {
         interrupted_ = true;
         break;
       }
-      if (!moments_.push({set_.simulation.time(), set_.bridge.take(set_.simulation), set_.simulation.telemetry()})) return;
+      std::vector<Telemetry> telemetry = set_.simulation.telemetry();
+      SceneDetails details = set_.details.observe(telemetry);
+      if (!moments_.push({set_.simulation.time(), set_.bridge.take(set_.simulation), std::move(telemetry),
+                          std::move(details)}))
+        return;
     }
     moments_.close();
   }
@@ -90,10 +95,10 @@ class Production {
   void draw() {
     render::Readback readback(set_.pixels, set_.renderer.width(), set_.renderer.height());
     for (std::size_t i = 0; i < waiting_pictures + 2; ++i) spare_.push({});
-    while (const auto moment = moments_.pop()) {
-      set_.scene.update(moment->time, moment->telemetry);
+    while (auto moment = moments_.pop()) {
+      set_.scene.update(moment->time, moment->telemetry, std::move(moment->details));
       set_.bridge.show(*moment->positions, set_.renderer, set_.scene.scene());
-      const render::Camera camera = set_.camera.follow(set_.scene.bounds(), 1 / settings_.frames_per_second);
+      const render::Camera camera = set_.camera.at(set_.scene.bounds(), timing_.pace);
       set_.renderer.draw(set_.scene.scene(), camera);
       if (readback.full() && !hand_on(readback)) return;
       readback.start(set_.renderer);
@@ -111,7 +116,7 @@ class Production {
   }
 
   void encode() {
-    Progress progress("rendering", "frames", settings_.frames, settings_.quiet);
+    Progress progress("rendering", "frames", timing_.frames, quiet_);
     while (auto picture = pictures_.pop()) {
       set_.writer.write(*picture);
       progress.update(++result_.frames);
@@ -120,7 +125,8 @@ class Production {
   }
 
   const FilmSet& set_;
-  const FilmSettings& settings_;
+  const FilmTiming& timing_;
+  const bool quiet_;
   BoundedQueue<Moment> moments_{waiting_moments};
   BoundedQueue<render::Image> pictures_{waiting_pictures};
   BoundedQueue<render::Image> spare_{waiting_pictures + 2};  // pictures whose memory is free to be used again
@@ -131,10 +137,10 @@ class Production {
 
 }  // namespace
 
-std::int64_t step_of_frame(std::int64_t frame, double frames_per_second, double speed, double dt) {
-  return std::llround(static_cast<double>(frame) / frames_per_second * speed / dt);
+std::int64_t step_of_frame(std::int64_t frame, const FilmTiming& timing, double dt) {
+  return std::llround((timing.start + static_cast<double>(frame) * timing.interval) / dt);
 }
 
-FilmResult film(const FilmSet& set, const FilmSettings& settings) { return Production(set, settings).run(); }
+FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet) { return Production(set, timing, quiet).run(); }
 
 }  // namespace mercury

@@ -25,14 +25,14 @@ void require_usable(const std::string& output, VideoKind kind, const VideoSettin
     throw InputError(output, "this format needs an even width and height");
 }
 
-void make_parent(const fs::path& output) {
+}  // namespace
+
+void make_parent_folder(const fs::path& output) {
   const fs::path parent = output.parent_path();
   std::error_code error;
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) throw InputError("-o", "cannot make the folder " + parent.string() + ": " + error.message());
 }
-
-}  // namespace
 
 VideoKind video_kind_of(const std::string& output) {
   const fs::path path(output);
@@ -43,6 +43,8 @@ VideoKind video_kind_of(const std::string& output) {
   if (extension == ".webm") return VideoKind::webm;
   if (extension == ".gif") return VideoKind::gif;
   if (extension.empty()) return VideoKind::png_folder;
+  if (extension == ".png")
+    throw InputError("-o", output + " is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder");
   throw InputError("-o", output + ": \"" + extension +
                              "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
 }
@@ -68,10 +70,10 @@ std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const 
   if (kind == VideoKind::png_folder) {
     const fs::path path(output);
     const fs::path folder = path.filename().empty() && path.has_parent_path() ? path.parent_path() : path;
-    make_parent(folder);
+    make_parent_folder(folder);
     return std::make_unique<PngFolder>(folder);
   }
-  make_parent(output);
+  make_parent_folder(output);
   return std::make_unique<FfmpegWriter>(output, kind, settings);
 }
 

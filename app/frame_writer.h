@@ -60,6 +60,9 @@ class FrameWriter {
 // settings cannot be used, VideoError when the encoder cannot be started.
 std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const VideoSettings& settings);
 
+// Makes the folders on the way to a file. Throws InputError("-o: ...").
+void make_parent_folder(const std::filesystem::path& output);
+
 // The encoder program that the settings mean.
 std::string encoder_program(const std::string& ffmpeg_option);
 

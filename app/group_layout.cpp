@@ -59,7 +59,8 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
     width = std::max(width, options.spacing * extent(robot, axes.right));
     height = std::max(height, options.spacing * extent(robot, axes.up));
   }
-  const Grid grid = options.grid.value_or(grid_for(robots.size(), options.aspect, width / height));
+  Grid grid = options.grid.value_or(grid_for(robots.size(), options.aspect, width / height));
+  if (options.layout == Layout::race) grid = {1, static_cast<int>(robots.size())};
   if (robots.size() > static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows))
     throw InputError("--grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows", robots.size(),
                                            grid.columns, grid.rows));

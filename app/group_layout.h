@@ -22,7 +22,13 @@ struct Grid {
 // The number of columns and rows for `count` cells of that width over height that fills a picture best.
 Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect);
 
+enum class Layout {
+  grid,
+  race,  // one lane a robot, side by side across the picture
+};
+
 struct LayoutOptions {
+  Layout layout = Layout::grid;
   std::optional<Grid> grid;  // absent = grid_for
   float spacing = 1.45f;     // size of a cell over that of the largest robot
   float aspect = 16.0f / 9;  // of the picture

@@ -29,8 +29,6 @@ template int number_from<int>(const std::string&, std::string_view);
 template std::int64_t number_from<std::int64_t>(const std::string&, std::string_view);
 template std::uint64_t number_from<std::uint64_t>(const std::string&, std::string_view);
 
-namespace {
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t start = 0;;) {
@@ -41,14 +39,17 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-}  // namespace
+std::vector<float> numbers_from(const std::string& option, std::string_view text, std::size_t count, const char* form) {
+  const auto parts = split(text, ',');
+  if (parts.size() != count) throw InputError(option, fmt::format("\"{}\" is not accepted; give {}", text, form));
+  std::vector<float> numbers;
+  for (const std::string_view part : parts) numbers.push_back(number_from<float>(option, part));
+  return numbers;
+}
 
 Vec3 vector_from(const std::string& option, std::string_view text) {
-  const auto parts = split(text, ',');
-  if (parts.size() != 3)
-    throw InputError(option, fmt::format("\"{}\" is not accepted; give three numbers, as in 0.1,0,-2", text));
-  return {number_from<float>(option, parts[0]), number_from<float>(option, parts[1]),
-          number_from<float>(option, parts[2])};
+  const auto numbers = numbers_from(option, text, 3, "three numbers, as in 0.1,0,-2");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 std::vector<int> sizes_from(const std::string& option, std::string_view text, std::size_t count, const char* form) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/error.h"
 #include "sim/vec3.h"
@@ -17,6 +18,12 @@ namespace mercury {
 // The whole text as a number of that type. Throws InputError("--dt: \"fast\" is not a number").
 template <class Number>
 Number number_from(const std::string& option, std::string_view text);
+
+// The parts of a text between separators; one part if there is none.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+// So many numbers with commas between them. Throws InputError; `form` says what is accepted.
+std::vector<float> numbers_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
 
 // "1,0,-2.5". Throws InputError.
 Vec3 vector_from(const std::string& option, std::string_view text);

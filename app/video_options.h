@@ -1,4 +1,4 @@
-// The options of every command that makes pictures without a window.
+// The options that say which pictures are made, and how they are drawn and kept.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/film.h"
 #include "app/frame_writer.h"
 #include "app/group_layout.h"
 #include "render/context.h"
@@ -13,25 +14,44 @@
 
 namespace mercury {
 
-struct VideoOptions {
-  std::string output;
-  PictureSize size;
-  std::optional<double> frames_per_second;
-  double speed = 1;
-  int crf = -1;
-  std::string ffmpeg;
-  std::string gl = "auto", quality = "auto", theme = "dark";
-  std::optional<Grid> grid;
-
+class VideoOptions {
+ public:
   // Adds the options to a command. The object must outlive it.
   void add_to(CLI::App& command);
 
-  // Frames/s: as given, else 30, and 25 for GIF, whose frame times are whole hundredths of a second.
-  double rate(VideoKind kind) const;
-  // Throws InputError naming the option that cannot be used.
+  // All of the following throw InputError naming the option that cannot be used.
+
+  // What is made of `seconds` of simulated time.
+  struct Plan {
+    PictureSize size;               // of a frame
+    render::PixelFormat pixels = render::PixelFormat::rgb;
+    FilmTiming timing;
+  };
+  Plan plan(double seconds) const;
+  // Where it goes. `name`: of the robot that is filmed alone; empty = all.
+  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name) const;
+  // The name of what open() makes.
+  std::string output_of(const std::string& name) const;
+
+  double speed() const { return speed_; }
+  bool each() const { return each_; }
+  bool single_picture() const { return still_ || contact_sheet_; }
+  PictureSize asked_size() const;
+  render::ContextKind context_kind() const { return render::context_kind_named(gl_); }
+  render::Quality quality() const { return render::quality_named(quality_); }
+
+ private:
   void validate() const;
-  render::ContextKind context_kind() const;
-  render::Quality draw_quality() const;
+  Plan plan_pictures(double seconds) const;
+
+  std::string output_;
+  std::optional<PictureSize> size_;
+  std::optional<double> frames_per_second_, still_;
+  std::optional<Grid> contact_sheet_;
+  double speed_ = 1;
+  int crf_ = -1;
+  bool each_ = false;
+  std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
 };
 
 }  // namespace mercury

@@ -86,6 +86,15 @@ TEST(GridLayout, GridThatIsTooSmallIsRefused) {
   EXPECT_NO_THROW(grid_layout(robots(6), {.grid = Grid{3, 2}}));
 }
 
+TEST(RaceLayout, HasOneLaneARobotFromOneStartLine) {
+  const auto boxes = robots(5);
+  const auto offsets = grid_layout(boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});
+  for (std::size_t i = 1; i < boxes.size(); ++i) {
+    EXPECT_NEAR(boxes[i].moved(offsets[i]).center().x(), boxes[0].moved(offsets[0]).center().x(), 1e-4);
+    EXPECT_LT(boxes[i].moved(offsets[i]).high.y(), boxes[i - 1].moved(offsets[i - 1]).low.y());
+  }
+}
+
 TEST(GridFor, FillsThePicture) {
   // Square cells in a square picture, and in one twice as wide as high.
   EXPECT_EQ(grid_for(16, 1, 1).columns, 4);

@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <cmath>
+#include <set>
+
 #include "program.h"
+#include "render/png.h"
 
 namespace mercury::test {
 namespace {
@@ -63,6 +67,55 @@ TEST_F(RenderCommand, SameCommandGivesTheSamePictures) {
   ASSERT_EQ(mercury(command("a", {"--fps", "2", "--seconds", "1", "--environment", "land"})).status, 0);
   ASSERT_EQ(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})).status, 0);
   for (const std::string& frame : listing("a")) EXPECT_EQ(read("a/" + frame), read("b/" + frame)) << frame;
+}
+
+TEST_F(RenderCommand, StillIsThePictureOfAMoment) {
+  ASSERT_EQ(mercury(command("a.png", {"--still", "1"})).status, 0);
+  ASSERT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "2"})).status, 0);
+  const render::Image still = render::read_png(path("a.png")), frame = render::read_png(path("frames/frame-00001.png"));
+  EXPECT_EQ(still.width, 160);
+  EXPECT_EQ(still.height, 90);
+  // The camera of the film lags a little behind; the pictures are alike, not equal.
+  double difference = 0;
+  for (std::size_t i = 0; i < still.bytes.size(); ++i) difference += std::abs(still.bytes[i] - frame.bytes[i]);
+  EXPECT_LT(difference / static_cast<double>(still.bytes.size()), 8);
+}
+
+TEST_F(RenderCommand, ContactSheetIsAsWideAsAsked) {
+  ASSERT_EQ(mercury(command("a.png", {"--contact-sheet", "3x2", "--seconds", "0.5", "--size", "400x200"})).status, 0);
+  const render::Image sheet = render::read_png(path("a.png"));
+  // Three moments and two gaps of 4 pixels: (400 + 4) / 3 - 4 = 130 wide, half as high.
+  EXPECT_EQ(sheet.width, 3 * 130 + 2 * 4);
+  EXPECT_EQ(sheet.height, 2 * 65 + 4);
+}
+
+TEST_F(RenderCommand, EachRobotGetsAVideo) {
+  const Outcome outcome = mercury(command("a.gif", {"--each", "--seconds", "0.1", "--seed", "3"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a-voxel-3-0.gif", "a-voxel-3-1.gif"}));
+}
+
+// Each way to see changes the picture, and is drawn without an error.
+TEST_F(RenderCommand, WaysToSeeDiffer) {
+  const std::vector<std::vector<std::string>> ways{{},
+                                                   {"--color", "strain"},
+                                                   {"--color", "pressure"},
+                                                   {"--show", "springs,masses"},
+                                                   {"--show", "skin,drag,lift,velocity"},
+                                                   {"--show", "skin,path,labels,legend,clock,scale"},
+                                                   {"--theme", "light"},
+                                                   {"--cut", "y:0"},
+                                                   {"--layout", "race"},
+                                                   {"--camera", "top"},
+                                                   {"--follow", "--azimuth", "30"}};
+  std::set<std::string> pictures;
+  for (const std::vector<std::string>& way : ways) {
+    std::vector<std::string> more{"--still", "0.5"};
+    more.insert(more.end(), way.begin(), way.end());
+    const Outcome outcome = mercury(command("a.png", more));
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(way);
+  }
 }
 
 TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {

@@ -1,0 +1,102 @@
+#include "app/arrows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/eigen_vec3.h"
+#include "app/face_forces.h"
+#include "app/group_layout.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr render::Color drag_color = render::rgb(0xff7043);
+constexpr render::Color lift_color = render::rgb(0x4fc3f7);
+constexpr render::Color velocity_color = render::rgb(0xaed581);
+constexpr render::Color gravity_color = render::rgb(0xce93d8);
+
+float largest_of(std::span<const render::Arrow> arrows) {
+  float largest = 0;
+  for (const render::Arrow& arrow : arrows)
+    if (arrow.vector.allFinite()) largest = std::max(largest, arrow.vector.norm());
+  return largest;
+}
+
+void scale(std::span<render::Arrow> arrows, float factor) {
+  for (render::Arrow& arrow : arrows) arrow.vector *= factor;
+}
+
+float mean_size(const Simulation& simulation) {
+  float sum = 0;
+  for (std::size_t i = 0; i < simulation.size(); ++i) sum += 2 * rest_bounds(simulation.robot(i)).radius();
+  return simulation.size() > 0 ? sum / static_cast<float>(simulation.size()) : 1;
+}
+
+}  // namespace
+
+Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
+    : simulation_(simulation), kinds_(kinds), longest_(0.5f * mean_size(simulation)) {
+  const Environment& environment = simulation.configuration().environment;
+  if ((kinds.drag || kinds.lift) && !has_face_forces(environment))
+    throw InputError("--show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
+                                           kinds.drag ? "drag" : "lift", name_of(environment)));
+}
+
+// Metres an arrow of one unit is long.
+float Arrows::Gauge::fit(float largest) {
+  if (largest > most) most = round_up(largest);
+  return most > 0 ? 1 / most : 0;
+}
+
+void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
+                       std::vector<render::Arrow>& lift) const {
+  const Robot& body = simulation_.robot(robot);
+  const std::size_t first = simulation_.mass_offsets()[robot];
+  const auto positions = std::span(state.positions).subspan(first, body.masses.size());
+  const auto velocities = std::span(state.velocities).subspan(first, body.masses.size());
+  for (const Face& face : body.faces) {
+    const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
+    const auto index = static_cast<std::uint32_t>(robot);
+    if (kinds_.drag) drag.push_back({index, eigen(force.center), eigen(force.drag), drag_color});
+    if (kinds_.lift) lift.push_back({index, eigen(force.center), eigen(force.lift), lift_color});
+  }
+}
+
+std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
+  std::vector<render::Arrow> forces, lifts, velocities;
+  std::vector<render::Arrow> gravities;
+  const Eigen::Vector3f gravity = eigen(gravity_of(simulation_.configuration().environment));
+  for (std::size_t i = 0; i < simulation_.size(); ++i) {
+    if (telemetry[i].exploded) continue;
+    if (kinds_.drag || kinds_.lift) add_faces(i, state, forces, lifts);
+    const Eigen::Vector3f middle = eigen(telemetry[i].center_of_mass);
+    const auto index = static_cast<std::uint32_t>(i);
+    if (kinds_.velocity) velocities.push_back({index, middle, eigen(telemetry[i].velocity), velocity_color});
+    if (kinds_.gravity && gravity.norm() > 0)
+      gravities.push_back({index, middle, longest_ * gravity.normalized(), gravity_color});
+  }
+  forces.insert(forces.end(), lifts.begin(), lifts.end());
+  scale(forces, longest_ * force_.fit(largest_of(forces)));
+  scale(velocities, longest_ * velocity_.fit(largest_of(velocities)));
+  for (const auto* more : {&velocities, &gravities}) forces.insert(forces.end(), more->begin(), more->end());
+  std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.allFinite(); });
+  return forces;
+}
+
+std::string Arrows::key() const {
+  std::string text;
+  const auto add = [&](bool shown, const std::string& name, const Gauge& gauge) {
+    if (!shown || gauge.most <= 0) return;
+    text += fmt::format("{}{}: {:.2g} m = {:g} {}", text.empty() ? "" : "   ", name, longest_, gauge.most, gauge.unit);
+  };
+  add(kinds_.drag && kinds_.lift, "drag, lift", force_);
+  add(kinds_.drag && !kinds_.lift, "drag", force_);
+  add(kinds_.lift && !kinds_.drag, "lift", force_);
+  add(kinds_.velocity, velocity_.name, velocity_);
+  return text;
+}
+
+}  // namespace mercury
