@@ -27,7 +27,8 @@ Octave octave_of(float distance) {
   const float power = std::log2(std::max(distance, 1e-6f));
   const float whole = std::floor(power);
   const float t = std::clamp((power - whole - 0.35f) / 0.3f, 0.0f, 1.0f);
-  return {std::exp2(whole), t * t * (3 - 2 * t)};
+  // All of the double is the next power alone.
+  return t < 1 ? Octave{std::exp2(whole), t * t * (3 - 2 * t)} : Octave{std::exp2(whole + 1), 0};
 }
 
 ShadowFit fit_shadow(const Bounds& casters, const Vector3f& to_key, int side) {

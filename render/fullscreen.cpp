@@ -3,10 +3,10 @@
 namespace mercury::render {
 
 Fullscreen::Fullscreen(std::string_view fragment_shader, const std::string& defines)
-    : empty_(make_vertex_array()), program_(make_program({"fullscreen.vert", fragment_shader}, defines)) {}
+    : empty_(make_vertex_array()), program_({"fullscreen.vert", fragment_shader}, defines) {}
 
-void Fullscreen::draw() const {
-  glUseProgram(program_.get());
+void Fullscreen::draw(const std::string& variant) const {
+  glUseProgram(program_.get(variant));
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }

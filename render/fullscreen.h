@@ -1,7 +1,7 @@
 // Passes that cover a whole picture.
 #pragma once
 
-#include "render/gl_objects.h"
+#include "render/program_variants.h"
 
 namespace mercury::render {
 
@@ -9,15 +9,15 @@ namespace mercury::render {
 class Fullscreen {
  public:
   Fullscreen(std::string_view fragment_shader, const std::string& defines = "");
-  GLuint program() const { return program_.get(); }
+  GLuint program(const std::string& variant = "") const { return program_.get(variant); }
   // Into the framebuffer bound now.
-  void draw() const;
+  void draw(const std::string& variant = "") const;
   // Into all of that framebuffer, without depth test.
   void draw_into(GLuint framebuffer, int width, int height) const;
 
  private:
   VertexArray empty_;
-  Program program_;
+  ProgramVariants program_;
 };
 
 }  // namespace mercury::render

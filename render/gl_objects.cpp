@@ -98,7 +98,7 @@ VertexArray make_vertex_array() {
   return VertexArray(name);
 }
 
-Program make_program(std::initializer_list<std::string_view> names, const std::string& defines) {
+Program make_program(std::span<const std::string_view> names, const std::string& defines) {
   Program program(glCreateProgram());
   std::vector<GLuint> shaders;
   for (const std::string_view name : names) {
@@ -113,7 +113,7 @@ Program make_program(std::initializer_list<std::string_view> names, const std::s
   GLint good = 0;
   glGetProgramiv(program.get(), GL_LINK_STATUS, &good);
   if (good) return program;
-  throw ContextError("the driver cannot link the shader " + std::string(*names.begin()) + ": " +
+  throw ContextError("the driver cannot link the shader " + std::string(names.front()) + ": " +
                      log_of(program.get(), true));
 }
 

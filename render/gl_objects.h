@@ -93,6 +93,9 @@ VertexArray make_vertex_array();
 // Compiles and links shaders/<name> for each name; the ending (.vert, .frag, .comp) tells the stage.
 // `defines` are lines put below #version, as "#define SAMPLES 4\n".
 // Throws ContextError with the shader's name and the driver's words.
-Program make_program(std::initializer_list<std::string_view> names, const std::string& defines = "");
+Program make_program(std::span<const std::string_view> names, const std::string& defines = "");
+inline Program make_program(std::initializer_list<std::string_view> names, const std::string& defines = "") {
+  return make_program(std::span(names.begin(), names.size()), defines);
+}
 
 }  // namespace mercury::render

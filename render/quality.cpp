@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "render/program_variants.h"
+
 namespace mercury::render {
 namespace {
 
@@ -13,10 +15,6 @@ constexpr std::array<std::pair<Quality, std::string_view>, 4> quality_names{{
     {Quality::medium, "medium"},
     {Quality::high, "high"},
 }};
-
-std::string define(const char* name, int value) {
-  return "#define " + std::string(name) + " " + std::to_string(value) + "\n";
-}
 
 }  // namespace
 

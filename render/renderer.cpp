@@ -70,6 +70,25 @@ Bounds joined(std::span<const Bounds> boxes) {
   return all;
 }
 
+// Whether some corner of the picture looks at, or nearly at, the horizon.
+bool sees_horizon(const Camera& camera, int width, int height) {
+  bool high = false;
+  for (const int x : {0, width})
+    for (const int y : {0, height}) high = high || camera.ray(float(x), float(y), width, height).direction.z() > -0.06f;
+  return high;
+}
+
+// What the shaders are told of the scene before they are compiled.
+std::string surroundings_variant(const Scene& scene, const FrameBlock& block) {
+  return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z() > 0 ? 2 : 1);
+}
+
+std::string skin_variant(const Scene& scene) {
+  const auto any = [&](auto property) { return std::any_of(scene.placements.begin(), scene.placements.end(), property); };
+  return std::string(any([](const Placement& p) { return p.smooth; }) ? "#define ROUNDED\n" : "") +
+         (any([](const Placement& p) { return p.selected || p.faulty; }) ? "#define MARKED\n" : "");
+}
+
 Overlay written(const Scene& scene, const Camera& camera, std::span<const Bounds> bodies, const Style& style, int width,
                 int height, float text_size) {
   Overlay overlay(width, height, text_size, style);
@@ -226,6 +245,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   const Bounds group = joined(boxes);
   const ShadowFit shadow = fit_shadow(group, style.to_key, p.settings.shadow_side);
   const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.settings.ground_side, p.width, p.height);
+  const std::string variant = surroundings_variant(scene, block);
   p.frame.write(&block, sizeof block);
   p.bind();
   glDisable(GL_BLEND);
@@ -253,12 +273,12 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
-  if (scene.show.skin) passes.skin.draw(p.bodies, color_by, scene.scale);
+  if (scene.show.skin) passes.skin.draw(p.bodies, color_by, scene.scale, variant + skin_variant(scene));
   glDisable(GL_CULL_FACE);
   passes.lattice.draw(p.bodies, scene);
   passes.annotation.draw_arrows(scene.arrows);
   glDepthFunc(GL_GEQUAL);
-  passes.backdrop.draw();
+  passes.backdrop.draw(variant + (sees_horizon(camera, p.width, p.height) ? "#define HORIZON\n" : ""));
   glDepthFunc(GL_GREATER);
   passes.annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
   if (scene.surroundings == Surroundings::water) passes.annotation.draw_particles(scene, camera, p.settings.particles);

@@ -8,7 +8,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr std::size_t face_frame_bytes = 64;  // FaceFrame of shaders/bodies.glsl
+constexpr std::size_t face_frame_bytes = 32;  // FaceFrame of shaders/bodies.glsl
 
 }  // namespace
 
@@ -23,9 +23,9 @@ SkinPass::SkinPass(const std::string& defines)
     : corners_(make_vertex_array()),
       face_frames_program_(make_program({"face_frames.comp"})),
       mass_normals_program_(make_program({"mass_normals.comp"})),
-      skin_(make_program({"skin.vert", "skin.frag"}, defines)),
-      depth_(make_program({"skin.vert", "depth.frag"})),
-      shadow_(make_program({"shadow.vert", "depth.frag"})) {}
+      depth_(make_program({"skin.vert", "depth.frag"}, define("COLOR_BY", 0))),
+      shadow_(make_program({"shadow.vert", "depth.frag"})),
+      skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
   const GLuint array = corners_.get();
@@ -39,11 +39,15 @@ void SkinPass::attach(const Bodies& bodies) {
   }
   glVertexArrayElementBuffer(array, bodies.faces.get());
   face_frames_.reserve(face_frame_bytes * bodies.face_count());
+  face_normals_.reserve(4 * bodies.face_count());
+  face_areas_.reserve(4 * bodies.face_count());
   mass_normals_.reserve(16 * bodies.mass_count());
 }
 
 void SkinPass::deform(const Bodies& bodies, bool smooth) {
   face_frames_.bind_storage(binding::face_frames);
+  face_normals_.bind_storage(binding::face_normals);
+  face_areas_.bind_storage(binding::face_areas);
   mass_normals_.bind_storage(binding::mass_normals);
   bodies.faces.bind_storage(binding::faces);
   glUseProgram(face_frames_program_.get());
@@ -66,10 +70,10 @@ void SkinPass::draw_triangles(const Bodies& bodies) const {
   glDisable(GL_CLIP_DISTANCE0);
 }
 
-void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale) const {
-  glUseProgram(skin_.get());
-  glUniform1i(0, int(color_by));
-  set_scale(1, scale);
+void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const {
+  glUseProgram(skin_.get(define("COLOR_BY", int(color_by)) + variant));
+  if (color_by != ColorBy::looks) set_scale(1, scale);
+  face_normals_.bind_storage(binding::face_normals);
   draw_triangles(bodies);
 }
 

@@ -3,6 +3,7 @@
 
 #include "render/bodies.h"
 #include "render/gl_objects.h"
+#include "render/program_variants.h"
 #include "render/scene.h"
 
 namespace mercury::render {
@@ -16,7 +17,8 @@ class SkinPass {
   void deform(const Bodies& bodies, bool smooth);
 
   enum class ColorBy { looks, face_values, mass_values };
-  void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale) const;
+  // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
+  void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const;
   void draw_depth(const Bodies& bodies) const;
   void draw_shadow(const Bodies& bodies) const;
 
@@ -24,8 +26,9 @@ class SkinPass {
   void draw_triangles(const Bodies& bodies) const;
 
   VertexArray corners_;
-  Program face_frames_program_, mass_normals_program_, skin_, depth_, shadow_;
-  Buffer face_frames_, mass_normals_;
+  Program face_frames_program_, mass_normals_program_, depth_, shadow_;
+  ProgramVariants skin_;
+  Buffer face_frames_, face_normals_, face_areas_, mass_normals_;
 };
 
 // Runs the current compute program, whose local size is 64, for at least `count` invocations.

@@ -1,4 +1,4 @@
-// What is seen where nothing stands: the floor as far as it is seen, and the distance.
+// What is seen where nothing stands: the floor as far as it is seen, and the distance. HORIZON: that can be seen.
 #include "frame.glsl"
 #include "caustics.glsl"
 #include "floor.glsl"
@@ -18,20 +18,23 @@ float shafts(vec3 direction) {
 }
 
 void main() {
-  vec3 across = vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
-  vec3 sight = transpose(mat3(frame.view)) * across;  // length 1 along the line of sight's axis
-  float steps = (frame.ground.w - frame.eye.z) / sight.z;
+  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
   vec3 direction = normalize(sight);
-  bool floor_seen = int(frame.water.x) != AROUND_NONE && steps > 0.0 && steps < 0.5 * frame.depth.y;
-  if (!floor_seen) {
-    vec3 light = backdrop(direction);
-    if (frame.water.y > 0.0 && direction.z > -0.05) light *= 1.0 + shafts(direction);
-    color = vec4(light, 0.0);
-    return;
-  }
+  vec3 light = backdrop(direction);
+#if AROUND == AROUND_WATER && defined(HORIZON)
+  light *= 1.0 + shafts(direction);
+#endif
+#if AROUND != AROUND_NONE
+  // `sight` has length 1 along the line of sight's axis, so that `steps` is the distance along that axis.
+  float steps = (frame.ground.w - frame.eye.z) / sight.z;
   vec3 point = frame.eye.xyz + steps * sight;
-  float range = steps * length(sight);
   vec2 pixel = max(fwidth(point.xy), vec2(1e-6));
-  vec3 light = int(frame.water.x) == AROUND_LAND ? land(point.xy, pixel, openness(gl_FragCoord.xy, steps)) : sand(point.xy);
-  color = vec4(through_fog(light, direction, range), 0.0);
+#if AROUND == AROUND_LAND
+  vec3 ground = land(point.xy, pixel, openness(gl_FragCoord.xy, steps));
+#else
+  vec3 ground = sand(point.xy);
+#endif
+  if (steps > 0.0 && steps < 0.5 * frame.depth.y) light = through_fog(ground, direction, steps * length(sight));
+#endif
+  color = vec4(light, 0.0);
 }

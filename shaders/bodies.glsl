@@ -16,13 +16,27 @@ struct FaceRecord {
   uint shape;
 };
 
-// A face as it stands now, in its body's coordinates. A point p of it has u = dot(p - origin, along_u), v likewise.
+// A face as it stands now, in its body's coordinates: a point p of it has u = dot(p, along_u.xyz) + along_u.w, v likewise.
+// Its first corner has u = v = 0, the next u = 1, the last v = 1.
 struct FaceFrame {
-  vec4 normal;   // w = area [m2]
-  vec4 origin;   // w = 1 for half a quadrilateral, 0 for a triangle
   vec4 along_u;
   vec4 along_v;
 };
+
+// A direction in 32 bits (octahedral; Meyer et al. 2010).
+uint packed_direction(vec3 n) {
+  vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+  if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
+  return packSnorm2x16(p);
+}
+
+// Not of length 1.
+vec3 unpacked_direction(uint bits) {
+  vec2 p = unpackSnorm2x16(bits);
+  float z = 1.0 - abs(p.x) - abs(p.y);
+  float fold = max(-z, 0.0);
+  return vec3(p + mix(vec2(fold), vec2(-fold), greaterThanEqual(p, vec2(0.0))), z);
+}
 
 layout(std430, binding = 1) readonly buffer Positions { float positions[]; };
 layout(std430, binding = 2) readonly buffer Placements { Placement placements[]; };

@@ -32,9 +32,12 @@ vec3 land(vec2 place, vec2 pixel, float open) {
 // Nothing stands on the sand, so that it sees the whole sky.
 vec3 sand(vec2 place) {
   float key = key_on_floor(place);
-  vec3 tile = vec3(0.0);
-  if (frame.octave.z < 1.0) tile += (1.0 - frame.octave.z) * texture(sand_tile, place * (1.9 / frame.octave.x)).rgb;
-  if (frame.octave.z > 0.0) tile += frame.octave.z * texture(sand_tile, place * (1.9 / frame.octave.y)).rgb;
+#if OCTAVES == 1
+  vec3 tile = texture(sand_tile, place * (1.9 / frame.octave.x)).rgb;
+#else
+  vec3 tile = mix(texture(sand_tile, place * (1.9 / frame.octave.x)).rgb,
+                  texture(sand_tile, place * (1.9 / frame.octave.y)).rgb, frame.octave.z);
+#endif
   vec2 slope = (tile.xy - 0.5) * 1.1;
   vec3 normal = normalize(vec3(-slope, 1.0));
   float n_l = max(dot(normal, frame.to_key.xyz), 0.0);

@@ -23,6 +23,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 octave;                   // a power of two near the distance to the target, its double, weight of the latter
 } frame;
 
+// What AROUND can be, where a shader depends on it.
 #define AROUND_NONE 0
 #define AROUND_WATER 1
 #define AROUND_LAND 2

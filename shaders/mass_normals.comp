@@ -1,7 +1,8 @@
 // The normal of a smooth skin at each mass: the mean of its faces', weighted by their areas.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;
-layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]; };
+layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
+layout(std430, binding = 14) readonly buffer FaceAreas { float face_areas[]; };
 layout(std430, binding = 8) writeonly buffer MassNormals { vec4 mass_normals[]; };
 layout(std430, binding = 11) readonly buffer MassFaceEnds { uint mass_face_ends[]; };
 layout(std430, binding = 12) readonly buffer MassFaces { uint mass_faces[]; };
@@ -12,8 +13,8 @@ void main() {
   if (mass >= count) return;
   vec3 sum = vec3(0.0);
   for (uint i = mass == 0u ? 0u : mass_face_ends[mass - 1u]; i < mass_face_ends[mass]; ++i) {
-    vec4 normal = face_frames[mass_faces[i]].normal;
-    sum += normal.xyz * normal.w;
+    uint face = mass_faces[i];
+    sum += normalize(unpacked_direction(face_normals[face])) * face_areas[face];
   }
   mass_normals[mass] = vec4(sum * inversesqrt(max(dot(sum, sum), 1e-30)), 0.0);
 }

@@ -1,0 +1,32 @@
+// One program in the forms that scenes need, each compiled when it is first needed.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/gl_objects.h"
+
+namespace mercury::render {
+
+// What is known of a picture before it is drawn is decided in the shader's text: Mesa's software renderer executes both
+// sides of every branch.
+class ProgramVariants {
+ public:
+  // `defines` hold for all variants.
+  ProgramVariants(std::initializer_list<std::string_view> shaders, std::string defines);
+  // The program with further lines of #define.
+  GLuint get(const std::string& defines) const;
+
+ private:
+  std::vector<std::string_view> shaders_;
+  std::string defines_;
+  mutable std::map<std::string, Program> programs_;
+};
+
+// "#define NAME value\n"
+std::string define(std::string_view name, int value);
+
+}  // namespace mercury::render
