@@ -56,8 +56,8 @@ bool PlainLoop::add_springs(const Law& law) {
     const float squared = squared_length(d);
     longest = squared > longest ? squared : longest;
     const float per_distance = law(squared, spring.rest_length * factor_[spring.material], s);
-    const std::int32_t fx = to_fixed_small(per_distance, d.x), fy = to_fixed_small(per_distance, d.y),
-                       fz = to_fixed_small(per_distance, d.z);
+    const auto units = [&](float along) { return static_cast<std::uint32_t>(to_fixed_small(per_distance, along)); };
+    const std::uint32_t fx = units(d.x), fy = units(d.y), fz = units(d.z);
     Sum &a = sums_[spring.a], &b = sums_[spring.b];
     a.x += fx;
     a.y += fy;
@@ -83,9 +83,9 @@ bool PlainLoop::add_spring_corrections() {
 }
 
 void PlainLoop::add(std::size_t mass, Vec3 units) {
-  sums_[mass].x += round_to_int(units.x);
-  sums_[mass].y += round_to_int(units.y);
-  sums_[mass].z += round_to_int(units.z);
+  sums_[mass].x += static_cast<std::uint32_t>(round_to_int(units.x));
+  sums_[mass].y += static_cast<std::uint32_t>(round_to_int(units.y));
+  sums_[mass].z += static_cast<std::uint32_t>(round_to_int(units.z));
 }
 
 // A third of each face's force to each of its masses. False, and the lowest mass noted, if a force is out of range.
@@ -165,7 +165,8 @@ bool PlainLoop::add_environment(const Hooks& hooks) {
 Vec3 PlainLoop::take(std::size_t mass, float inverse_scale) {
   const Sum sum = sums_[mass];
   sums_[mass] = {};
-  return inverse_scale * Vec3{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
+  const auto value = [](std::uint32_t units) { return static_cast<float>(static_cast<std::int32_t>(units)); };
+  return inverse_scale * Vec3{value(sum.x), value(sum.y), value(sum.z)};
 }
 
 // Stores a mass's new state unless it left the finite; then the mass stays and the robot has exploded.

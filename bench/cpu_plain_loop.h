@@ -33,7 +33,7 @@ class PlainLoop {
 
  private:
   struct Sum {
-    std::int32_t x = 0, y = 0, z = 0;
+    std::uint32_t x = 0, y = 0, z = 0;  // signed numbers in two's complement, so that overflow in an explosion is defined
   };
 
   void update_muscles();

@@ -64,12 +64,16 @@ std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_
     const bool sound = within_reach(state.positions[mass]) && std::isfinite(squared);
     return sound ? squared : std::numeric_limits<float>::infinity();
   };
-  std::uint32_t worst = noted;
-  for (const Face& face : robot.faces) {
-    if (face.a != noted && face.b != noted && face.c != noted) continue;
-    for (const std::uint32_t mass : {face.a, face.b, face.c})
-      if (blame(mass) > blame(worst)) worst = mass;
+  std::vector<bool> near(state.positions.size());
+  near[noted] = true;
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::vector<bool> before = near;
+    for (const Face& face : robot.faces)
+      if (before[face.a] || before[face.b] || before[face.c]) near[face.a] = near[face.b] = near[face.c] = true;
   }
+  std::uint32_t worst = noted;
+  for (std::uint32_t mass = 0; mass < near.size(); ++mass)
+    if (near[mass] && blame(mass) > blame(worst)) worst = mass;
   return worst;
 }
 

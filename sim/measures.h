@@ -35,8 +35,9 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 // else the first that is longer than the stretch limit allows, else the most strained one.
 std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
 
-// `noted`, or the mass of a face with it that is more to blame: one that is out of reach or not finite, else the
-// fastest. A backend that finds a face's force out of range notes one of its three masses, whichever is at hand.
+// `noted`, or a mass at most two faces from it that is more to blame: one that is out of reach or not finite, else the
+// fastest. A backend that finds a face's force out of range notes a mass of that face or of one beside it, whichever is
+// at hand.
 std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted);
 
 }  // namespace mercury

@@ -10,8 +10,9 @@
 
 namespace mercury {
 
-// A test of one backend. On a machine without a CUDA device the CUDA case is skipped.
-class Backend : public testing::TestWithParam<DeviceKind> {
+// A test of one backend. On a machine without a CUDA device the CUDA case is skipped. (Not named Backend: that is what
+// the simulator calls its own.)
+class BackendTest : public testing::TestWithParam<DeviceKind> {
  protected:
   void SetUp() override { skip_without(GetParam()); }
   Device device() const { return {.kind = GetParam()}; }
@@ -29,7 +30,7 @@ class Backend : public testing::TestWithParam<DeviceKind> {
 using Pair = std::tuple<DeviceKind, Solver, std::string_view>;
 class EveryPair : public testing::TestWithParam<Pair> {
  protected:
-  void SetUp() override { Backend::skip_without(std::get<DeviceKind>(GetParam())); }
+  void SetUp() override { BackendTest::skip_without(std::get<DeviceKind>(GetParam())); }
   Configuration configuration() const {
     return {.solver = std::get<Solver>(GetParam()),
             .environment = environment_named(std::get<std::string_view>(GetParam())),

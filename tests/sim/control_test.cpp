@@ -12,13 +12,13 @@
 namespace mercury {
 namespace {
 
-class Control : public Backend {
+class Control : public BackendTest {
  protected:
   Configuration configuration(double damping = 0) const {
     return {.damping = damping, .environment = empty_space(), .device = device()};
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Control, every_device, Backend::name);
+INSTANTIATE_TEST_SUITE_P(All, Control, every_device, BackendTest::name);
 
 TEST_P(Control, AStifferMaterialShortensThePeriodOfTheRobotThatGotItAlone) {
   const Robot pair = bodies::pair({50, 0, 0, 0});

@@ -91,8 +91,8 @@ TEST_P(Explosion, SurvivesAddingAnotherRobot) {
 }
 
 // omega_max of the pair is sqrt(2 k); beyond dt = 2 / omega_max the force solver's pair grows without bound.
-class Stability : public Backend {};
-INSTANTIATE_TEST_SUITE_P(All, Stability, every_device, Backend::name);
+class Stability : public BackendTest {};
+INSTANTIATE_TEST_SUITE_P(All, Stability, every_device, BackendTest::name);
 
 TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndThatOfXpbdDoesNot) {
   const Robot pair = bodies::pair({50, 0, 0, 0});

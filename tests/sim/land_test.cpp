@@ -13,13 +13,13 @@ namespace {
 
 constexpr Material tissue_like{40, 0, 0, 0};
 
-class OnLand : public Backend {
+class OnLand : public BackendTest {
  protected:
   Configuration on_land(const Land& land, Solver solver, double damping = 0.1) const {
     return {.damping = damping, .solver = solver, .environment = land, .device = device()};
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, OnLand, every_device, Backend::name);
+INSTANTIATE_TEST_SUITE_P(All, OnLand, every_device, BackendTest::name);
 
 float lowest(const std::vector<Vec3>& positions) { return std::ranges::min(positions, {}, &Vec3::z).z; }
 

@@ -59,7 +59,7 @@ TEST(Muscle, APassiveMaterialNeverMoves) {
 // At a time step of many minutes an XPBD spring of two masses is as long as the law says after every step, and damping
 // leaves no velocity: the law can be read off positions over any time. Corrections are summed in units of 2^-18 of the
 // spring's length there, hence the tolerance; it stands for 1e-5 rad.
-class MuscleLength : public Backend {
+class MuscleLength : public BackendTest {
  protected:
   static constexpr double dt = 997.3;  // [s]
   Configuration configuration() const {
@@ -70,7 +70,7 @@ class MuscleLength : public Backend {
     return length(x[1] - x[0]);
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, MuscleLength, every_device, Backend::name);
+INSTANTIATE_TEST_SUITE_P(All, MuscleLength, every_device, BackendTest::name);
 
 TEST_P(MuscleLength, OfEveryDefaultMuscleFollowsTheLawForAMillionSeconds) {
   std::vector<Robot> robots;

@@ -16,13 +16,13 @@ using reference::vector_of;
 constexpr float edge = 0.1f;                 // [m]
 constexpr Material stiff{5000, 0, 0, 0}, soft{50, 0, 0, 0};
 
-class Water : public Backend {
+class Water : public BackendTest {
  protected:
   Configuration water(const Ocean& ocean, double dt = 1e-3, Solver solver = Solver::force) const {
     return {.dt = dt, .damping = 0, .solver = solver, .environment = ocean, .device = device()};
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Water, every_device, Backend::name);
+INSTANTIATE_TEST_SUITE_P(All, Water, every_device, BackendTest::name);
 
 Robot cube(std::uint64_t orientation, const Material& material = stiff) {
   Robot robot = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, material);

@@ -18,13 +18,13 @@ Configuration springs_only(Solver solver, double dt, Device device) {
   return {.dt = dt, .damping = 0, .solver = solver, .environment = empty_space(), .device = device};
 }
 
-class Springs : public Backend {
+class Springs : public BackendTest {
  protected:
   Configuration springs_only(Solver solver, double dt = 1e-3) const {
     return mercury::springs_only(solver, dt, device());
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Springs, every_device, Backend::name);
+INSTANTIATE_TEST_SUITE_P(All, Springs, every_device, BackendTest::name);
 
 constexpr float stiffness = 50;  // [N/m]
 constexpr Material passive{stiffness, 0, 0, 0};

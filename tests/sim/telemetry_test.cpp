@@ -46,8 +46,8 @@ TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
   }
 }
 
-class Reading : public Backend {};
-INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, Backend::name);
+class Reading : public BackendTest {};
+INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, BackendTest::name);
 
 TEST_P(Reading, AllMassesAtOnceAgreesWithRobotByRobot) {
   const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::point(), bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2)};
