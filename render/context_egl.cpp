@@ -153,7 +153,10 @@ std::unique_ptr<Context> make_egl_mesa_context(const ContextOptions& options) {
   }
   if (!client_has("EGL_MESA_platform_surfaceless")) throw ContextError(reason);
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
-  return std::make_unique<EglContext>(display, ContextKind::mesa, -1, options);
+  auto context = std::make_unique<EglContext>(display, ContextKind::mesa, -1, options);
+  // Where Mesa is not installed another vendor's EGL may answer for it.
+  if (!context->is_software()) throw ContextError("Mesa is not installed");
+  return context;
 }
 
 }  // namespace mercury::render

@@ -103,8 +103,8 @@ TEST_F(RunCommand, CsvHasALineARobot) {
   EXPECT_EQ(header, "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash");
   for (const json& robot : report["robots"]) {
     std::getline(csv, line);
-    EXPECT_EQ(line.substr(0, line.find(',')), robot["name"]);
-    EXPECT_EQ(line.substr(line.rfind(',') + 1), robot["hash"]);
+    EXPECT_EQ(line.substr(0, line.find(',')), robot["name"].get<std::string>());
+    EXPECT_EQ(line.substr(line.rfind(',') + 1), robot["hash"].get<std::string>());
   }
   EXPECT_EQ(listing(), std::vector<std::string>{"a.csv"});
 }
