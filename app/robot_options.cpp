@@ -20,14 +20,15 @@ void RobotOptions::add_to(CLI::App& command) {
   command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
   command.add_option("--random", random_, "So many random robots; may be given several times")
       ->allow_extra_args(false)
-      ->type_name("voxel:N")
+      ->type_name("voxel:N|nn:N")
       ->group("Robots");
   add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
   voxel_.add_to(command);
+  nn_.add_to(command);
 }
 
 std::vector<Robot> RobotOptions::load() const {
-  if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12");
+  if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12 or nn:12");
   std::vector<Robot> robots;
   if (!paths_.empty()) robots = load_robots(std::vector<std::filesystem::path>(paths_.begin(), paths_.end()));
   for (const std::string& request : random_) {
@@ -45,7 +46,17 @@ std::vector<Robot> RobotOptions::random_robots(const std::string& request) const
   if (count < 1 || count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
   if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed_, count);
-  throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N", kind));
+  if (kind == "nn") return random_network_robots(count);
+  throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
+}
+
+std::vector<Robot> RobotOptions::random_network_robots(std::size_t count) const {
+  std::vector<FailedRobot> failed;
+  std::vector<Robot> robots = random_nn_robots(nn_.chosen(), seed_, count, 0, &failed);
+  if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
+  for (const FailedRobot& robot : failed)
+    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", seed_, robot.index, robot.reason);
+  return robots;
 }
 
 }  // namespace mercury

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/nn_options.h"
 #include "app/voxel_options.h"
 #include "sim/robot.h"
 
@@ -29,11 +30,13 @@ class RobotOptions {
 
  private:
   std::vector<Robot> random_robots(const std::string& request) const;
+  std::vector<Robot> random_network_robots(std::size_t count) const;
 
   std::vector<std::string> paths_;   // files and folders
-  std::vector<std::string> random_;  // "voxel:12"
+  std::vector<std::string> random_;  // "voxel:12", "nn:4"
   std::uint64_t seed_ = 1;
   VoxelOptions voxel_;
+  NnRobotOptions nn_;
 };
 
 }  // namespace mercury

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include "robots/nn_robot.h"
 #include "robots/random.h"
@@ -269,16 +270,20 @@ Layer last_layer(const Trunk& trunk, bool mirrored, Random& random) {
 }  // namespace
 
 void validate(const NnOptions& options) {
-  if (options.hidden.size() >= max_network_layers) throw InputError("--hidden", "at most 15 layers are accepted");
+  const auto refuse = [](const char* option, const auto& value, const char* accepted) {
+    std::ostringstream given;
+    given << value;
+    throw InputError(option, given.str() + " is not accepted; give " + accepted);
+  };
+  if (options.hidden.size() >= max_network_layers) refuse("--hidden", options.hidden.size(), "at most 15 layers");
   for (const int width : options.hidden)
     if (width < static_cast<int>(Trunk::carried) || width > max_network_width)
-      throw InputError("--hidden", std::to_string(width) + " neurons, 6 to 4096 are accepted");
+      refuse("--hidden", width, "6 to 4096 neurons a layer");
   if (options.points < min_cloud_points || options.points > max_masses)
-    throw InputError("--points", std::to_string(options.points) + ", 64 to 65535 are accepted");
+    refuse("--points", options.points, "64 to 65535");
   if (!(options.alpha >= 0 && std::isfinite(options.alpha)))
-    throw InputError("--alpha", "a radius > 0 in metres, or 0 for the smallest");
-  if (!(options.mirrored >= 0 && options.mirrored <= 1))
-    throw InputError("--mirrored", "a share from 0 to 1 is accepted");
+    refuse("--alpha", options.alpha, "a radius > 0 m, or 0 for the smallest that holds all points");
+  if (!(options.mirrored >= 0 && options.mirrored <= 1)) refuse("--mirrored", options.mirrored, "a share from 0 to 1");
 }
 
 NnGenome random_nn_genome(const NnOptions& options, std::uint64_t seed, std::uint64_t index) {

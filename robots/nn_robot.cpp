@@ -132,8 +132,8 @@ void validate(const NnGenome& genome) {
       require(std::all_of(values.get().begin(), values.get().end(), [](float x) { return std::isfinite(x); }),
               "network", "a weight is not a finite number");
   require(genome.points >= min_cloud_points && genome.points <= max_masses, "points",
-          std::to_string(genome.points) + ", 64 to 65535 are accepted");
-  require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha", "a radius > 0 in metres, or 0 for the smallest");
+          std::to_string(genome.points) + " is not accepted; give 64 to 65535");
+  require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha", "give a radius > 0 m, or 0 for the smallest that holds all points");
 }
 
 Robot grow(const NnGenome& genome, const std::string& name) {

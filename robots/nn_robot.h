@@ -59,7 +59,7 @@ struct NnOptions {
   double mirrored = 0.5;               // share of robots with mirror symmetry
 };
 
-// Throws InputError("--hidden: ...") and the like unless there are at most 15 hidden layers of 6 to 4,096 neurons, 64 to
+// Throws InputError("--hidden: 3 is not accepted; ...") and the like unless there are at most 15 hidden layers of 6 to 4,096 neurons, 64 to
 // 65,535 points, a finite alpha >= 0 and a share from 0 to 1.
 void validate(const NnOptions& options);
 

@@ -263,10 +263,10 @@ TEST(NnRobot, OriginsThatCannotBeUsedAreRefusedWithTheirPlace) {
   EXPECT_EQ(replaced("[3,6,25]", "[3,7,25]"), "/origin/sizes: the sizes of the layers in weights are expected");
   EXPECT_EQ(replaced("[[1,0,0]", "[[1,0]"), "/origin/weights/0: rows of equal length are expected");
   EXPECT_EQ(replaced("[[1,0,0]", "[[1,0,\"a\"]"), "/origin/weights/0/0: numbers are expected");
-  EXPECT_EQ(replaced("\"points\":200", "\"points\":20"), "/origin: points: 20, 64 to 65535 are accepted");
+  EXPECT_EQ(replaced("\"points\":200", "\"points\":20"), "/origin: points: 20 is not accepted; give 64 to 65535");
   EXPECT_EQ(replaced("\"points\":200", "\"points\":-1"), "/origin/points: a whole number >= 0 is expected");
   EXPECT_EQ(replaced("\"mirrored\":false", "\"mirrored\":0"), "/origin/mirrored: true or false is expected");
-  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":-1"), "/origin: alpha: a radius > 0 in metres, or 0 for the smallest");
+  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":-1"), "/origin: alpha: give a radius > 0 m, or 0 for the smallest that holds all points");
 }
 
 TEST(NnRobot, CloudsThatSpanNoBodyAreRefusedWithTheReason) {
@@ -291,10 +291,10 @@ TEST(NnRobot, CloudsThatSpanNoBodyAreRefusedWithTheReason) {
   genome.alpha = 1e-4f;
   EXPECT_EQ(reason_not_to_grow(genome), "alpha: no tetrahedron of the cloud is as small as the given radius");
   genome.alpha = -1;
-  EXPECT_EQ(reason_not_to_grow(genome), "alpha: a radius > 0 in metres, or 0 for the smallest");
+  EXPECT_EQ(reason_not_to_grow(genome), "alpha: give a radius > 0 m, or 0 for the smallest that holds all points");
   genome.alpha = 0;
   genome.points = 63;
-  EXPECT_EQ(reason_not_to_grow(genome), "points: 63, 64 to 65535 are accepted");
+  EXPECT_EQ(reason_not_to_grow(genome), "points: 63 is not accepted; give 64 to 65535");
 }
 
 TEST(NnRobot, PointsOnOnePlaceAreOneMass) {
@@ -339,7 +339,24 @@ TEST(NnRobot, AFailureIsToldAndTheOthersGoOn) {
   EXPECT_EQ(failed[4].index, 14u);
   EXPECT_EQ(failed[4].reason, "alpha: no tetrahedron of the cloud is as small as the given radius");
   EXPECT_THROW(random_nn_robots({.points = 64, .alpha = 1e-6f}, 1, 5), InputError);
-  EXPECT_THROW(random_nn_genome({.hidden = {3}}, 1), InputError);
+}
+
+TEST(NnRobot, OptionsOutOfRangeAreNamed) {
+  const auto message = [](const NnOptions& options) -> std::string {
+    try {
+      random_nn_robots(options, 1, 1);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({.hidden = {64, 3}}), "--hidden: 3 is not accepted; give 6 to 4096 neurons a layer");
+  EXPECT_EQ(message({.hidden = std::vector<int>(16, 8)}), "--hidden: 16 is not accepted; give at most 15 layers");
+  EXPECT_EQ(message({.points = 63}), "--points: 63 is not accepted; give 64 to 65535");
+  EXPECT_EQ(message({.points = 65536}), "--points: 65536 is not accepted; give 64 to 65535");
+  EXPECT_EQ(message({.alpha = -0.5f}),
+            "--alpha: -0.5 is not accepted; give a radius > 0 m, or 0 for the smallest that holds all points");
+  EXPECT_EQ(message({.mirrored = 2}), "--mirrored: 2 is not accepted; give a share from 0 to 1");
 }
 
 TEST(NnRobot, SizesOfTheNetworkAreFree) {
