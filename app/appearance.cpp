@@ -11,13 +11,20 @@ std::uint32_t edge_key(std::uint16_t a, std::uint16_t b) {
   return static_cast<std::uint32_t>(std::min(a, b)) << 16 | std::max(a, b);
 }
 
-render::Color color_of(const Material& material, float slowest, float fastest) {
-  if (material.amplitude != 0) {
-    const float speed = fastest > slowest ? (material.frequency - slowest) / (fastest - slowest) : 0.5f;
-    return render::muscle_color(material.phase, speed);
+// From the lowest value seen to the highest.
+struct Range {
+  float low = INFINITY, high = -INFINITY;
+  void add(float value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
   }
-  // Bone and tissue of the defaults lie at 100 and 40 N/m.
-  return render::mix(render::tissue_color, render::bone_color, std::clamp((material.stiffness - 40) / 60, 0.0f, 1.0f));
+  float place_of(float value) const { return high > low ? (value - low) / (high - low) : 0.5f; }
+};
+
+render::Color color_of(const Material& material, const Range& frequencies, const Range& passive) {
+  if (material.amplitude != 0) return render::muscle_color(material.phase, frequencies.place_of(material.frequency));
+  // The softest passive material of the table looks like tissue, the stiffest like bone.
+  return render::mix(render::tissue_color, render::bone_color, passive.place_of(material.stiffness));
 }
 
 }  // namespace
@@ -59,14 +66,14 @@ std::vector<MaterialId> face_materials(const Robot& robot) {
 }
 
 std::vector<render::Color> material_colors(std::span<const Material> materials, bool defaults) {
-  float slowest = INFINITY, fastest = 0;
-  for (const Material& material : materials) {
-    if (material.amplitude == 0) continue;
-    slowest = std::min(slowest, material.frequency);
-    fastest = std::max(fastest, material.frequency);
-  }
+  Range frequencies, passive;
+  for (const Material& material : materials)
+    if (material.amplitude != 0)
+      frequencies.add(material.frequency);
+    else if (material.stiffness > 0)
+      passive.add(material.stiffness);
   std::vector<render::Color> colors;
-  for (const Material& material : materials) colors.push_back(color_of(material, slowest, fastest));
+  for (const Material& material : materials) colors.push_back(color_of(material, frequencies, passive));
   if (!defaults) return colors;
   for (std::size_t id = base_material_count + 1; id < colors.size(); ++id) {
     const auto [first, second] = base_materials_of(static_cast<MaterialId>(id));

@@ -58,8 +58,9 @@ class Adapter : public nlohmann::json_sax<Json> {
     // A number that no double holds ends the parse. The receiver knows the place to name, and throws.
     if (error.id == number_overflow)
       events_.number({.kind = Number::Kind::real, .real = std::numeric_limits<double>::infinity(), .text = token});
+    const bool overflow = error.id == number_overflow;
     throw InputError(place_of(document_, position),
-                     error.id == number_overflow ? "a number is too large" : "not valid JSON: " + reason_of(error.what()));
+                     overflow ? "a number is too large" : "not valid JSON: " + reason_of(error.what()));
   }
 
  private:

@@ -63,7 +63,8 @@ class Palette {
 
   MaterialId draw(Random& random) const {
     double at = random.uniform() * (options_.muscle + options_.tissue + options_.bone);
-    const auto frequency = frequencies_[static_cast<std::size_t>(random.below(static_cast<std::uint64_t>(options_.frequencies)))];
+    const auto choices = static_cast<std::uint64_t>(options_.frequencies);
+    const int frequency = frequencies_[static_cast<std::size_t>(random.below(choices))];
     const auto phase = static_cast<int>(random.below(phases));
     if ((at -= options_.muscle) < 0) return static_cast<MaterialId>(frequency * phases + phase + 1);
     if ((at -= options_.tissue) < 0) return tissue;
@@ -173,9 +174,10 @@ VoxelGrid random_voxel_grid(const RandomVoxelOptions& options, std::uint64_t see
   validate(options);
   Random random(seed_of(seed, index));
   std::array<int, 3> size;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    size[axis] = options.smallest[axis] +
-                 static_cast<int>(random.below(static_cast<std::uint64_t>(options.largest[axis] - options.smallest[axis]) + 1));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int range = options.largest[axis] - options.smallest[axis];
+    size[axis] = options.smallest[axis] + static_cast<int>(random.below(static_cast<std::uint64_t>(range) + 1));
+  }
   VoxelGrid grid(size[0], size[1], size[2]);
   grid.edge = options.edge;
   std::array<int, 3> drawn = size;

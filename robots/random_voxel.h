@@ -16,7 +16,7 @@ struct RandomVoxelOptions {
   std::array<int, 3> smallest{4, 3, 3};  // voxels; each robot's size is drawn between the two
   std::array<int, 3> largest{7, 5, 4};
   float edge = 0.1f;             // of a voxel [m]
-  double air = 0.3;              // share of the grid's voxels that are air, within rounding; loose parts turn to air, too
+  double air = 0.3;              // share of the grid's voxels that are air, loose parts not counted
   Mirror mirror = Mirror::y;     // a robot whose halves differ swims in circles
   int patch = 2;                 // size of the regions of one material [voxels]; 1 = each voxel on its own
   double muscle = 0.75;          // shares of muscle, tissue and bone among the patches, in any unit

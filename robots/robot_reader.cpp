@@ -87,7 +87,8 @@ void RobotReader::text(std::string_view value) {
   if (passes_by(0)) return;
   if (section_ == origin && depth_ >= 2) return origin_.text(value);
   if (depth_ == 1 && section_ == format) {
-    if (value != "mercury-robot") refuse(std::string("\"").append(shown(value)).append("\" is not known; give \"mercury-robot\""));
+    if (value != "mercury-robot")
+      refuse(std::string("\"").append(shown(value)).append("\" is not known; give \"mercury-robot\""));
   } else if (depth_ == 1 && section_ == name) {
     robot_.name = value;
     json_text(value);
@@ -159,7 +160,9 @@ void RobotReader::row_number(const Number& value) {
 
 void RobotReader::begin_list(std::size_t announced) {
   row_ = 0;
-  const std::size_t limit = section_ == masses ? max_masses : section_ == materials ? std::size_t{max_materials} : unknown_length;
+  const std::size_t limit = section_ == masses      ? max_masses
+                            : section_ == materials ? std::size_t{max_materials}
+                                                    : unknown_length;
   if (announced != unknown_length && announced > limit)
     refuse(std::to_string(announced) + " " + std::string(section_names[section_]) + ", at most " +
            std::to_string(limit) + " are accepted");

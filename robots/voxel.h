@@ -49,7 +49,7 @@ VoxelGrid largest_body(const VoxelGrid& grid);
 // What a voxel robot is told beside its grid.
 struct VoxelRobotOptions {
   std::string name = "voxel";
-  std::string environment;               // where it is meant to live ("ocean", "land"), kept in its origin; empty = not said
+  std::string environment;              // where it lives ("ocean", "land"), kept in its origin; empty = not said
   std::optional<std::uint64_t> seed;     // kept in its origin
   std::optional<std::uint64_t> index;    // which robot of that seed's population, kept in its origin
   std::vector<Material> materials;       // its own table, pairs by the ids of combine(); empty = the 254 defaults

@@ -151,7 +151,8 @@ VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int 
   return child;
 }
 
-Robot mutate_voxel_robot(const Robot& parent, const VoxelMutation& mutation, std::uint64_t seed, const std::string& name) {
+Robot mutate_voxel_robot(const Robot& parent, const VoxelMutation& mutation, std::uint64_t seed,
+                         const std::string& name) {
   return robot_of(mutate(grid_of(parent), mutation, seed), parent, seed, name);
 }
 

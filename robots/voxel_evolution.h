@@ -30,11 +30,13 @@ VoxelGrid mutate(const VoxelGrid& parent, const VoxelMutation& mutation, std::ui
 // A child of a's size and edge. Its blocks of `patch` voxels come from a or b, each as likely; b lies centred in a,
 // and where it has no voxel because it is smaller, a's is taken. With a mirror the child's halves are alike. If
 // nothing but air came together, the child is a.
-VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int patch = 2, Mirror mirror = Mirror::none);
+VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int patch = 2,
+                Mirror mirror = Mirror::none);
 
 // The same for robots that were made from grids. The (first) parent's own materials and environment are kept.
 // Throw InputError if a parent is not a voxel robot.
-Robot mutate_voxel_robot(const Robot& parent, const VoxelMutation& mutation, std::uint64_t seed, const std::string& name);
+Robot mutate_voxel_robot(const Robot& parent, const VoxelMutation& mutation, std::uint64_t seed,
+                         const std::string& name);
 Robot cross_voxel_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name, int patch = 2,
                          Mirror mirror = Mirror::none);
 

@@ -26,7 +26,8 @@ Robot Body::robot() const {
   bases[tissue - 1] = {tissue_stiffness_, 0, 0, 0};
   bases[bone - 1] = {bone_stiffness_, 0, 0, 0};
   std::vector<std::string> names;
-  for (int id = 0; id < default_material_count; ++id) names.push_back(default_material_name(static_cast<MaterialId>(id)));
+  for (int id = 0; id < default_material_count; ++id)
+    names.push_back(default_material_name(static_cast<MaterialId>(id)));
   return make_voxel_robot(grid_, {.name = name_,
                                   .environment = environment_,
                                   .materials = material_table(bases),

@@ -25,8 +25,8 @@ MaterialId leg_muscle(Body& body, const Gait& gait, bool front, float phase) {
 
 Robot quadruped_of(const Gait& gait, float trot) {
   Body body("quadruped", "land", 10, 6, 6);
-  body.set_tissue_stiffness(2 * gait.stiffness);
-  body.set_bone_stiffness(2 * gait.stiffness);
+  body.set_tissue_stiffness(1.5f * gait.stiffness);
+  body.set_bone_stiffness(2.5f * gait.stiffness);
   body.fill([&](int x, int y, int z) -> MaterialId {
     const bool is_leg = (x < 2 || (x > 5 && x < 8)) && (y < 2 || y > 3);
     // In a trot, legs across from each other step together.
@@ -40,8 +40,8 @@ Robot quadruped_of(const Gait& gait, float trot) {
 
 Robot hopper_of(const Gait& gait, float lag) {
   Body body("hopper", "land", 8, 6, 5);
-  body.set_tissue_stiffness(2 * gait.stiffness);
-  body.set_bone_stiffness(2 * gait.stiffness);
+  body.set_tissue_stiffness(1.5f * gait.stiffness);
+  body.set_bone_stiffness(2.5f * gait.stiffness);
   body.fill([&](int x, int y, int z) -> MaterialId {
     const bool is_leg_y = y < 2 || y > 3;
     if (z < 2) {
@@ -68,7 +68,8 @@ Robot beetle() {
       const bool tripod = (leg % 2 == 0) == (y < 2);
       return leg_muscle(body, gait, x % 4 == 1, tripod ? 0 : turn / 2);
     }
-    const float dome = std::hypot(from_middle(x - 1, 11) / 5.5f, from_middle(y, 8) / 4, (static_cast<float>(z) - 2) / 3);
+    const float height = static_cast<float>(z) - 2;
+    const float dome = std::hypot(from_middle(x - 1, 11) / 5.5f, from_middle(y, 8) / 4, height / 3);
     if (x == 0 || x == 11) return z == 2 && y > 2 && y < 5 ? bone : (x == 0 && z == 2 && y > 0 && y < 7 ? tissue : air);
     return z == 2 ? tissue : dome < 1 ? bone : air;
   });

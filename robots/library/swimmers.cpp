@@ -46,8 +46,9 @@ Robot fish_of(const Wave& wave) {
     const float height = std::abs(from_middle(z, body.nz()));
     const bool is_tail_fin = x < 3;
     // A deep body that narrows to the tail's stem, and a forked fin.
-    const float half_height = is_tail_fin ? 3.2f - 0.9f * static_cast<float>(x)
-                                          : 2.4f * std::sin(turn / 2 * std::pow(along(x - 3, body.nx() - 2), 0.7f)) + 0.9f;
+    const float half_height =
+        is_tail_fin ? 3.2f - 0.9f * static_cast<float>(x)
+                    : 2.4f * std::sin(turn / 2 * std::pow(along(x - 3, body.nx() - 2), 0.7f)) + 0.9f;
     if (height > half_height || (x == 0 && height < 1.5f)) return air;
     return muscle_of(body, wave, 1 - along(x, body.nx()), sign(from_middle(y, 2)));
   });
@@ -74,7 +75,7 @@ Robot ray_of(const Wave& wave) {
 
 Robot manta_of(const Wave& wave) {
   Body body("manta", "ocean", 17, 23, 2);
-  body.set_bone_stiffness(wave.stiffness);
+  body.set_bone_stiffness(2 * wave.stiffness);
   body.set_tissue_stiffness(wave.stiffness / 4);
   body.fill([&](int x, int y, int z) -> MaterialId {
     const float out = std::abs(from_middle(y, body.ny())) / 11;
@@ -87,26 +88,28 @@ Robot manta_of(const Wave& wave) {
     if (is_tail && behind_head < 0.1f) return air;
     if (is_tail && behind_head > 0.7f) return tissue;
     if (is_horn || x % 2 == 0) return bone;
-    return muscle_of(body, wave, behind_head / 0.8f, sign(from_middle(z, 2)));
+    // The body waves less than its wings.
+    return muscle_of(body, wave, behind_head / 0.8f, sign(from_middle(z, 2)) * (out < 0.25f ? 0.8f : 1.f));
   });
   return body.robot();
 }
 
 // A bell whose rim contracts, and a soft skirt that follows late.
 Robot jellyfish_of(const Wave& wave) {
-  Body body("jellyfish", "ocean", 13, 13, 10);
+  Body body("jellyfish", "ocean", 13, 13, 12);
   body.set_bone_stiffness(wave.stiffness);
   body.set_tissue_stiffness(wave.stiffness / 6);
   body.fill([&](int x, int y, int z) -> MaterialId {
     const float dx = from_middle(x, body.nx()), dy = from_middle(y, body.ny());
-    const float height = static_cast<float>(z) - 3.5f;  // above the rim
+    const float height = static_cast<float>(z) - 5.5f;  // above the rim
     const float radius = std::hypot(dx, dy);
+    if (radius < 1.2f && height > -4 && height < 5) return tissue;  // the stalk
     if (height < 0) {
-      if (radius < 1.2f && z > 0) return tissue;  // the stalk, which the bell's middle carries
-      return radius > 5.2f && radius < 6.4f ? tissue : air;
+      const bool in_skirt = radius > 5.2f && radius < 6.4f;
+      const bool is_tentacle = std::abs(radius * std::sin(std::remainder(std::atan2(dy, dx), turn / 8))) < 0.8f;
+      return in_skirt && (height > -3 || is_tentacle) ? tissue : air;
     }
     const float distance = std::hypot(radius, height * 1.1f);
-    if (radius < 1.2f && height < 5) return tissue;
     if (distance > 6.4f || distance < 4.6f) return air;
     const float from_apex = std::atan2(radius, height * 1.1f) / (turn / 4);
     return from_apex < 0.45f ? bone : muscle_of(body, wave, (from_apex - 0.45f) / 0.55f, 1);
@@ -117,7 +120,7 @@ Robot jellyfish_of(const Wave& wave) {
 // The mantle glides, three pairs of arms behind it wave.
 Robot squid_of(const Wave& wave) {
   Body body("squid", "ocean", 28, 8, 4);
-  body.set_bone_stiffness(wave.stiffness);
+  body.set_bone_stiffness(2 * wave.stiffness);
   body.set_tissue_stiffness(wave.stiffness / 2);
   body.fill([&](int x, int y, int z) -> MaterialId {
     const float side = std::abs(from_middle(y, body.ny())), height = std::abs(from_middle(z, body.nz()));
@@ -125,7 +128,8 @@ Robot squid_of(const Wave& wave) {
     if (behind_tip < 12) {
       const float mantle = std::min(2.2f, 0.8f + 0.5f * static_cast<float>(behind_tip));
       const float fin = behind_tip < 6 ? 1 + static_cast<float>(behind_tip) / 2 : 0;
-      if (std::hypot(side, height) < mantle) return height > 1 ? tissue : bone;
+      if (std::hypot(side, height) < mantle)  // breathes
+        return body.muscle({wave.stiffness, 0.08f, wave.frequency, 0});
       return height < 1 && side < fin ? tissue : air;
     }
     if (behind_tip < 14) return height < 1 ? bone : air;
@@ -137,24 +141,25 @@ Robot squid_of(const Wave& wave) {
   return body.robot();
 }
 
-// Each flipper is a band that waves from its root to its tip; the fore ones sweep back.
+// The fore flippers flap, and draw the turtle the way that they point.
 Robot turtle_of(const Wave& wave) {
-  Body body("turtle", "ocean", 20, 21, 4);
-  body.set_bone_stiffness(wave.stiffness);
+  Body body("turtle", "ocean", 20, 19, 4);
+  body.set_bone_stiffness(2 * wave.stiffness);
   body.set_tissue_stiffness(wave.stiffness / 4);
   body.fill([&](int x, int y, int z) -> MaterialId {
-    const float side = std::abs(from_middle(y, body.ny())), ahead = static_cast<float>(x) - 12;
+    const float side = std::abs(from_middle(y, body.ny())), ahead = static_cast<float>(x) - 11;
     const float height = from_middle(z, body.nz());
     const bool in_fin_layers = std::abs(height) < 1;
-    const float shell = std::hypot(ahead / 5, side / 3.6f);
-    if (shell < 1) return std::abs(height) < 1 || (height > 0 && shell < 0.75f) ? bone : air;
+    const float shell = std::hypot(ahead / 5.6f, side / 4.3f);
+    if (shell < 1) return std::abs(height) < 1 || (height > 0 && shell < 0.75f) ? (height > 0 ? bone : tissue) : air;
     if (!in_fin_layers) return air;
-    if (side < 1.2f && ahead > 0) return bone;  // the head
-    // Along and across the fore flipper, which leaves the shoulder at 45 degrees.
-    const float fore_along = ((side - 2) - (ahead - 3)) * 0.7071f, fore_across = ((side - 2) + (ahead - 3)) * 0.7071f;
-    if (fore_along > 0 && std::abs(fore_across) < 1.6f) return muscle_of(body, wave, fore_along / 12, sign(height));
-    if (side > 0.8f && side < 3.2f && ahead < 0) return muscle_of(body, wave, (-3 - ahead) / 10, sign(height));
-    return air;
+    if (side < 1.2f && ahead > 0) return tissue;  // the head
+    // Along and across the fore flipper, which leaves the shoulder at 45 degrees, ahead.
+    const float fore_along = ((side - 2.6f) + (ahead - 0.5f)) * 0.7071f;
+    const float fore_across = ((side - 2.6f) - (ahead - 0.5f)) * 0.7071f;
+    if (fore_along > 0 && fore_along < 9 && std::abs(fore_across) < 1.6f)
+      return muscle_of(body, wave, fore_along / 9, sign(height));
+    return side > 1.2f && side < 3.2f && ahead < 0 && ahead > -8.5f ? tissue : air;  // hind flippers
   });
   return body.robot();
 }
@@ -165,9 +170,11 @@ Robot turtle_of(const Wave& wave) {
 Robot eel() { return eel_of({.waves = 1.4f}); }
 Robot fish() { return fish_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
 Robot ray() { return ray_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 6, .waves = 1.2f}); }
-Robot manta() { return manta_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 9, .waves = 0.8f}); }
-Robot jellyfish() { return jellyfish_of({.stiffness = 15000, .frequency = 8, .waves = 1.8f, .segments = 5}); }
-Robot squid() { return squid_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
-Robot turtle() { return turtle_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
+Robot manta() {
+  return manta_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 11, .waves = 1, .segments = 5});
+}
+Robot jellyfish() { return jellyfish_of({.stiffness = 15000, .frequency = 10, .waves = 1.8f, .segments = 5}); }
+Robot squid() { return squid_of({.stiffness = 12000, .frequency = 6, .waves = 1, .segments = 9}); }
+Robot turtle() { return turtle_of({.stiffness = 12000, .frequency = 10, .waves = 0.5f}); }
 
 }  // namespace mercury::library
