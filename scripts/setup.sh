@@ -83,8 +83,7 @@ cuda_architectures() {
 
 # build_targets TARGET...: builds them in build/.
 build_targets() {
-  local cuda=without
-  grep -q '^CMAKE_CUDA_COMPILER:' build/CMakeCache.txt && cuda=with
-  echo "Building $cuda CUDA; log: build/build.log" >&2
+  echo "Building; all of its output: build/build.log" >&2
+  sed -n 's/^-- Mercury: //p' build/configure.log >&2
   logged build.log cmake --build build --parallel "$(build_jobs)" --target "$@"
 }
