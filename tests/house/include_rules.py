@@ -24,7 +24,7 @@ PLAIN_DATA = {f"sim/{name}.h" for name in ("error", "host_device", "material", "
 
 # Subjects of others' libraries, known by their headers, and the folders that may know each.
 SUBJECTS = {
-    "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app"}),
+    "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app", "bench"}),
     "CUDA-OpenGL interop": (r"cuda_gl_interop|cuda_egl_interop|cudaGL|cudaEGL", {"app"}),
     "CUDA": (r"cuda|cooperative_groups|cub/|thrust/|nvrtc|device_launch", {"sim", "app", "bench"}),
     "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "render", "app", "bench"}),
