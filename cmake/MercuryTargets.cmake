@@ -10,6 +10,9 @@ target_compile_options(mercury_build_flags INTERFACE
   # One rounding for an equation on every machine: products and sums are fused only where the source says so.
   $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+# GCC 13 takes any reference that comes back from a call with a temporary argument for dangling.
+target_compile_options(mercury_build_flags INTERFACE
+  $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
 if(MERCURY_WERROR)
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Werror>
