@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "app/eigen_vec3.h"
 #include "sim/error.h"
@@ -50,6 +51,17 @@ float extent(const render::Bounds& box, const Eigen::Vector3f& direction) {
   return box.empty() ? 0 : (box.high - box.low).dot(direction.cwiseAbs());
 }
 
+// Middles of strips of these widths, side by side, the middle of all at 0.
+std::vector<float> middles_of(const std::vector<float>& widths) {
+  std::vector<float> middles;
+  float edge = -0.5f * std::accumulate(widths.begin(), widths.end(), 0.0f);
+  for (const float width : widths) {
+    middles.push_back(edge + 0.5f * width);
+    edge += width;
+  }
+  return middles;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options) {
@@ -61,24 +73,28 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   }
   Grid grid = options.grid.value_or(grid_for(robots.size(), options.aspect, width / height));
   if (options.layout == Layout::race) grid = {1, static_cast<int>(robots.size())};
-  if (robots.size() > static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows))
+  const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
+  if (robots.size() > columns * rows)
     throw InputError("--grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows", robots.size(),
                                            grid.columns, grid.rows));
-  Eigen::Vector3f row_step = height * axes.up;
+  // Each column is as wide, and each row as high, as its largest robot needs.
+  std::vector<float> widths(columns, 0.4f * width), heights(rows, 0.4f * height);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    widths[i % columns] = std::max(widths[i % columns], options.spacing * extent(robots[i], axes.right));
+    heights[i / columns] = std::max(heights[i / columns], options.spacing * extent(robots[i], axes.up));
+  }
+  const std::vector<float> across = middles_of(widths), down = middles_of(heights);
+  Eigen::Vector3f up = axes.up;
   if (options.on_ground) {
-    // On the ground a row lies so far behind the one before it that it appears one cell higher.
+    // On the ground a row lies so far behind the one before it that it appears one row higher.
     const Eigen::Vector3f away(-std::cos(options.view.azimuth), -std::sin(options.view.azimuth), 0);
-    row_step = height / std::max(0.1f, std::sin(options.view.elevation)) * away;
+    up = away / std::max(0.1f, std::sin(options.view.elevation));
   }
   std::vector<Eigen::Vector3f> offsets;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    const auto column = static_cast<float>(static_cast<int>(i) % grid.columns);
-    const auto row = static_cast<float>(static_cast<int>(i) / grid.columns);
-    const Eigen::Vector3f place = (column - 0.5f * static_cast<float>(grid.columns - 1)) * width * axes.right -
-                                  (row - 0.5f * static_cast<float>(grid.rows - 1)) * row_step;
     Eigen::Vector3f middle = robots[i].empty() ? Eigen::Vector3f::Zero() : robots[i].center();
     if (options.on_ground) middle.z() = 0;
-    offsets.push_back(place - middle);
+    offsets.push_back(across[i % columns] * axes.right - down[i / columns] * up - middle);
   }
   return offsets;
 }

@@ -30,7 +30,7 @@ enum class Layout {
 struct LayoutOptions {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;  // absent = grid_for
-  float spacing = 1.45f;     // size of a cell over that of the largest robot
+  float spacing = 1.45f;     // size of a cell over that of the largest robot of its row and column
   float aspect = 16.0f / 9;  // of the picture
   render::Orbit view;        // its angles are those that the group is seen from
   bool on_ground = false;    // a grid on the ground rather than one that faces the eye; heights stay as they are

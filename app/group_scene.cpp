@@ -168,6 +168,8 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   std::vector<float> distances;
   for (std::size_t i = 0; i < start_.size(); ++i)
     distances.push_back(telemetry[i].exploded ? -1 : (eigen(telemetry[i].center_of_mass) - start_[i]).norm());
+  // Nobody leads before somebody has moved.
+  const bool ranked = start_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
   labels_.clear();
   for (std::size_t i = 0; i < start_.size(); ++i) {
     const auto rank = 1 + std::count_if(distances.begin(), distances.end(), [&](float d) { return d > distances[i]; });
@@ -175,7 +177,7 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
     if (telemetry[i].exploded)
       text += fmt::format("\nexploded at {:.1f} s", telemetry[i].exploded_at);
     else
-      text += fmt::format("\n{}{}", distance_text(distances[i]), start_.size() > 1 ? fmt::format("   #{}", rank) : "");
+      text += fmt::format("\n{}{}", distance_text(distances[i]), ranked ? fmt::format("   #{}", rank) : "");
     labels_.push_back({static_cast<std::uint32_t>(i), text});
   }
   scene_.labels = labels_;

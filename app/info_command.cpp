@@ -7,13 +7,14 @@
 
 #include "app/commands.h"
 #include "app/configuration_json.h"
-#include "app/group_layout.h"
 #include "app/machine.h"
 #include "app/option_values.h"
 #include "app/trajectory_layout.h"
 #include "app/trajectory_reader.h"
 #include "app/version.h"
 #include "robots/file.h"
+#include "robots/inspect.h"
+#include "robots/origin.h"
 
 namespace mercury {
 namespace {
@@ -23,39 +24,44 @@ struct InfoOptions {
   std::string ffmpeg, config;
 };
 
-std::string material_name(const Robot& robot, MaterialId id) {
-  if (id < robot.material_names.size()) return robot.material_names[id];
-  return robot.materials.empty() ? default_material_name(id) : fmt::format("material {}", id);
+// "9: muscle 3 (120), bone (14), ..., and 4 more", the most used first.
+std::string materials_text(const Inspection& inspection) {
+  constexpr std::size_t shown = 5;
+  std::vector<MaterialUse> uses = inspection.materials;
+  std::stable_sort(uses.begin(), uses.end(), [](const auto& a, const auto& b) { return a.springs > b.springs; });
+  std::string text = fmt::format("{}", uses.size());
+  for (std::size_t i = 0; i < std::min(shown, uses.size()); ++i)
+    text += fmt::format("{}{} ({})", i == 0 ? ": " : ", ", uses[i].name, uses[i].springs);
+  if (uses.size() > shown) text += fmt::format(", and {} more", uses.size() - shown);
+  return text;
 }
 
-// "muscle 3 (120), bone (14), and 7 more", the most used first.
-std::string materials_used(const Robot& robot) {
-  constexpr std::size_t shown = 5;
-  std::array<std::size_t, max_materials> uses{};
-  for (const Spring& spring : robot.springs) ++uses[spring.material];
-  std::vector<std::size_t> ids;
-  for (std::size_t id = 0; id < uses.size(); ++id)
-    if (uses[id] > 0) ids.push_back(id);
-  std::stable_sort(ids.begin(), ids.end(), [&](std::size_t a, std::size_t b) { return uses[a] > uses[b]; });
-  std::string text = fmt::format("{}", ids.size());
-  for (std::size_t i = 0; i < std::min(shown, ids.size()); ++i)
-    text += fmt::format("{}{} ({})", i == 0 ? ": " : ", ", material_name(robot, static_cast<MaterialId>(ids[i])), uses[ids[i]]);
-  if (ids.size() > shown) text += fmt::format(", and {} more", ids.size() - shown);
+std::string surface_text(const Inspection& inspection) {
+  if (inspection.faces == 0) return "none";
+  std::string text = inspection.closed ? "closed" : fmt::format("open at {} edges", inspection.open_edges);
+  text += fmt::format(", Euler characteristic {}, {:.3g} m2", inspection.euler_characteristic, inspection.area);
+  if (inspection.closed) text += fmt::format(", {:.3g} m3", inspection.volume);
+  if (inspection.crowded_edges > 0) text += fmt::format(", {} edges of more than two faces", inspection.crowded_edges);
   return text;
 }
 
 void line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, text); }
 
 void describe(const Robot& robot) {
-  const render::Bounds box = rest_bounds(robot);
-  const Eigen::Vector3f size = box.high - box.low;
+  const Inspection found = inspect(robot);
+  const std::string kind = kind_of(robot), environment = environment_of(robot);
   fmt::print("{}\n", robot.name);
-  line("masses", fmt::to_string(robot.masses.size()));
-  line("springs", fmt::format("{} ({:.1f} a mass)", robot.springs.size(),
-                              2.0 * static_cast<double>(robot.springs.size()) / static_cast<double>(robot.masses.size())));
-  line("faces", fmt::to_string(robot.faces.size()));
-  line("materials", materials_used(robot));
-  line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", size.x(), size.y(), size.z()));
+  if (!kind.empty() || !environment.empty())
+    line("made", fmt::format("{}{}{}", kind.empty() ? "" : "as a " + kind + " robot", kind.empty() || environment.empty() ? "" : ", ",
+                             environment.empty() ? "" : "for " + environment));
+  line("masses", fmt::format("{}{}", found.masses, found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
+  line("springs", fmt::format("{}, {:.1f} a mass, {:.3g} to {:.3g} m, {} muscles", found.springs, found.springs_a_mass,
+                              found.shortest_spring, found.longest_spring, found.muscles));
+  line("faces", fmt::to_string(found.faces));
+  line("surface", surface_text(found));
+  line("materials", materials_text(found));
+  line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
+  if (found.components > 1) line("parts", fmt::format("{} that no spring joins", found.components));
 }
 
 int tell_machine(const std::string& ffmpeg) {

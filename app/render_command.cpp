@@ -9,6 +9,7 @@
 #include "app/robot_options.h"
 #include "app/simulation_options.h"
 #include "app/studio.h"
+#include "app/trajectory_playback.h"
 #include "app/video_options.h"
 #include "app/view_options.h"
 
@@ -26,20 +27,50 @@ struct RenderOptions {
 
 void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", message); }
 
+// What is filmed: robots that are simulated, or a recording that is played back.
+struct Subject {
+  Configuration configuration;
+  std::vector<Robot> robots;                    // empty for a recording
+  std::shared_ptr<TrajectoryReader> recording;  // or nothing
+  double seconds = 0;
+  std::vector<std::string> notes;
+};
+
+Subject subject_of(const RenderOptions& options) {
+  Subject subject;
+  if (const auto file = options.robots.recording()) {
+    if (options.video.each()) throw InputError("--each", "not with a recording; it is played as it is");
+    subject.recording = std::make_shared<TrajectoryReader>(*file);
+    const TrajectoryReader& recording = *subject.recording;
+    if (recording.frames() == 0) throw InputError(file->string(), "holds no frames");
+    subject.configuration = recording.configuration();
+    subject.seconds = options.simulation.seconds(recording.time(recording.frames() - 1) - recording.time(0));
+  } else {
+    options.simulation.configuration();  // errors in options come before those in files
+    subject.robots = options.robots.load();
+    subject.configuration = options.simulation.configuration(subject.robots, subject.notes);
+    subject.seconds = options.simulation.seconds();
+  }
+  return subject;
+}
+
 // What the options come to, before anything costly is begun.
 struct Task {
-  Configuration configuration;
+  Subject subject;
   VideoOptions::Plan plan;
   ViewSettings view;
 };
 
 Task task_of(const RenderOptions& options) {
-  Task task{.configuration = options.simulation.configuration(), .plan = options.video.plan(options.simulation.seconds()),
-            .view = options.view.settings()};
+  options.video.plan(options.simulation.seconds());
+  Task task{.view = options.view.settings()};
+  task.subject = subject_of(options);
+  task.plan = options.video.plan(task.subject.seconds);
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();
   const auto [width, height] = task.plan.size;
   if (!options.video.single_picture() && task.plan.size != options.video.asked_size() && !options.quiet)
     say(fmt::format("{} needs even sides: drawn at {}x{}", options.video.output_of(""), width, height));
+  for (const std::string& note : task.subject.notes) say(note);
   return task;
 }
 
@@ -54,11 +85,13 @@ void tell_result(const RenderOptions& options, const std::string& output, const 
 }
 
 // One film into a writer. Returns whether the user let it come to its end.
-bool make(const RenderOptions& options, const Task& task, Stage& stage, std::span<const Robot> robots,
-          FrameWriter& writer, const std::string& name, bool first) {
-  Studio studio(stage, task.configuration, robots, task.view);
+bool make(const RenderOptions& options, const Task& task, Stage& stage, Simulation simulation, FrameWriter& writer,
+          const std::string& name, bool first) {
+  Studio studio(stage, std::move(simulation), task.view);
   if (first && !options.quiet) {
-    say(fmt::format("simulating {} on {}", robots.size() == 1 ? "1 robot" : fmt::format("{} robots", robots.size()),
+    const std::size_t count = studio.simulation().size();
+    say(fmt::format("{} {} {} ({}) on {}", task.subject.recording ? "playing" : "simulating", count,
+                    count == 1 ? "robot" : "robots", name_of(task.subject.configuration.environment),
                     studio.simulation().device_name()));
     say(fmt::format("drawing with {}, {} quality", stage.context->describe(), name_of(stage.renderer.quality())));
     say(fmt::format("encoding {}", writer.description()));
@@ -86,9 +119,13 @@ std::vector<std::string> file_names(std::span<const Robot> robots) {
   return names;
 }
 
+Simulation simulation_of(const Subject& subject, std::span<const Robot> robots) {
+  return subject.recording ? playback(subject.recording) : Simulation(subject.configuration, robots);
+}
+
 int render_robots(const RenderOptions& options) {
   const Task task = task_of(options);
-  const std::vector<Robot> robots = options.robots.load();
+  const std::span<const Robot> robots = task.subject.robots;
   const bool each = options.video.each();
   const std::vector<std::string> names = each ? file_names(robots) : std::vector<std::string>{""};
   // A missing encoder or a name that cannot be written is told before the slow start of OpenGL.
@@ -97,7 +134,8 @@ int render_robots(const RenderOptions& options) {
   bool done = true;
   for (std::size_t i = 0; i < names.size() && done; ++i) {
     if (!writer) writer = options.video.open(task.plan, names[i]);
-    done = make(options, task, stage, each ? std::span(robots).subspan(i, 1) : robots, *writer, names[i], i == 0);
+    Simulation simulation = simulation_of(task.subject, each ? robots.subspan(i, 1) : robots);
+    done = make(options, task, stage, std::move(simulation), *writer, names[i], i == 0);
     writer.reset();
   }
   if (!done) say("stopped early; the video ends there");
@@ -123,6 +161,7 @@ void add_render_command(CLI::App& program, const Choose& choose) {
       "  mercury render robots/ --layout race --environment land -o race.mp4\n"
       "  mercury render robots/eel.json --camera turntable --color strain --seconds 4 -o eel.gif\n"
       "  mercury render robots/ --contact-sheet 5x2 --seconds 9 -o poster.png\n"
+      "  mercury render run.h5 -o run.mp4                    a recording of mercury run --record\n"
       "  mercury render robots/ --fps 60 -o frames/          a folder of PNG pictures");
   command->callback([options, choose] { choose([options] { return render_robots(*options); }); });
 }

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <iterator>
 
 #include "app/option_values.h"
+#include "app/trajectory_layout.h"
 #include "robots/file.h"
 #include "sim/error.h"
 
@@ -27,9 +28,19 @@ void RobotOptions::add_to(CLI::App& command) {
   nn_.add_to(command);
 }
 
+std::optional<std::filesystem::path> RobotOptions::recording() const {
+  const auto found = std::find_if(paths_.begin(), paths_.end(), [](const auto& path) { return is_trajectory_name(path); });
+  if (found == paths_.end()) return std::nullopt;
+  if (paths_.size() > 1 || !random_.empty())
+    throw InputError(*found, "a recording is played alone; give it without other robots");
+  return *found;
+}
+
 std::vector<Robot> RobotOptions::load() const {
   if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12 or nn:12");
   std::vector<Robot> robots;
+  if (const auto file = recording())
+    throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
   if (!paths_.empty()) robots = load_robots(std::vector<std::filesystem::path>(paths_.begin(), paths_.end()));
   for (const std::string& request : random_) {
     std::vector<Robot> more = random_robots(request);

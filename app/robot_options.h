@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ class RobotOptions {
   // Reads the files and makes the random robots, files first. Throws InputError when there are none, or one cannot be
   // used.
   std::vector<Robot> load() const;
+
+  // The trajectory file, if that is what was given. Throws InputError if robots were given with it.
+  std::optional<std::filesystem::path> recording() const;
 
   bool empty() const { return paths_.empty() && random_.empty(); }
 

@@ -133,11 +133,13 @@ void require_writable(const std::string& option, const std::filesystem::path& fi
 
 int run(const RunOptions& options) {
   if (!options.csv.empty()) require_writable("--csv", options.csv);
-  const Configuration configuration = options.simulation.configuration();
+  options.simulation.configuration();  // errors in options come before those in files
   const std::int64_t steps = options.simulation.steps();
   const std::vector<Robot> robots = options.robots.load();
-  Simulation simulation(configuration, robots);
-  for (const std::string& note : simulation.notes()) fmt::print(stderr, "mercury: {}\n", note);
+  std::vector<std::string> notes;
+  Simulation simulation(options.simulation.configuration(robots, notes), robots);
+  for (const auto& several : {notes, simulation.notes()})
+    for (const std::string& note : several) fmt::print(stderr, "mercury: {}\n", note);
 
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
   const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());

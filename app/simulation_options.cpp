@@ -1,12 +1,15 @@
 #include "app/simulation_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
+#include <set>
 #include <type_traits>
 #include <variant>
 
 #include "app/option_values.h"
+#include "robots/origin.h"
 #include "sim/error.h"
 
 namespace mercury {
@@ -49,6 +52,12 @@ void set(Environment& environment, const char* option, const std::optional<Value
       environment);
 }
 
+bool is_environment(std::string_view name) {
+  return [&]<std::size_t... i>(std::index_sequence<i...>) {
+    return ((name == std::variant_alternative_t<i, Environment>::name) || ...);
+  }(std::make_index_sequence<std::variant_size_v<Environment>>{});
+}
+
 // One number is a pull downwards.
 Vec3 gravity_from(const std::string& option, const std::string& text) {
   if (text.find(',') != std::string::npos) return vector_from(option, text);
@@ -63,7 +72,7 @@ void SimulationOptions::add_to(CLI::App& command) {
                   "auto|cpu|cuda[:N]", [](const std::string&, const std::string& text) { return name_of(device_named(text)); }),
         "Simulation");
   group(add_number(command, "--threads", threads_, "CPU threads (default 0 = all cores)", "N"), "Simulation");
-  group(add_value(command, "--environment", environment_, "Where the robots live (default ocean)",
+  group(add_value(command, "--environment", environment_, "Where the robots live (default: what they are made for, else ocean)",
                   "ocean|ocean-simple|land",
                   [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }),
         "Simulation");
@@ -89,9 +98,7 @@ void SimulationOptions::add_to(CLI::App& command) {
   group(command.add_flag("--no-self-collision", no_self_collision_, "Robots pass through themselves (land)"), "Environment");
 }
 
-void SimulationOptions::set_environment(Configuration& configuration) const {
-  configuration.environment = environment_named(environment_);
-  Environment& environment = configuration.environment;
+void SimulationOptions::set_parameters(Environment& environment) const {
   set(environment, "--density", density_, density);
   set(environment, "--drag-coefficient", drag_coefficient_, drag_coefficient);
   set(environment, "--lift-coefficient", lift_coefficient_, lift_coefficient);
@@ -104,23 +111,41 @@ void SimulationOptions::set_environment(Configuration& configuration) const {
   if (no_self_collision_) set(environment, "--no-self-collision", std::optional<bool>(false), self_collision);
 }
 
-Configuration SimulationOptions::configuration() const {
+Configuration SimulationOptions::configuration_in(std::string_view environment) const {
   Configuration configuration;
   configuration.dt = dt_;
   configuration.damping = damping_;
   configuration.solver = solver_named(solver_);
   configuration.device = device_named(device_);
   configuration.device.threads = threads_;
-  set_environment(configuration);
+  configuration.environment = environment_named(environment);
+  set_parameters(configuration.environment);
   validate(configuration);
   return configuration;
 }
 
-double SimulationOptions::seconds() const {
-  if (!(std::isfinite(seconds_) && seconds_ >= 0))
-    throw InputError("--seconds", fmt::format("{} is not accepted; give a finite number >= 0 s", seconds_));
-  if (seconds_ / dt_ > 1e15) throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds_, dt_));
-  return seconds_;
+Configuration SimulationOptions::configuration() const { return configuration_in(environment_.value_or("ocean")); }
+
+Configuration SimulationOptions::configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const {
+  if (environment_) return configuration();
+  std::set<std::string> wanted;
+  for (const Robot& robot : robots) {
+    const std::string environment = environment_of(robot);
+    if (is_environment(environment)) wanted.insert(environment);
+  }
+  if (wanted.size() == 1) return configuration_in(*wanted.begin());
+  if (wanted.size() > 1)
+    notes.push_back(fmt::format("the robots are made for {}; all are put into ocean, --environment chooses",
+                                fmt::join(wanted, " and ")));
+  return configuration();
+}
+
+double SimulationOptions::seconds(double otherwise) const {
+  const double seconds = seconds_.value_or(otherwise);
+  if (!(std::isfinite(seconds) && seconds >= 0))
+    throw InputError("--seconds", fmt::format("{} is not accepted; give a finite number >= 0 s", seconds));
+  if (seconds / dt_ > 1e15) throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds, dt_));
+  return seconds;
 }
 
 std::int64_t SimulationOptions::steps() const { return std::llround(seconds() / dt_); }

@@ -5,9 +5,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sim/configuration.h"
+#include "sim/robot.h"
 
 namespace mercury {
 
@@ -18,17 +22,23 @@ class SimulationOptions {
 
   // What was chosen. Throws InputError naming the option that cannot be used or does not apply to the environment.
   Configuration configuration() const;
+  // The same; without --environment, the one that the robots are made for, if they agree. What the user should know
+  // about that is added to `notes`.
+  Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;
 
   // Time to simulate [s]. Throws InputError unless it is finite and >= 0 and has at most 1e15 steps of dt.
-  double seconds() const;
+  double seconds(double otherwise = 10) const;
   std::int64_t steps() const;  // nearest to seconds() / dt
 
  private:
-  void set_environment(Configuration& configuration) const;
+  Configuration configuration_in(std::string_view environment) const;
+  void set_parameters(Environment& environment) const;
 
-  std::string device_ = "auto", environment_ = "ocean", solver_ = "force";
+  std::string device_ = "auto", solver_ = "force";
+  std::optional<std::string> environment_;
   int threads_ = 0;
-  double dt_ = Configuration{}.dt, damping_ = Configuration{}.damping, seconds_ = 10;
+  double dt_ = Configuration{}.dt, damping_ = Configuration{}.damping;
+  std::optional<double> seconds_;
   std::optional<float> density_, drag_coefficient_, lift_coefficient_, point_drag_, friction_, contact_stiffness_,
       stiffness_scale_;
   std::optional<Vec3> flow_, gravity_;

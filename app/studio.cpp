@@ -49,8 +49,8 @@ Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality qua
   return {std::move(context), std::move(renderer)};
 }
 
-Studio::Studio(Stage& stage, const Configuration& configuration, std::span<const Robot> robots, const ViewSettings& settings)
-    : stage_(stage), simulation_(configuration, robots),
+Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings)
+    : stage_(stage), simulation_(std::move(simulation)),
       scene_(simulation_, offsets_of(simulation_, settings, aspect_of(stage.renderer)), settings),
       camera_(settings.camera,
               {.aspect = aspect_of(stage.renderer), .free = written_on(settings), .on_ground = on_land(simulation_)},

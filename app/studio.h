@@ -23,8 +23,8 @@ Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality qua
 // A group of robots on a stage: where they stand, how they look, and who holds the camera. Refers to the stage.
 class Studio {
  public:
-  // Throws InputError for a configuration, robot or setting that cannot be used.
-  Studio(Stage& stage, const Configuration& configuration, std::span<const Robot> robots, const ViewSettings& settings);
+  // Throws InputError for a setting that does not suit the robots or their environment.
+  Studio(Stage& stage, Simulation simulation, const ViewSettings& settings);
 
   const Simulation& simulation() const { return simulation_; }
   // See film().

@@ -45,6 +45,19 @@ TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
   EXPECT_EQ(load_robot(path("a.json")), random_voxel_robot({}, 1));
 }
 
+// The winners are those that `run` says got farthest.
+TEST_F(NewCommand, BestOfKeepsTheFarthest) {
+  const Outcome outcome = mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const auto report = nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
+  std::vector<std::pair<double, std::string>> ranking;
+  for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["displacement"].get<double>(), robot["name"]);
+  std::sort(ranking.begin(), ranking.end());
+  std::vector<std::string> best{ranking[0].second + ".json", ranking[1].second + ".json"};
+  std::sort(best.begin(), best.end());
+  EXPECT_EQ(listing("best"), best);
+}
+
 TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
   write("file", "");
   const auto message = [&](std::vector<std::string> arguments) {
@@ -59,6 +72,8 @@ TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
             "mercury: -o: " + path("a.txt") + ": \".txt\" is not a robot file; give .json, .cbor or a folder\n");
   EXPECT_EQ(message({"-o", path("file")}), "mercury: -o: " + path("file") + " is a file, not a folder\n");
   EXPECT_EQ(message({"-o", path("r"), "--count", "0"}), "mercury: --count: 0 is not accepted; give 1 or more\n");
+  EXPECT_EQ(message({"-o", path("r"), "--count", "5", "--best-of", "3"}),
+            "mercury: --best-of: 3 is not accepted; give at least --count, 5\n");
   EXPECT_EQ(message({}), "mercury: --output is required; see mercury new voxel --help\n");
   EXPECT_EQ(listing(), std::vector<std::string>{"file"});
 }

@@ -32,7 +32,7 @@ TEST_F(RenderCommand, VideoHasTheFramesThatWereAskedFor) {
   EXPECT_EQ(stream["r_frame_rate"], "20/1");
   EXPECT_EQ(outcome.output, "");
   // Which device, which GL, which encoder.
-  EXPECT_THAT(outcome.messages, HasSubstr("simulating 2 robots on "));
+  EXPECT_THAT(outcome.messages, HasSubstr("simulating 2 robots (ocean) on "));
   EXPECT_THAT(outcome.messages, HasSubstr("drawing with "));
   EXPECT_THAT(outcome.messages, HasSubstr("encoding H.264 by ffmpeg"));
   EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
@@ -87,6 +87,26 @@ TEST_F(RenderCommand, ContactSheetIsAsWideAsAsked) {
   // Three moments and two gaps of 4 pixels: (400 + 4) / 3 - 4 = 130 wide, half as high.
   EXPECT_EQ(sheet.width, 3 * 130 + 2 * 4);
   EXPECT_EQ(sheet.height, 2 * 65 + 4);
+}
+
+TEST_F(RenderCommand, RecordingShowsWhatTheSimulationShowed) {
+  const std::vector<std::string> simulate{"--random", "voxel:2", "--seconds", "1", "--environment", "land", "--dt", "0.002"};
+  std::vector<std::string> record{"run", "--record", path("a.h5"), "--every", "1"};
+  record.insert(record.end(), simulate.begin(), simulate.end());
+  ASSERT_EQ(mercury(record).status, 0);
+  ASSERT_EQ(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}).status, 0);
+  std::vector<std::string> direct{"render", "-o", path("direct"), "--fps", "2", "--size", "160x90"};
+  direct.insert(direct.end(), simulate.begin(), simulate.end());
+  ASSERT_EQ(mercury(direct).status, 0);
+  EXPECT_EQ(listing("played"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
+  for (const std::string& frame : listing("direct")) EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
+}
+
+TEST_F(RenderCommand, RecordingIsPlayedAlone) {
+  write("a.h5", "");
+  const Outcome outcome = mercury(command("a.mp4", {path("a.h5")}));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.messages, "mercury: " + path("a.h5") + ": a recording is played alone; give it without other robots\n");
 }
 
 TEST_F(RenderCommand, EachRobotGetsAVideo) {

@@ -115,6 +115,26 @@ TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
   EXPECT_EQ(outcome.messages, "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
 }
 
+// A robot file that says where it is meant to live.
+TEST_F(RunCommand, RobotsLiveWhereTheyAreMadeFor) {
+  const auto robot = [](const std::string& environment) {
+    return R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0],[1,0,0]], "springs": [[0,1,21]], "faces": [],
+               "origin": {"kind": "voxel", "environment": ")" + environment + "\"}}";
+  };
+  write("crawler.json", robot("land"));
+  write("fish.json", robot("ocean"));
+  const auto environment = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--seconds", "0.01"});
+    return run_json(arguments)["configuration"]["environment"].get<std::string>();
+  };
+  EXPECT_EQ(environment({path("crawler.json")}), "land");
+  EXPECT_EQ(environment({path("fish.json")}), "ocean");
+  EXPECT_EQ(environment({path("crawler.json"), "--environment", "ocean-simple"}), "ocean-simple");
+  EXPECT_EQ(environment({path("crawler.json"), path("fish.json")}), "ocean");
+  const Outcome both = mercury({"run", path("crawler.json"), path("fish.json"), "--seconds", "0.01"});
+  EXPECT_EQ(both.messages, "mercury: the robots are made for land and ocean; all are put into ocean, --environment chooses\n");
+}
+
 TEST_F(RunCommand, ExplodedRobotsAreToldAndFailOnlyWhenStrict) {
   // Two masses on a spring of 50 N/m: omega = sqrt(2 k / m) = 10 rad/s, unstable for dt > 2 / omega = 0.2 s.
   write("pair.json",
