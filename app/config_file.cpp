@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #define TOML_EXCEPTIONS 1
@@ -79,7 +80,7 @@ ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& com
     : path_(path) {
   toml::table file;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError("--config", path + " cannot be read");
+  if (!stream || std::filesystem::is_directory(path)) throw InputError("--config", path + " cannot be read");
   try {
     file = toml::parse(stream, path);
   } catch (const toml::parse_error& error) {

@@ -1,4 +1,4 @@
-// Initial weights of network robots (docs/nn-robots.md). Weights drawn from one normal distribution give the same body
+// Initial weights of network robots. Weights drawn from one normal distribution give the same body
 // over and over, a lump with spikes: a sum of many small bends is again a normal cloud, and its outliers decide the
 // alpha shape. Here a few neurons have a large say, each drawn as a feature of a body: a limb, a bend, a cup. The others
 // have little, and are there for evolution. Nothing but + - * / and square roots is used, and no two numbers are drawn

@@ -64,7 +64,7 @@ struct NnOptions {
 void validate(const NnOptions& options);
 
 // The genome of the index-th robot of a seed. It depends on options, seed and index alone, bit for bit on every machine.
-// Its initial weights are drawn so that bodies differ clearly; docs/nn-robots.md tells how.
+// Its initial weights are drawn so that bodies differ clearly (nn_initial.cpp).
 NnGenome random_nn_genome(const NnOptions& options, std::uint64_t seed, std::uint64_t index = 0);
 
 // The robot of that genome, "nn-SEED-INDEX".
