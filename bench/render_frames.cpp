@@ -1,5 +1,6 @@
 // How fast groups are drawn: bench_render_frames [name=value ...], one line of results.
-// Names: bodies side width height quality frames read (none, rgb, yuv) upload (0, 1: positions through the host) context
+// Names: bodies side width height quality frames read (none, rgb, yuv) upload (0, 1: positions through the host)
+// context
 //
 // Bodies are full lattices of side^3 voxels, as in the simulator's own benchmark: side 10 has 1,331 masses, 14,230
 // springs and 1,200 faces. Positions stand still; everything that depends on them is computed anew in each frame.
@@ -63,9 +64,9 @@ Lattice make_lattice(int side) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::map<std::string, std::string> set{{"bodies", "12"}, {"side", "10"},    {"width", "1280"}, {"height", "720"},
-                                         {"frames", "30"}, {"read", "yuv"},   {"upload", "1"},   {"quality", "auto"},
-                                         {"context", "auto"}};
+  std::map<std::string, std::string> set{{"bodies", "12"},  {"side", "10"},      {"width", "1280"},
+                                         {"height", "720"}, {"frames", "30"},    {"read", "yuv"},
+                                         {"upload", "1"},   {"quality", "auto"}, {"context", "auto"}};
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     set[argument.substr(0, argument.find('='))] = argument.substr(argument.find('=') + 1);
@@ -77,7 +78,8 @@ int main(int argc, char** argv) {
   const int bodies = number("bodies"), side = number("side");
   const Lattice lattice = make_lattice(side);
   const double begin_setup = now();
-  renderer.set_bodies(std::vector<Body>(std::size_t(bodies), Body{lattice.masses, lattice.faces, lattice.springs, {}, {}}));
+  renderer.set_bodies(
+      std::vector<Body>(std::size_t(bodies), Body{lattice.masses, lattice.faces, lattice.springs, {}, {}}));
   const double setup = now() - begin_setup;
 
   std::vector<Placement> placements;

@@ -124,8 +124,8 @@ Camera Orbit::camera() const {
   camera.target = target;
   camera.eye = target + distance * direction;
   // Derivative of `direction` by the elevation: upright even when looking straight down.
-  camera.up = Vector3f(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth),
-                       std::cos(elevation));
+  camera.up =
+      Vector3f(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth), std::cos(elevation));
   camera.field_of_view = field_of_view;
   camera.near = std::max(1e-3f, 0.01f * distance);
   camera.far = 200 * distance;
@@ -168,12 +168,14 @@ void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, con
   const Slot upward{half * (2 * free.bottom - 1), half * (1 - 2 * free.top)};
   float low = nearest, high = nearest + 1e6f;
   for (int i = 0; i < 60; ++i) {
-    const float middle = i < 30 ? nearest + std::sqrt(std::max(low - nearest, 1e-5f) * (high - nearest)) : 0.5f * (low + high);
+    const float middle =
+        i < 30 ? nearest + std::sqrt(std::max(low - nearest, 1e-5f) * (high - nearest)) : 0.5f * (low + high);
     const bool fits = !shifts(seen, 0, across, middle).empty() && !shifts(seen, 1, upward, middle).empty();
     (fits ? high : low) = middle;
   }
   distance = std::max(1e-3f, high * margin);
-  target += shifts(seen, 0, across, distance).middle() * axes.right + shifts(seen, 1, upward, distance).middle() * axes.up;
+  target +=
+      shifts(seen, 0, across, distance).middle() * axes.right + shifts(seen, 1, upward, distance).middle() * axes.up;
 }
 
 Orbit top_view(const Bounds& bounds, float aspect) {

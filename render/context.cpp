@@ -65,15 +65,16 @@ namespace {
 
 void GLAPIENTRY on_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                            const void* user) {
-  // Notifications tell where buffers live, "other" carries shader statistics, "performance" that a shader is recompiled:
-  // none is misuse.
+  // Notifications tell where buffers live, "other" carries shader statistics, "performance" that a shader is
+  // recompiled: none is misuse.
   if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_OTHER || type == GL_DEBUG_TYPE_PERFORMANCE)
     return;
   std::string line = length < 0 ? std::string(text) : std::string(text, std::size_t(length));
   while (!line.empty() && (line.back() == '\n' || line.back() == '\0')) line.pop_back();
   auto& messages = *const_cast<ContextMessages*>(static_cast<const ContextMessages*>(user));
   const std::lock_guard lock(messages.mutex);
-  if (messages.lines.size() < most_messages) messages.lines.push_back(std::string(severity_name(severity)) + ": " + line);
+  if (messages.lines.size() < most_messages)
+    messages.lines.push_back(std::string(severity_name(severity)) + ": " + line);
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ void Context::inspect(ContextKind kind, bool debug) {
                        ", Mercury draws with 4.5 or newer");
   software_ = renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos ||
               renderer.find("SWR") != std::string::npos;
-  const std::string place = software_                    ? "Mesa " + card_name(renderer) + " (software)"
+  const std::string place = software_                     ? "Mesa " + card_name(renderer) + " (software)"
                             : kind == ContextKind::window ? card_name(renderer)
                                                           : "EGL on " + card_name(renderer);
   description_ = place + (kind == ContextKind::osmesa ? " through OSMesa" : "") + ", OpenGL " + version.substr(0, 3);

@@ -65,8 +65,7 @@ std::vector<DeviceChoice> devices(bool software, int wanted_cuda) {
 
 class EglContext : public Context {
  public:
-  EglContext(EGLDisplay display, ContextKind kind, int cuda_device, const ContextOptions& options)
-      : display_(display) {
+  EglContext(EGLDisplay display, ContextKind kind, int cuda_device, const ContextOptions& options) : display_(display) {
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr))
       throw ContextError("the display cannot be opened");
     if (!lists(eglQueryString(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context"))
@@ -92,9 +91,15 @@ class EglContext : public Context {
  private:
   void create(bool debug) {
     if (!eglBindAPI(EGL_OPENGL_API)) throw ContextError("EGL has no desktop OpenGL");
-    const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                           debug ? EGL_CONTEXT_OPENGL_DEBUG : EGL_NONE, EGL_TRUE, EGL_NONE};
+    const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                           4,
+                                           EGL_CONTEXT_MINOR_VERSION,
+                                           5,
+                                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                           debug ? EGL_CONTEXT_OPENGL_DEBUG : EGL_NONE,
+                                           EGL_TRUE,
+                                           EGL_NONE};
     context_ = eglCreateContext(display_, config(), EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT) throw ContextError("OpenGL 4.5 core is refused");
   }

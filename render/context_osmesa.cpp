@@ -56,8 +56,15 @@ const Library& osmesa() {
 class OsmesaContext : public Context {
  public:
   explicit OsmesaContext(const ContextOptions& options) {
-    const std::array<int, 9> attributes{osmesa_format, osmesa_rgba, osmesa_profile, osmesa_core_profile,
-                                        osmesa_major_version, 4, osmesa_minor_version, 5, 0};
+    const std::array<int, 9> attributes{osmesa_format,
+                                        osmesa_rgba,
+                                        osmesa_profile,
+                                        osmesa_core_profile,
+                                        osmesa_major_version,
+                                        4,
+                                        osmesa_minor_version,
+                                        5,
+                                        0};
     handle_ = osmesa().create(attributes.data(), nullptr);
     if (!handle_) throw ContextError("OpenGL 4.5 core is refused");
     try {

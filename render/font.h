@@ -9,19 +9,19 @@
 namespace mercury::render {
 
 struct FontGlyph {
-  int code;                    // Unicode
-  float advance;               // to the next glyph
-  int x, y, width, height;     // in the atlas
-  int left, top;               // from the pen on the base line to its upper left corner, y downwards
+  int code;                 // Unicode
+  float advance;            // to the next glyph
+  int x, y, width, height;  // in the atlas
+  int left, top;            // from the pen on the base line to its upper left corner, y downwards
 };
 
 // All lengths in pixels at `size` pixels a line.
 struct FontData {
-  std::span<const FontGlyph> glyphs;  // by code
+  std::span<const FontGlyph> glyphs;   // by code
   std::span<const unsigned char> png;  // the atlas, grey: 128 on the outline, more inside
   int size;
-  float ascent;                // of the highest glyph above the base line
-  int spread;                  // distance that 128 steps of grey stand for
+  float ascent;  // of the highest glyph above the base line
+  int spread;    // distance that 128 steps of grey stand for
 };
 
 // Generated at build time.

@@ -24,9 +24,9 @@ Octave octave_of(float distance);
 
 // The light's view of all that can throw a shadow.
 struct ShadowFit {
-  Eigen::Matrix4f matrix;    // world to texture coordinates and depth, 0 to 1 each
-  float width = 1;           // of the square that the map covers [m]
-  float depth = 1;           // that its depth range covers [m]
+  Eigen::Matrix4f matrix;  // world to texture coordinates and depth, 0 to 1 each
+  float width = 1;         // of the square that the map covers [m]
+  float depth = 1;         // that its depth range covers [m]
 };
 ShadowFit fit_shadow(const Bounds& casters, const Eigen::Vector3f& to_key, int side);
 

@@ -8,7 +8,6 @@
 namespace mercury::render {
 namespace {
 
-
 GLenum stage_of(std::string_view name) {
   if (name.ends_with(".vert")) return GL_VERTEX_SHADER;
   if (name.ends_with(".frag")) return GL_FRAGMENT_SHADER;

@@ -15,8 +15,8 @@
 
 namespace {
 
-constexpr int size = 44;       // pixels from the deepest descender to the highest ascender
-constexpr int padding = 7;     // pixels around a glyph in which its distance is told
+constexpr int size = 44;    // pixels from the deepest descender to the highest ascender
+constexpr int padding = 7;  // pixels around a glyph in which its distance is told
 constexpr int atlas_width = 1024;
 
 struct Glyph {
@@ -29,10 +29,10 @@ struct Glyph {
 std::vector<int> wanted_codes() {
   std::vector<int> codes;
   for (int c = 32; c < 127; ++c) codes.push_back(c);
-  for (int c = 160; c < 0x180; ++c) codes.push_back(c);          // Latin
-  for (int c = 0x391; c < 0x3ca; ++c) codes.push_back(c);        // Greek
-  for (const int c : {0x2013, 0x2014, 0x2018, 0x2019, 0x201c, 0x201d, 0x2022, 0x2026, 0x2074, 0x207b, 0x2190, 0x2192, 0x2206, 0x2212, 0x221e,
-                      0x2248, 0x2264, 0x2265, 0x25cf, 0xfffd})
+  for (int c = 160; c < 0x180; ++c) codes.push_back(c);    // Latin
+  for (int c = 0x391; c < 0x3ca; ++c) codes.push_back(c);  // Greek
+  for (const int c : {0x2013, 0x2014, 0x2018, 0x2019, 0x201c, 0x201d, 0x2022, 0x2026, 0x2074, 0x207b,
+                      0x2190, 0x2192, 0x2206, 0x2212, 0x221e, 0x2248, 0x2264, 0x2265, 0x25cf, 0xfffd})
     codes.push_back(c);
   return codes;
 }
@@ -95,16 +95,18 @@ std::vector<unsigned char> compress(const std::vector<Glyph>& glyphs, int height
 }
 
 void write(std::FILE* out, const std::vector<Glyph>& glyphs, const std::vector<unsigned char>& png, float ascent) {
-  std::fprintf(out, "// Made from a font at build time.\n#include \"render/font.h\"\n\nnamespace mercury::render {\nnamespace {\n\n");
+  std::fprintf(
+      out,
+      "// Made from a font at build time.\n#include \"render/font.h\"\n\nnamespace mercury::render {\nnamespace {\n\n");
   std::fprintf(out, "const FontGlyph glyphs[] = {\n");
   for (const Glyph& g : glyphs)
-    std::fprintf(out, "    {%d, %.3ff, %d, %d, %d, %d, %d, %d},\n", g.code, double(g.advance), g.x, g.y, g.width, g.height,
-                 g.left, g.top);
+    std::fprintf(out, "    {%d, %.3ff, %d, %d, %d, %d, %d, %d},\n", g.code, double(g.advance), g.x, g.y, g.width,
+                 g.height, g.left, g.top);
   std::fprintf(out, "};\n\nconst unsigned char atlas[] = {");
   for (std::size_t i = 0; i < png.size(); ++i) std::fprintf(out, "%s%d,", i % 32 ? "" : "\n", int(png[i]));
   std::fprintf(out, "};\n\n}  // namespace\n\nconst FontData& font_data() {\n");
-  std::fprintf(out, "  static const FontData data{glyphs, atlas, %d, %.3ff, %d};\n  return data;\n}\n\n", size, double(ascent),
-               padding);
+  std::fprintf(out, "  static const FontData data{glyphs, atlas, %d, %.3ff, %d};\n  return data;\n}\n\n", size,
+               double(ascent), padding);
   std::fprintf(out, "}  // namespace mercury::render\n");
 }
 

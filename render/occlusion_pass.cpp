@@ -5,7 +5,9 @@
 namespace mercury::render {
 
 OcclusionPass::OcclusionPass(const QualitySettings& settings)
-    : floor_depth_("floor_depth.frag"), occlusion_("occlusion.frag", settings.defines()), blur_("occlusion_blur.frag") {}
+    : floor_depth_("floor_depth.frag"),
+      occlusion_("occlusion.frag", settings.defines()),
+      blur_("occlusion_blur.frag") {}
 
 void OcclusionPass::resize(int width, int height) {
   width_ = (width + 1) / 2;

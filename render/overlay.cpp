@@ -42,7 +42,8 @@ PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& ca
   const Eigen::Vector3f middle = camera.project(body.center(), width, height);
   float top = middle.y();
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f point((corner & 1) ? body.high.x() : body.low.x(), (corner & 2) ? body.high.y() : body.low.y(),
+    const Eigen::Vector3f point((corner & 1) ? body.high.x() : body.low.x(),
+                                (corner & 2) ? body.high.y() : body.low.y(),
                                 (corner & 4) ? body.high.z() : body.low.z());
     const Eigen::Vector3f seen = camera.project(point, width, height);
     if (seen.z() > 0) top = std::min(top, seen.y());
@@ -121,7 +122,19 @@ void Overlay::scale_bar(const Rectangle& place, Colormap map) {
   quads_.push_back(quad);
 }
 
-void Overlay::backing(const Rectangle& place, float opacity) { box(place, 0.35f * text_size_, style_.text_edge, opacity); }
+void Overlay::backing(const Rectangle& place, float opacity) {
+  box(place, 0.35f * text_size_, style_.text_edge, opacity);
+}
+
+void Overlay::label(const Rectangle& place, std::span<const std::string_view> lines) {
+  backing(place, 0.5f);
+  float y = place.y + 0.09f * text_size_;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const float size = text_size_ * (i == 0 ? 1 : small);
+    text(lines[i], place.x + 0.5f * place.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
+    y += size;
+  }
+}
 
 void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera) {
   std::vector<PlacedLabel> placed;
@@ -134,25 +147,18 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
   for (const PlacedLabel& p : placed) {
     if (p.depth < camera.near) continue;
     const std::vector<std::string_view> lines = lines_of(p.label->text);
-    float across = 0, down = 0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const float size = text_size_ * (i == 0 ? 1 : small);
-      across = std::max(across, text_width(lines[i], size));
-      down += size;
-    }
+    const float down = text_size_ * (1 + small * float(lines.size() - 1));
+    float across = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      across = std::max(across, text_width(lines[i], text_size_ * (i == 0 ? 1 : small)));
     Rectangle place{p.x - 0.5f * across - pad, p.y - down - 0.8f * pad, across + 2 * pad, down + 0.8f * pad};
     if (place.x + place.width < 0 || place.x > width_ || p.y < 0 || place.y > height_) continue;
     place.x = std::clamp(place.x, 0.0f, std::max(0.0f, width_ - place.width));
     place.y = std::max(place.y, 0.0f);
-    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(place, other); })) continue;
+    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(place, other); }))
+      continue;
     taken.push_back(place);
-    backing(place, 0.5f);
-    float y = place.y + 0.3f * pad;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const float size = text_size_ * (i == 0 ? 1 : small);
-      text(lines[i], place.x + 0.5f * place.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
-      y += size;
-    }
+    label(place, lines);
   }
 }
 
@@ -168,7 +174,8 @@ void Overlay::legend(const Legend& legend) {
     for (const float value : values) numbers.push_back(tick_text(value, step));
     for (const std::string& number : numbers) widest = std::max(widest, 1.9f * size + text_width(number, 0.9f * size));
   }
-  for (const auto& [color, name] : legend.swatches) widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
+  for (const auto& [color, name] : legend.swatches)
+    widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
   widest = std::max(widest, text_width(title, size));
   const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
   const float rows = 1.25f * size * float(legend.swatches.size());
@@ -186,7 +193,8 @@ void Overlay::legend(const Legend& legend) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const float at = range != 0 ? (values[i] - legend.scale->low) / range : 0.5f;
       const float line = place.y + (1 - at) * bar;
-      box({place.x + place.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+      box({place.x + place.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text,
+          0.9f);
       text(numbers[i], place.x + place.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
     }
     y += bar + 0.6f * size;
@@ -210,7 +218,8 @@ void Overlay::caption(std::string_view shown) {
   const float size = 1.15f * text_size_, pad = 0.45f * size;
   const std::vector<std::string_view> lines = lines_of(shown);
   float across = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) across = std::max(across, text_width(lines[i], i == 0 ? size : small * size));
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    across = std::max(across, text_width(lines[i], i == 0 ? size : small * size));
   const float down = size * (1 + small * float(lines.size() - 1));
   const Rectangle place{text_size_, text_size_, across + 2 * pad, down + 0.4f * size};
   if (lines.empty()) return;

@@ -21,12 +21,12 @@ struct Rectangle {
 struct OverlayQuad {
   enum Kind : std::uint32_t { glyph, box, scale };
   Rectangle place;
-  Rectangle source;             // glyph: texels of the atlas. box: corner radius in x. scale: unused
+  Rectangle source;               // glyph: texels of the atlas. box: corner radius in x. scale: unused
   float color[4] = {1, 1, 1, 1};  // linear, opacity
   float edge[4] = {0, 0, 0, 0};   // glyph: colour of the outline
   std::uint32_t kind = box;
-  float sharpness = 1;          // glyph: pixels of the picture that 255 steps of the atlas span
-  std::uint32_t map = 0;        // scale: Colormap
+  float sharpness = 1;    // glyph: pixels of the picture that 255 steps of the atlas span
+  std::uint32_t map = 0;  // scale: Colormap
   std::uint32_t padding = 0;
 };
 
@@ -55,6 +55,7 @@ class Overlay {
 
  private:
   void backing(const Rectangle& place, float opacity);
+  void label(const Rectangle& place, std::span<const std::string_view> lines);
 
   float width_, height_, text_size_;
   Style style_;

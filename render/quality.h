@@ -8,16 +8,16 @@
 namespace mercury::render {
 
 struct QualitySettings {
-  int samples = 4;          // a pixel
-  int shadow_side = 1024;   // texels
-  int ground_side = 512;    // texels of the floor's map of light
-  int caustics_side = 320;  // texels of a tile
+  int samples = 4;                           // a pixel
+  int shadow_side = 1024;                    // texels
+  int ground_side = 512;                     // texels of the floor's map of light
+  int caustics_side = 320;                   // texels of a tile
   int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
   int occlusion_taps = 7;
   int particles = 500;
   int skin_blockers = 0, skin_taps = 4;  // of shadows on skins
-  std::string defines() const;       // for the shaders
-  std::string skin_defines() const;  // for the shaders of bodies
+  std::string defines() const;           // for the shaders
+  std::string skin_defines() const;      // for the shaders of bodies
 };
 
 // Not for Quality::automatic.

@@ -18,57 +18,12 @@
 #include "render/occlusion_pass.h"
 #include "render/overlay_pass.h"
 #include "render/quality.h"
+#include "render/scene_buffers.h"
 #include "render/skin_pass.h"
 #include "render/targets.h"
 
 namespace mercury::render {
 namespace {
-
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
-// As shaders/bodies.glsl has it.
-struct PlacementRecord {
-  float x, y, z;
-  std::uint32_t flags;
-};
-
-std::uint32_t flags_of(const Placement& place) {
-  return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u);
-}
-
-std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
-  std::vector<PlacementRecord> records(std::max<std::size_t>(bodies, 1));
-  for (std::size_t i = 0; i < std::min(bodies, placements.size()); ++i) {
-    const Vector3f& offset = placements[i].offset;
-    records[i] = {offset.x(), offset.y(), offset.z(), flags_of(placements[i])};
-  }
-  return records;
-}
-
-std::vector<Vector4f> look_records(std::span<const Look> looks) {
-  std::vector<Vector4f> records;
-  for (const Look& look : looks) {
-    const auto linear = linear_of(look.color);
-    records.push_back({linear[0], linear[1], linear[2], look.activation});
-  }
-  if (records.empty()) records.push_back({0.6f, 0.6f, 0.6f, 0});
-  return records;
-}
-
-// The boxes of bodies as they stand in the picture; empty for one that is not shown.
-std::vector<Bounds> placed(std::vector<Bounds> bodies, std::span<const Placement> placements) {
-  for (std::size_t i = 0; i < std::min(bodies.size(), placements.size()); ++i)
-    bodies[i] = placements[i].hidden ? Bounds{} : bodies[i].moved(placements[i].offset);
-  return bodies;
-}
-
-Bounds joined(std::span<const Bounds> boxes) {
-  Bounds all;
-  for (const Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
-  return all;
-}
 
 // Whether some corner of the picture looks at, or nearly at, the horizon.
 bool sees_horizon(const Camera& camera, int width, int height) {
@@ -83,10 +38,15 @@ std::string surroundings_variant(const Scene& scene, const FrameBlock& block) {
   return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z() > 0 ? 2 : 1);
 }
 
+template <typename Property>
+bool any_placement(const Scene& scene, Property property) {
+  return std::any_of(scene.placements.begin(), scene.placements.end(), property);
+}
+
 std::string skin_variant(const Scene& scene) {
-  const auto any = [&](auto property) { return std::any_of(scene.placements.begin(), scene.placements.end(), property); };
-  return std::string(any([](const Placement& p) { return p.smooth; }) ? "#define ROUNDED\n" : "") +
-         (any([](const Placement& p) { return p.selected || p.faulty; }) ? "#define MARKED\n" : "");
+  const bool rounded = any_placement(scene, [](const Placement& p) { return p.smooth; });
+  const bool marked = any_placement(scene, [](const Placement& p) { return p.selected || p.faulty; });
+  return std::string(rounded ? "#define ROUNDED\n" : "") + (marked ? "#define MARKED\n" : "");
 }
 
 Overlay written(const Scene& scene, const Camera& camera, std::span<const Bounds> bodies, const Style& style, int width,
@@ -116,7 +76,12 @@ Texture make_colormaps() {
 // What quality decides: thrown away and made anew when it changes.
 struct Passes {
   explicit Passes(const QualitySettings& settings)
-      : skin(settings.skin_defines()), lattice(settings.skin_defines()), light(settings), occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
+      : skin(settings.skin_defines()),
+        lattice(settings.skin_defines()),
+        light(settings),
+        occlusion(settings),
+        finish(settings),
+        backdrop("backdrop.frag") {}
   void resize(int width, int height) {
     occlusion.resize(width, height);
     finish.resize(width, height);
@@ -139,22 +104,27 @@ struct Renderer::Parts {
   QualitySettings settings;
   Targets targets;
   Bodies bodies;
-  Buffer frame, placements, looks, face_values, mass_values;
+  Buffer frame;
+  SceneBuffers scene_buffers;
   Texture colormaps = make_colormaps();
   OverlayPass overlay;
   float text_size = 0;
   std::optional<Passes> passes;
   BoundsPass bounds;
+  PassTimer timer;
+  // Of the picture that is being drawn.
+  std::vector<Bounds> boxes;
+  std::string variant;
 
-  void upload(const Scene& scene);
-  void bind() const;
+  void prepare(const Scene& scene, const Camera& camera, const Style& style);
+  void draw_light(const Scene& scene);
+  void draw_solid(const Scene& scene, const Camera& camera);
 };
 
 Renderer::Renderer(const Context& context, const RendererOptions& options) : parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;
   p.software = context.is_software();
   p.text_size = options.text_size;
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   set_quality(options.quality);
   resize(options.width, options.height);
 }
@@ -209,83 +179,83 @@ std::vector<Bounds> Renderer::body_bounds() {
   return parts_->bounds.measure(parts_->bodies);
 }
 
-void Renderer::Parts::upload(const Scene& scene) {
-  const auto require = [](std::size_t size, std::size_t wanted, const char* what) {
-    if (size != 0 && size != wanted) throw std::invalid_argument(std::string("Scene::") + what + " has the wrong length");
-  };
-  require(scene.positions.size(), 3 * bodies.mass_count(), "positions");
-  require(scene.placements.size(), bodies.body_count(), "placements");
-  require(scene.face_values.size(), bodies.face_count(), "face_values");
-  require(scene.mass_values.size(), bodies.mass_count(), "mass_values");
-  require(scene.spring_values.size(), bodies.spring_count(), "spring_values");
-  if (!scene.positions.empty())
-    glNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(scene.positions.size_bytes()), scene.positions.data());
-  placements.write(placement_records(scene.placements, bodies.body_count()));
-  looks.write(look_records(scene.looks));
-  face_values.write(scene.face_values);
-  mass_values.write(scene.mass_values);
+// Everything that follows from the scene alone.
+void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style) {
+  scene_buffers.upload(scene, bodies);
+  scene_buffers.bind(bodies);
+  boxes = placed(bounds.measure(bodies), scene.placements);
+  const Bounds group = joined(boxes);
+  const ShadowFit shadow = fit_shadow(group, style.to_key, settings.shadow_side);
+  const FrameBlock block = frame_block(scene, camera, style, shadow, group, settings.ground_side, width, height);
+  frame.write(&block, sizeof block);
+  frame.bind_uniform(0);
+  variant = surroundings_variant(scene, block);
+  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }));
 }
 
-void Renderer::Parts::bind() const {
-  frame.bind_uniform(0);
-  bodies.positions.bind_storage(binding::positions);
-  placements.bind_storage(binding::placements);
-  bodies.mass_bodies.bind_storage(binding::mass_bodies);
-  bodies.face_records.bind_storage(binding::face_records);
-  looks.bind_storage(binding::looks);
-  face_values.bind_storage(binding::face_values);
-  mass_values.bind_storage(binding::mass_values);
+void Renderer::Parts::draw_light(const Scene& scene) {
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  // Skins are closed: their insides show where they are cut alone.
+  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
+  passes->light.draw(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none, [&] {
+    if (scene.show.skin) passes->skin.draw_shadow(bodies);
+    passes->lattice.draw_shadow(bodies, scene);
+  });
+  timer.mark("shadows");
+  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
+  passes->occlusion.draw(6 * bodies.typical_spring(), [&] {
+    if (scene.show.skin) passes->skin.draw_depth(bodies);
+  });
+  timer.mark("occlusion");
+}
+
+void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.drawing.get());
+  glViewport(0, 0, width, height);
+  const float farthest = 0;
+  glClearNamedFramebufferfv(targets.drawing.get(), GL_DEPTH, 0, &farthest);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
+  glBindTextureUnit(binding::colormap, colormaps.get());
+  const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
+                        : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
+                                                     : SkinPass::ColorBy::looks;
+  if (scene.show.skin) passes->skin.draw(bodies, color_by, scene.scale, variant + skin_variant(scene));
+  glDisable(GL_CULL_FACE);
+  timer.mark("skins");
+  passes->lattice.draw(bodies, scene);
+  passes->annotation.draw_arrows(scene.arrows);
+  timer.mark("springs and masses");
+  glDepthFunc(GL_GEQUAL);
+  passes->backdrop.draw(variant + (sees_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
+  timer.mark("surroundings");
 }
 
 void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const Style style = style_of(scene.surroundings, scene.theme);
-  p.upload(scene);
-  const std::vector<Bounds> boxes = placed(body_bounds(), scene.placements);
-  const Bounds group = joined(boxes);
-  const ShadowFit shadow = fit_shadow(group, style.to_key, p.settings.shadow_side);
-  const FrameBlock block = frame_block(scene, camera, style, shadow, group, p.settings.ground_side, p.width, p.height);
-  const std::string variant = surroundings_variant(scene, block);
-  p.frame.write(&block, sizeof block);
-  p.bind();
-  glDisable(GL_BLEND);
-  // Skins are closed: their insides show where they are cut alone.
-  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
-  glDepthMask(GL_TRUE);
-
-  Passes& passes = *p.passes;
-  const bool smooth = std::any_of(scene.placements.begin(), scene.placements.end(), [](const auto& x) { return x.smooth; });
-  passes.skin.deform(p.bodies, smooth);
-  passes.light.draw(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none,
-                    [&] {
-                      if (scene.show.skin) passes.skin.draw_shadow(p.bodies);
-                      passes.lattice.draw_shadow(p.bodies, scene);
-                    });
-  passes.occlusion.draw(6 * p.bodies.typical_spring(), [&] { if (scene.show.skin) passes.skin.draw_depth(p.bodies); });
-
-  glBindFramebuffer(GL_FRAMEBUFFER, p.targets.drawing.get());
-  glViewport(0, 0, p.width, p.height);
-  const float farthest = 0;
-  glClearNamedFramebufferfv(p.targets.drawing.get(), GL_DEPTH, 0, &farthest);
-  glEnable(GL_DEPTH_TEST);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw with this context, too
+  p.timer.begin();
+  p.prepare(scene, camera, style);
+  p.timer.mark("positions");
+  p.draw_light(scene);
+  p.draw_solid(scene, camera);
   glDepthFunc(GL_GREATER);
-  glBindTextureUnit(binding::colormap, p.colormaps.get());
-  const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
-                        : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
-                                                     : SkinPass::ColorBy::looks;
-  if (scene.show.skin) passes.skin.draw(p.bodies, color_by, scene.scale, variant + skin_variant(scene));
-  glDisable(GL_CULL_FACE);
-  passes.lattice.draw(p.bodies, scene);
-  passes.annotation.draw_arrows(scene.arrows);
-  glDepthFunc(GL_GEQUAL);
-  passes.backdrop.draw(variant + (sees_horizon(camera, p.width, p.height) ? "#define HORIZON\n" : ""));
-  glDepthFunc(GL_GREATER);
-  passes.annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
-  if (scene.surroundings == Surroundings::water) passes.annotation.draw_particles(scene, camera, p.settings.particles);
-  passes.finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);
-  p.overlay.draw(written(scene, camera, boxes, style, p.width, p.height, p.text_size), p.targets.finished.get(), p.width,
-                 p.height, p.colormaps.get());
+  p.passes->annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
+  if (scene.surroundings == Surroundings::water)
+    p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
+  p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);
+  const Overlay text = written(scene, camera, p.boxes, style, p.width, p.height, p.text_size);
+  p.overlay.draw(text, p.targets.finished.get(), p.width, p.height, p.colormaps.get());
+  p.timer.mark("finish");
+  p.timer.end();
+  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glDepthFunc(GL_LESS);
 }
+
+const std::vector<PassTime>& Renderer::times() const { return parts_->timer.times(); }
 
 unsigned Renderer::picture() const { return parts_->targets.picture.get(); }
 

@@ -9,6 +9,7 @@
 
 #include "render/camera.h"
 #include "render/context.h"
+#include "render/pass_timer.h"
 #include "render/scene.h"
 
 namespace mercury::render {
@@ -24,7 +25,7 @@ Quality quality_named(std::string_view name);
 struct RendererOptions {
   int width = 1280, height = 720;  // pixels
   Quality quality = Quality::automatic;
-  float text_size = 0;             // height of a line of text in pixels; 0 = from the picture's height
+  float text_size = 0;  // height of a line of text in pixels; 0 = from the picture's height
 };
 
 // All members need the context that was current at construction to be current.
@@ -46,7 +47,7 @@ class Renderer {
   // Throws std::invalid_argument for an index out of range or a length that does not fit.
   void set_bodies(std::span<const Body> bodies);
   std::size_t body_count() const;
-  std::size_t mass_count() const;    // of all bodies together
+  std::size_t mass_count() const;  // of all bodies together
   std::size_t face_count() const;
   std::size_t spring_count() const;
   // Body i's masses are those from mass_offsets()[i] to mass_offsets()[i + 1].
@@ -61,6 +62,9 @@ class Renderer {
 
   // Draws the picture.
   void draw(const Scene& scene, const Camera& camera);
+
+  // How long the parts of a recent picture took the card, in the order in which they are drawn; empty at first.
+  const std::vector<PassTime>& times() const;
 
   // The finished picture: an sRGB8_ALPHA8 texture, lower row first as OpenGL has it. Changes in resize().
   unsigned picture() const;

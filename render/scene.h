@@ -18,9 +18,9 @@ namespace mercury::render {
 
 // The parts of a body that stay while it moves. Indices count the body's own masses.
 struct Body {
-  std::span<const float> rest_positions;      // 3 a mass; tells which edges of the skin are sharp
-  std::span<const std::uint32_t> faces;       // 3 masses a face, counter-clockwise seen from outside
-  std::span<const std::uint32_t> springs;     // 2 masses a spring
+  std::span<const float> rest_positions;        // 3 a mass; tells which edges of the skin are sharp
+  std::span<const std::uint32_t> faces;         // 3 masses a face, counter-clockwise seen from outside
+  std::span<const std::uint32_t> springs;       // 2 masses a spring
   std::span<const std::uint32_t> face_looks;    // one a face, index into Scene::looks; empty = all 0
   std::span<const std::uint32_t> spring_looks;  // one a spring, the same
 };
@@ -35,9 +35,9 @@ struct Look {
 struct Placement {
   Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
-  bool selected = false;            // drawn with a bright rim
-  bool faulty = false;              // drawn grey, with a red rim: it has exploded
-  bool smooth = false;              // skin rounded rather than with its edges
+  bool selected = false;  // drawn with a bright rim
+  bool faulty = false;    // drawn grey, with a red rim: it has exploded
+  bool smooth = false;    // skin rounded rather than with its edges
 };
 
 // How numbers become colours.
@@ -109,22 +109,22 @@ struct Scene {
 
   Show show;
   std::optional<CutPlane> cut;
-  float spring_radius = 0;       // [m]; 0 = chosen from the springs' lengths
-  float mass_radius = 0;         // [m]; 0 = chosen from the springs' lengths
+  float spring_radius = 0;  // [m]; 0 = chosen from the springs' lengths
+  float mass_radius = 0;    // [m]; 0 = chosen from the springs' lengths
 
   Surroundings surroundings = Surroundings::water;
   Theme theme = Theme::dark;
-  float floor = 0;               // height of the ground or sand [m]
+  float floor = 0;                // height of the ground or sand [m]
   Eigen::Vector3f flow{0, 0, 0};  // of the water, seen in drifting particles [m/s]
-  double time = 0;               // drives caustics and particles [s]
+  double time = 0;                // drives caustics and particles [s]
 
   std::span<const Arrow> arrows;
   std::span<const Path> paths;
   std::span<const Label> labels;
   std::optional<Legend> legend;
-  std::string clock;             // text in the lower left corner, as "12.3 s   x4"; empty = none
-  std::string caption;           // text in the upper left corner; empty = none
-  bool scale_bar = false;        // a length in metres, at the depth of the camera's target
+  std::string clock;       // text in the lower left corner, as "12.3 s   x4"; empty = none
+  std::string caption;     // text in the upper left corner; empty = none
+  bool scale_bar = false;  // a length in metres, at the depth of the camera's target
 };
 
 }  // namespace mercury::render

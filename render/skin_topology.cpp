@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float flat_cosine = 0.9994f;   // 2 degrees
-constexpr float most_skewed = 0.35f;     // cosine at the corner of a quadrilateral; a right angle has 0
+constexpr float flat_cosine = 0.9994f;  // 2 degrees
+constexpr float most_skewed = 0.35f;    // cosine at the corner of a quadrilateral; a right angle has 0
 constexpr std::uint32_t own_triangle = 3;
 
 struct HalfEdge {
@@ -26,7 +26,9 @@ struct Skin {
   std::span<const std::uint32_t> faces;
   std::vector<HalfEdge> edges;  // sorted by key
 
-  std::uint32_t mass(std::uint32_t face, std::uint32_t corner) const { return faces[3 * std::size_t(face) + corner % 3]; }
+  std::uint32_t mass(std::uint32_t face, std::uint32_t corner) const {
+    return faces[3 * std::size_t(face) + corner % 3];
+  }
   Vector3f place(std::uint32_t mass) const { return Vector3f(positions.data() + 3 * std::size_t(mass)); }
   Vector3f normal(std::uint32_t face) const {
     const Vector3f a = place(mass(face, 0));

@@ -77,8 +77,8 @@ Style light_land() {
 
 Style style_of(Surroundings surroundings, Theme theme) {
   const bool dark = theme == Theme::dark;
-  Style s = surroundings == Surroundings::water ? (dark ? dark_water() : light_water())
-                                                : (dark ? dark_land() : light_land());
+  Style s =
+      surroundings == Surroundings::water ? (dark ? dark_water() : light_water()) : (dark ? dark_land() : light_land());
   if (surroundings == Surroundings::none) s.fog.setZero();
   s.text = dark ? rgb(0xf2f6f8) : rgb(0x16232c);
   s.text_edge_opacity = dark ? 0.85f : 0.0f;

@@ -10,5 +10,5 @@ void main() {
   p.x = max(abs(p.x) - (1.0 - slenderness), 0.0) / slenderness;  // a line with round ends
   float soft = clamp(1.0 - dot(p, p), 0.0, 1.0);
   vec3 light = frame.sky_light.rgb + 0.35 * frame.key_light.rgb;
-  color = vec4(light, 0.6 * opacity * soft);
+  color = vec4(light, 0.75 * opacity * soft * soft);
 }

@@ -31,7 +31,7 @@ void main() {
   vec3 to_eye = normalize(frame.eye.xyz - center);
   streak -= to_eye * dot(streak, to_eye);
   float pixel = pixel_size(center);
-  float radius = box.w * 0.0011 * (0.5 + hash(5u * speck + 3u));
+  float radius = box.w * 0.0009 * (0.5 + hash(5u * speck + 3u));
   float shown = max(radius, 0.9 * pixel);
   vec3 axis = length(streak) > 1e-6 ? normalize(streak) : across_of(vec3(0.0, 0.0, 1.0), to_eye);
   vec3 side = across_of(axis, to_eye);
@@ -42,7 +42,7 @@ void main() {
   vec3 off = abs(center - box.xyz) / box.w;
   float inside = 1.0 - smoothstep(0.75, 1.0, max(off.x, max(off.y, off.z)));
   float range = distance(center, frame.eye.xyz);
-  float nearness = smoothstep(0.25, 0.8, range / frame.water.w);
+  float nearness = smoothstep(0.45, 0.95, range / frame.water.w);
   opacity = inside * nearness * (radius * radius) / (shown * shown) * sqrt(slenderness) * exp(-0.5 * range / frame.water.w);
   opacity *= share * step(frame.ground.w, center.z);
   gl_Position = frame.view_projection * vec4(world, 1.0);

@@ -80,7 +80,8 @@ TEST_P(ContextTest, DrawsTheSameAsTheOthers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ContextTest,
-                         testing::Values(ContextKind::automatic, ContextKind::egl, ContextKind::mesa, ContextKind::osmesa),
+                         testing::Values(ContextKind::automatic, ContextKind::egl, ContextKind::mesa,
+                                         ContextKind::osmesa),
                          [](const auto& test) { return std::string(name_of(test.param)); });
 
 }  // namespace

@@ -17,10 +17,11 @@ using namespace mercury::render;
 namespace {
 
 std::map<std::string, std::string> settings{
-    {"count", "12"}, {"side", "10"},      {"seed", "1"},      {"time", "1.3"},       {"frames", "1"},
-    {"width", "1280"}, {"height", "720"}, {"quality", "auto"}, {"theme", "dark"},     {"around", "water"},
-    {"show", "skin"}, {"spacing", "1.25"}, {"azimuth", "-1.2"}, {"elevation", "0.6"}, {"context", "auto"},
-    {"map", ""},      {"cut", ""},        {"smooth", "0"}, {"flow", "0.15"}, {"arrows", "0"}, {"paths", "0"}, {"text", "0"}};
+    {"count", "12"},   {"side", "10"},      {"seed", "1"},       {"time", "1.3"},      {"frames", "1"},
+    {"width", "1280"}, {"height", "720"},   {"quality", "auto"}, {"theme", "dark"},    {"around", "water"},
+    {"show", "skin"},  {"spacing", "1.25"}, {"azimuth", "-1.2"}, {"elevation", "0.6"}, {"context", "auto"},
+    {"map", ""},       {"cut", ""},         {"smooth", "0"},     {"flow", "0.15"},     {"arrows", "0"},
+    {"paths", "0"},    {"text", "0"}};
 
 double number(const char* name) { return std::atof(settings[name].c_str()); }
 
@@ -29,10 +30,11 @@ Scene make_scene(const WobblingGroup& group) {
   scene.placements = group.placements;
   scene.flow = {float(number("flow")), 0, 0};
   scene.theme = settings["theme"] == "light" ? Theme::light : Theme::dark;
-  scene.surroundings = settings["around"] == "land" ? Surroundings::land
+  scene.surroundings = settings["around"] == "land"   ? Surroundings::land
                        : settings["around"] == "none" ? Surroundings::none
                                                       : Surroundings::water;
-  scene.show = {settings["show"].find("skin") != std::string::npos, settings["show"].find("springs") != std::string::npos,
+  scene.show = {settings["show"].find("skin") != std::string::npos,
+                settings["show"].find("springs") != std::string::npos,
                 settings["show"].find("masses") != std::string::npos};
   if (!settings["cut"].empty()) scene.cut = CutPlane{{0, 1, 0}, float(number("cut"))};
   return scene;
@@ -50,8 +52,8 @@ int main(int argc, char** argv) {
   const auto context = make_context({.kind = context_kind_named(settings["context"])});
   std::printf("%s\n", context->describe().c_str());
   Renderer renderer(*context, {int(number("width")), int(number("height")), quality_named(settings["quality"]), 0});
-  WobblingGroup group =
-      make_wobbling_group(int(number("count")), int(number("side")), std::uint32_t(number("seed")), float(number("spacing")));
+  WobblingGroup group = make_wobbling_group(int(number("count")), int(number("side")), std::uint32_t(number("seed")),
+                                            float(number("spacing")));
   for (Placement& placement : group.placements) placement.smooth = number("smooth") != 0;
   renderer.set_bodies(group.views());
   Scene scene = make_scene(group);
@@ -105,9 +107,18 @@ int main(int argc, char** argv) {
       scene.clock = "12.3 s   \u00d74";
       scene.caption = "Mercury\n12 random voxel robots, \u03c6 = \u03c0/2";
       scene.scale_bar = true;
-      scene.legend = Legend{"speed", "m/s", Scale{-0.5f, 0.5f, colormap_named(settings["map"].empty() ? "viridis" : settings["map"])}, {}};
+      scene.legend = Legend{"speed",
+                            "m/s",
+                            Scale{-0.5f, 0.5f, colormap_named(settings["map"].empty() ? "viridis" : settings["map"])},
+                            {}};
       if (settings["map"].empty())
-        scene.legend = Legend{"material", "", {}, {{muscle_color(0, 0.5f), "muscle, \u03c6 = 0"}, {muscle_color(1.57f, 0.5f), "muscle, \u03c6 = \u03c0/2"}, {tissue_color, "tissue"}, {bone_color, "bone"}}};
+        scene.legend = Legend{"material",
+                              "",
+                              {},
+                              {{muscle_color(0, 0.5f), "muscle, \u03c6 = 0"},
+                               {muscle_color(1.57f, 0.5f), "muscle, \u03c6 = \u03c0/2"},
+                               {tissue_color, "tissue"},
+                               {bone_color, "bone"}}};
     }
     scene.labels = labels;
     renderer.draw(scene, orbit.camera());
@@ -118,5 +129,7 @@ int main(int argc, char** argv) {
   if (frames > 1) std::printf("%.1f ms a frame\n", 1e3 * (seconds() - begin) / (frames - 1));
   write_png(argc > 1 ? argv[1] : "wobbling.png", image);
   for (const std::string& message : context->take_messages()) std::printf("%s\n", message.c_str());
-  std::printf("%zu masses, %zu faces, %zu springs\n", renderer.mass_count(), renderer.face_count(), renderer.spring_count());
+  for (const PassTime& part : renderer.times()) std::printf("%s %.1f ms, ", part.name.c_str(), part.milliseconds);
+  std::printf("%zu masses, %zu faces, %zu springs\n", renderer.mass_count(), renderer.face_count(),
+              renderer.spring_count());
 }

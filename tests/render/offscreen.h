@@ -55,7 +55,9 @@ inline Eigen::Vector3i pixel(const Image& image, int x, int y) {
   return {image.bytes[at], image.bytes[at + 1], image.bytes[at + 2]};
 }
 
-inline int largest_difference(const Eigen::Vector3i& a, const Eigen::Vector3i& b) { return (a - b).cwiseAbs().maxCoeff(); }
+inline int largest_difference(const Eigen::Vector3i& a, const Eigen::Vector3i& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
 
 // Pixels that differ by more than `tolerance` steps in some channel.
 inline int count_differing(const Image& a, const Image& b, int tolerance) {

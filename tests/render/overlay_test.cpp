@@ -23,7 +23,9 @@ Bounds box_at(float x, float y) { return {Vector3f(x - 0.1f, y - 0.1f, -0.1f), V
 TEST(Font, ReadsUtf8AndMarksBrokenBytes) {
   EXPECT_EQ(characters_of("a\u00e9\u03c0\U0001f916"), (std::vector<int>{'a', 0xe9, 0x3c0, 0x1f916}));
   EXPECT_EQ(characters_of("\xc3"), std::vector<int>{0xfffd});
-  EXPECT_EQ(characters_of("\xff" "b"), (std::vector<int>{0xfffd, 'b'}));
+  EXPECT_EQ(characters_of("\xff"
+                          "b"),
+            (std::vector<int>{0xfffd, 'b'}));
 }
 
 TEST(Font, HasGlyphsForUnitsAndTheReplacementForOthers) {
@@ -107,7 +109,8 @@ TEST(Overlay, ScaleBarIsAsLongAsItSays) {
   float across = 0;
   for (const OverlayQuad& quad : overlay.quads())
     if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.place.width);
-  const float pixels_a_metre = orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
+  const float pixels_a_metre =
+      orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
   const float metres = across / pixels_a_metre;
   EXPECT_NEAR(metres, round_length(metres * 1.001f), 1e-3f);
 }

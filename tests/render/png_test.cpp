@@ -38,7 +38,8 @@ TEST_F(Png, LeavesNothingBehindWhenItCannotWrite) {
 }
 
 TEST_F(Png, RefusesPlanes) {
-  EXPECT_THROW(write_png(folder_ / "a.png", Image{2, 2, PixelFormat::yuv420, {0, 0, 0, 0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(write_png(folder_ / "a.png", Image{2, 2, PixelFormat::yuv420, {0, 0, 0, 0, 0, 0}}),
+               std::invalid_argument);
 }
 
 }  // namespace

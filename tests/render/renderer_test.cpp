@@ -42,7 +42,8 @@ Image drawn(Renderer& renderer, const Scene& scene, const Camera& camera = front
 Vector2f pinhole(const Camera& camera, const Vector3f& point, int width, int height) {
   const Vector3f forward = (camera.target - camera.eye).normalized();
   const Vector3f right = Vector3f(forward.y(), -forward.x(), 0).normalized();
-  const Vector3f up(right.y() * forward.z() - right.z() * forward.y(), right.z() * forward.x() - right.x() * forward.z(),
+  const Vector3f up(right.y() * forward.z() - right.z() * forward.y(),
+                    right.z() * forward.x() - right.x() * forward.z(),
                     right.x() * forward.y() - right.y() * forward.x());
   const Vector3f p = point - camera.eye;
   const float scale = float(height) / 2 / std::tan(camera.field_of_view / 2) / p.dot(forward);
@@ -282,8 +283,10 @@ TEST_F(RendererTest, ACutTakesAwayTheSideItsNormalPointsTo) {
   scene.cut = CutPlane{{0, 0, 1}, 0};
   const Image cut = drawn(renderer, scene);
   const Vector2f above = pinhole(front(), {0.1f, 0, 0.3f}, 160, 120), below = pinhole(front(), {0, 0, -0.3f}, 160, 120);
-  EXPECT_LE(largest_difference(pixel(cut, int(above.x()), int(above.y())), pixel(empty, int(above.x()), int(above.y()))), 1);
-  EXPECT_LE(largest_difference(pixel(cut, int(below.x()), int(below.y())), pixel(whole, int(below.x()), int(below.y()))), 6);
+  EXPECT_LE(
+      largest_difference(pixel(cut, int(above.x()), int(above.y())), pixel(empty, int(above.x()), int(above.y()))), 1);
+  EXPECT_LE(
+      largest_difference(pixel(cut, int(below.x()), int(below.y())), pixel(whole, int(below.x()), int(below.y()))), 6);
 }
 
 TEST_F(RendererTest, AShadowFallsBesideABodyOnTheGround) {
@@ -324,7 +327,8 @@ TEST_F(RendererTest, ArrowsAndPathsAreDrawnWhereTheyPoint) {
   int changed = 0;
   const Vector2f end = pinhole(front(), {0.95f, 0, 0.5f}, 160, 120);
   for (int dy = -2; dy <= 2; ++dy)
-    changed += largest_difference(pixel(path, int(end.x()), int(end.y()) + dy), pixel(empty, int(end.x()), int(end.y()) + dy)) > 20;
+    changed += largest_difference(pixel(path, int(end.x()), int(end.y()) + dy),
+                                  pixel(empty, int(end.x()), int(end.y()) + dy)) > 20;
   EXPECT_GT(changed, 0);
 }
 
@@ -407,6 +411,29 @@ TEST_F(RendererTest, AThousandBodiesAreDrawnAsOneGroup) {
   for (Placement& place : placements) place.hidden = &place != &placements[0];
   const Image one = drawn(renderer, scene, orbit.camera());
   EXPECT_GT(count_differing(many, one, 20), 1000);
+}
+
+TEST_F(RendererTest, TellsHowLongThePartsOfAPictureTook) {
+  Renderer renderer = make_renderer();
+  EXPECT_TRUE(renderer.times().empty());
+  for (int i = 0; i < 6; ++i) {
+    renderer.draw(plain(), front());
+    glFinish();
+  }
+  ASSERT_FALSE(renderer.times().empty());
+  EXPECT_EQ(renderer.times().front().name, "positions");
+  for (const PassTime& part : renderer.times()) EXPECT_GE(part.milliseconds, 0) << part.name;
+}
+
+TEST_F(RendererTest, LeavesDepthAsOthersExpectIt) {
+  Renderer renderer = make_renderer();
+  renderer.draw(plain(), front());
+  GLint value = 0;
+  glGetIntegerv(GL_CLIP_DEPTH_MODE, &value);
+  EXPECT_EQ(value, GL_NEGATIVE_ONE_TO_ONE);
+  glGetIntegerv(GL_DEPTH_FUNC, &value);
+  EXPECT_EQ(value, GL_LESS);
+  EXPECT_FALSE(glIsEnabled(GL_BLEND));
 }
 
 TEST_F(RendererTest, WrongLengthsAndIndicesAreRefused) {

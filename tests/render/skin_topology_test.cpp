@@ -44,7 +44,8 @@ TEST(SkinTopology, NeighboursLieAcrossTheEdgeTheyStandFor) {
 
 TEST(SkinTopology, ATetrahedronHasTrianglesAlone) {
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0.5f, 1, 0, 0.5f, 0.4f, 1};
-  const std::vector<FaceRecord> records = skin_topology(corners, std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3});
+  const std::vector<FaceRecord> records =
+      skin_topology(corners, std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3});
   for (std::uint32_t face = 0; face < 4; ++face) {
     EXPECT_EQ(records[face].shape, 3u);
     std::set<std::uint32_t> others(records[face].neighbours.begin(), records[face].neighbours.begin() + 3);

@@ -49,13 +49,15 @@ Grid random_grid(int side, std::uint32_t seed) {
           const float d = std::hypot(px - lobe.x, py - lobe.y, pz - lobe.z) / lobe.radius;
           if (d < best) best = d, kind = lobe.kind;
         }
-        if (std::abs(py - 0.5f) < 0.17f && std::abs(pz - 0.5f) < 0.12f && px > 0.1f && px < 0.9f && kind == 0) kind = 21;
+        if (std::abs(py - 0.5f) < 0.17f && std::abs(pz - 0.5f) < 0.12f && px > 0.1f && px < 0.9f && kind == 0)
+          kind = 21;
         grid.kinds[std::size_t((z * side + y) * side + x)] = kind;
       }
   return grid;
 }
 
-constexpr std::array<std::array<int, 3>, 6> sides{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+constexpr std::array<std::array<int, 3>, 6> sides{
+    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 // Corners of each side as bits x = 1, y = 2, z = 4, counter-clockwise from outside.
 constexpr std::array<std::array<int, 4>, 6> side_corners{
     {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
@@ -87,7 +89,8 @@ class Builder {
     std::array<std::uint32_t, 8> corner{};
     for (int i = 0; i < 8; ++i) corner[std::size_t(i)] = mass(x + (i & 1), y + ((i >> 1) & 1), z + (i >> 2));
     for (std::size_t i = 0; i < 8; ++i)
-      for (std::size_t j = i + 1; j < 8; ++j) springs_[{std::min(corner[i], corner[j]), std::max(corner[i], corner[j])}] = kind;
+      for (std::size_t j = i + 1; j < 8; ++j)
+        springs_[{std::min(corner[i], corner[j]), std::max(corner[i], corner[j])}] = kind;
     for (std::size_t s = 0; s < 6; ++s) {
       if (grid_.at(x + sides[s][0], y + sides[s][1], z + sides[s][2])) continue;
       const auto& c = side_corners[s];
@@ -128,11 +131,11 @@ WobblingBody make_blob(int splits, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
   constexpr float g = 1.618034f;
-  std::vector<Eigen::Vector3f> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::uint32_t> faces{0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
-                                   7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10,
-                                   8, 6, 7, 9, 8, 1};
+  std::vector<Eigen::Vector3f> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<std::uint32_t> faces{0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                                   4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                                   6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
   for (int split = 0; split < splits; ++split) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {

@@ -1,0 +1,89 @@
+#include "render/scene_buffers.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "render/bindings.h"
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+// As shaders/bodies.glsl has it.
+struct PlacementRecord {
+  float x = 0, y = 0, z = 0;
+  std::uint32_t flags = 0;
+};
+
+std::uint32_t flags_of(const Placement& place) {
+  return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u);
+}
+
+std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
+  std::vector<PlacementRecord> records(std::max<std::size_t>(bodies, 1));
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    const Vector3f& offset = placements[i].offset;
+    records[i] = {offset.x(), offset.y(), offset.z(), flags_of(placements[i])};
+  }
+  return records;
+}
+
+std::vector<Vector4f> look_records(std::span<const Look> looks) {
+  std::vector<Vector4f> records;
+  for (const Look& look : looks) {
+    const auto linear = linear_of(look.color);
+    records.push_back({linear[0], linear[1], linear[2], look.activation});
+  }
+  if (records.empty()) records.push_back({0.6f, 0.6f, 0.6f, 0});
+  return records;
+}
+
+void require(std::size_t size, std::size_t wanted, const char* what) {
+  if (size != 0 && size != wanted)
+    throw std::invalid_argument(std::string("Scene::") + what + " has " + std::to_string(size) + " elements, not " +
+                                std::to_string(wanted));
+}
+
+}  // namespace
+
+void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
+  require(scene.positions.size(), 3 * bodies.mass_count(), "positions");
+  require(scene.placements.size(), bodies.body_count(), "placements");
+  require(scene.face_values.size(), bodies.face_count(), "face_values");
+  require(scene.mass_values.size(), bodies.mass_count(), "mass_values");
+  require(scene.spring_values.size(), bodies.spring_count(), "spring_values");
+  if (!scene.positions.empty())
+    glNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(scene.positions.size_bytes()), scene.positions.data());
+  placements_.write(placement_records(scene.placements, bodies.body_count()));
+  looks_.write(look_records(scene.looks));
+  face_values_.write(scene.face_values);
+  mass_values_.write(scene.mass_values);
+}
+
+void SceneBuffers::bind(const Bodies& bodies) const {
+  bodies.positions.bind_storage(binding::positions);
+  placements_.bind_storage(binding::placements);
+  bodies.mass_bodies.bind_storage(binding::mass_bodies);
+  bodies.face_records.bind_storage(binding::face_records);
+  looks_.bind_storage(binding::looks);
+  face_values_.bind_storage(binding::face_values);
+  mass_values_.bind_storage(binding::mass_values);
+}
+
+std::vector<Bounds> placed(std::vector<Bounds> bodies, std::span<const Placement> placements) {
+  for (std::size_t i = 0; i < std::min(bodies.size(), placements.size()); ++i)
+    bodies[i] = placements[i].hidden ? Bounds{} : bodies[i].moved(placements[i].offset);
+  return bodies;
+}
+
+Bounds joined(std::span<const Bounds> boxes) {
+  Bounds all;
+  for (const Bounds& box : boxes)
+    if (!box.empty()) all.extend(box);
+  return all;
+}
+
+}  // namespace mercury::render
