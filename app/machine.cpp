@@ -9,6 +9,7 @@
 
 #include "app/child_process.h"
 #include "app/frame_writer.h"
+#include "app/position_bridge.h"
 #include "render/context.h"
 #include "sim/simulation.h"
 
@@ -70,6 +71,13 @@ std::vector<Finding> gpus() {
   return findings;
 }
 
+// Whether a simulation's positions reach the picture on the card.
+std::string sharing(const render::Context& context) {
+  if (context.is_software() || !built_with_cuda()) return {};
+  const int device = cuda_device_of_current_context();
+  return device < 0 ? ", shares no memory with CUDA" : fmt::format(", shares memory with cuda:{}", device);
+}
+
 std::vector<Finding> drawing() {
   std::vector<Finding> findings;
   bool any = false;
@@ -77,7 +85,7 @@ std::vector<Finding> drawing() {
     const std::string what = fmt::format("drawing ({})", name_of(kind));
     try {
       const auto context = render::make_context({.kind = kind, .debug = false});
-      findings.push_back({what, context->describe(), {}});
+      findings.push_back({what, context->describe() + sharing(*context), {}});
       context->release();
       any = true;
     } catch (const render::ContextError& error) {

@@ -60,4 +60,13 @@ class HostBridge final : public PositionBridge {
 
 std::unique_ptr<PositionBridge> make_host_bridge() { return std::make_unique<HostBridge>(); }
 
+ChosenBridge choose_bridge(const Simulation& simulation, const render::Renderer& renderer, bool interop) {
+  if (!interop || simulation.cuda_device() < 0) return {.bridge = make_host_bridge()};
+  try {
+    return {.bridge = make_cuda_bridge(simulation, renderer), .on_card = true};
+  } catch (const NoInterop& error) {
+    return {.bridge = make_host_bridge(), .note = std::string("positions are copied through the host: ") + error.what()};
+  }
+}
+
 }  // namespace mercury

@@ -66,6 +66,7 @@ Task task_of(const RenderOptions& options) {
   Task task{.view = options.view.settings()};
   task.subject = subject_of(options);
   task.plan = options.video.plan(task.subject.seconds);
+  task.view.interop = options.video.interop();
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();
   const auto [width, height] = task.plan.size;
   if (!options.video.single_picture() && task.plan.size != options.video.asked_size() && !options.quiet)
@@ -93,7 +94,9 @@ bool make(const RenderOptions& options, const Task& task, Stage& stage, Simulati
     say(fmt::format("{} {} {} ({}) on {}", task.subject.recording ? "playing" : "simulating", count,
                     count == 1 ? "robot" : "robots", name_of(task.subject.configuration.environment),
                     studio.simulation().device_name()));
-    say(fmt::format("drawing with {}, {} quality", stage.context->describe(), name_of(stage.renderer.quality())));
+    say(fmt::format("drawing with {}, {} quality{}", stage.context->describe(), name_of(stage.renderer.quality()),
+                    studio.positions_on_card() ? ", positions stay on the card" : ""));
+    if (!studio.bridge_note().empty()) say(studio.bridge_note());
     say(fmt::format("encoding {}", writer.description()));
   }
   for (const std::string& note : studio.simulation().notes()) say(note);
@@ -130,7 +133,9 @@ int render_robots(const RenderOptions& options) {
   const std::vector<std::string> names = each ? file_names(robots) : std::vector<std::string>{""};
   // A missing encoder or a name that cannot be written is told before the slow start of OpenGL.
   std::unique_ptr<FrameWriter> writer = options.video.open(task.plan, names[0]);
-  Stage stage = make_stage(options.video.context_kind(), task.plan.size, options.video.quality());
+  const Device& device = task.subject.configuration.device;
+  Stage stage = make_stage(options.video.context_kind(), task.plan.size, options.video.quality(),
+                           device.kind == DeviceKind::cpu ? -1 : device.index);
   bool done = true;
   for (std::size_t i = 0; i < names.size() && done; ++i) {
     if (!writer) writer = options.video.open(task.plan, names[i]);

@@ -43,8 +43,8 @@ render::Insets written_on(const ViewSettings& settings) {
 
 }  // namespace
 
-Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality) {
-  auto context = render::make_context({.kind = kind});
+Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality, int cuda_device) {
+  auto context = render::make_context({.kind = kind, .cuda_device = cuda_device, .debug = false});
   render::Renderer renderer(*context, {.width = size.width, .height = size.height, .quality = quality});
   return {std::move(context), std::move(renderer)};
 }
@@ -55,12 +55,13 @@ Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings
       camera_(settings.camera,
               {.aspect = aspect_of(stage.renderer), .free = written_on(settings), .on_ground = on_land(simulation_)},
               names_of(simulation_)),
-      details_(simulation_, settings), bridge_(make_host_bridge()) {
+      details_(simulation_, settings) {
   scene_.set_bodies(stage.renderer);
+  bridge_ = choose_bridge(simulation_, stage.renderer, settings.interop);
 }
 
 FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet) {
-  return mercury::film({simulation_, *bridge_, details_, scene_, camera_, stage_.renderer, writer, pixels}, timing, quiet);
+  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels}, timing, quiet);
 }
 
 }  // namespace mercury

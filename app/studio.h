@@ -17,8 +17,9 @@ struct Stage {
   std::unique_ptr<render::Context> context;
   render::Renderer renderer;
 };
-// Throws render::ContextError when no context can be had.
-Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality);
+// On the card with that CUDA ordinal, if there is a choice; -1 = any. Throws render::ContextError when no context can be
+// had.
+Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality, int cuda_device = -1);
 
 // A group of robots on a stage: where they stand, how they look, and who holds the camera. Refers to the stage.
 class Studio {
@@ -27,6 +28,10 @@ class Studio {
   Studio(Stage& stage, Simulation simulation, const ViewSettings& settings);
 
   const Simulation& simulation() const { return simulation_; }
+  // Whether positions go from the simulation to the picture without leaving the card, and if a GPU simulates and they
+  // do not, why.
+  bool positions_on_card() const { return bridge_.on_card; }
+  const std::string& bridge_note() const { return bridge_.note; }
   // See film().
   FilmResult film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet);
 
@@ -36,7 +41,7 @@ class Studio {
   GroupScene scene_;
   Cameraman camera_;
   DetailObserver details_;
-  std::unique_ptr<PositionBridge> bridge_;
+  ChosenBridge bridge_;
 };
 
 }  // namespace mercury

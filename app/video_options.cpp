@@ -44,6 +44,8 @@ void VideoOptions::add_to(CLI::App& command) {
                  "How well it is drawn (default auto: high on a GPU, low without)"));
   add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},
                  "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
+  add(command.add_flag("--no-interop", no_interop_,
+                       "Copy positions through the host even where CUDA and OpenGL can share them on the card"));
   add(add_number(command, "--crf", crf_, "Of the encoding: lower is better and larger (default 18 .mp4, 30 .webm)", "N"));
   add(add_text(command, "--ffmpeg", ffmpeg_, "The encoder (default: MERCURY_FFMPEG, else ffmpeg)", "PROGRAM"));
 }

@@ -38,6 +38,7 @@ class VideoOptions {
   bool single_picture() const { return still_ || contact_sheet_; }
   PictureSize asked_size() const;
   render::ContextKind context_kind() const { return render::context_kind_named(gl_); }
+  bool interop() const { return !no_interop_; }
   render::Quality quality() const { return render::quality_named(quality_); }
 
  private:
@@ -50,7 +51,7 @@ class VideoOptions {
   std::optional<Grid> contact_sheet_;
   double speed_ = 1;
   int crf_ = -1;
-  bool each_ = false;
+  bool each_ = false, no_interop_ = false;
   std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
 };
 

@@ -32,6 +32,7 @@ struct ViewSettings {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;
+  bool interop = true;  // let CUDA write into OpenGL's memory where it can
   double speed = 1;  // simulated seconds a second, for the clock
 };
 

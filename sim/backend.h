@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ class Backend {
   // All robots' masses one after the other.
   virtual void read_positions(std::span<Vec3> out) const = 0;
   virtual void read_velocities(std::span<Vec3> out) const = 0;
+
+  // As in Simulation; a backend without CUDA, or with several devices, leaves these as they are.
+  virtual int cuda_device() const { return -1; }
+  virtual void copy_positions(float* /*device_out*/) const { throw std::logic_error("these robots are on no CUDA device"); }
 
   virtual RobotStatus status(std::size_t robot) const = 0;
   virtual std::vector<RobotStatus> statuses() const = 0;

@@ -222,6 +222,8 @@ void Simulation::read_positions(std::span<Vec3> out) const {
   if (out.size() != mass_count()) throw std::invalid_argument("one position a mass is needed");
   parts_->backend->read_positions(out);
 }
+int Simulation::cuda_device() const { return parts_->backend->cuda_device(); }
+void Simulation::copy_positions(float* device_out) const { parts_->backend->copy_positions(device_out); }
 void Simulation::read_velocities(std::span<Vec3> out) const {
   if (out.size() != mass_count()) throw std::invalid_argument("one velocity a mass is needed");
   parts_->backend->read_velocities(out);

@@ -82,6 +82,11 @@ class Simulation {
   // Positions of all robots, one after the other, robot i's first at offsets()[i]. `out` has mass_count() elements.
   void read_positions(std::span<Vec3> out) const;
   void read_velocities(std::span<Vec3> out) const;
+  // The CUDA device that holds all robots, -1 = none or several.
+  int cuda_device() const;
+  // As read_positions(), into memory of that device, 3 * mass_count() floats: queued in its legacy default stream and
+  // not waited for. Throws std::logic_error where cuda_device() is -1.
+  void copy_positions(float* device_out) const;
   std::size_t mass_count() const;                 // of all robots together
   std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements
   // Throws std::invalid_argument unless both have one element a mass.

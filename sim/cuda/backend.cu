@@ -100,6 +100,11 @@ class CudaBackend final : public Backend {
 
   void read_positions(std::span<Vec3> out) const override { gather(out, 0); }
   void read_velocities(std::span<Vec3> out) const override { gather(out, 3); }
+  int cuda_device() const override { return device_; }
+  void copy_positions(float* device_out) const override {
+    use_device();
+    batch_.gather(device_out, 0);
+  }
 
   RobotStatus status(std::size_t robot) const override {
     use_device();
@@ -173,10 +178,10 @@ class CudaBackend final : public Backend {
   void gather(std::span<Vec3> out, std::uint32_t first_row) const {
     if (out.empty()) return;
     use_device();
-    DeviceArray<float> packed(3 * out.size());
-    batch_.gather(packed.data(), first_row);
+    if (packed_.size() != 3 * out.size()) packed_ = DeviceArray<float>(3 * out.size());
+    batch_.gather(packed_.data(), first_row);
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
-    packed.read(0, std::span(&out.front().x, 3 * out.size()));
+    packed_.read(0, std::span(&out.front().x, 3 * out.size()));
   }
 
   static Vec3 vector_at(std::span<const float> groups, std::size_t mass, std::uint32_t row) {
@@ -194,6 +199,7 @@ class CudaBackend final : public Backend {
   std::string name_;
   mutable Batch batch_;  // its phases follow the clock when somebody asks
   mutable MappedArray<DeviceTelemetry> sums_;
+  mutable DeviceArray<float> packed_;  // what is read of all masses
   Configuration configuration_;
   AnyHooks hooks_ = OceanHooks(Ocean{});
   StepConstants constants_;
