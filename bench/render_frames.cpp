@@ -1,6 +1,6 @@
-// How fast groups are drawn: bench_render_frames [name=value ...], one line of results.
-// Names: bodies side width height quality frames read (none, rgb, yuv) upload (0, 1: positions through the host)
-// context
+// How fast groups are drawn, and what of a picture takes how long: bench_render_frames [name=value ...].
+// Names: bodies side width height frames quality (auto, low, medium, high) context (auto, egl, mesa, osmesa)
+//        around (water, land, none) read (none, rgb, yuv) upload (0, 1: positions through the host) json (0, 1)
 //
 // Bodies are full lattices of side^3 voxels, as in the simulator's own benchmark: side 10 has 1,331 masses, 14,230
 // springs and 1,200 faces. Positions stand still; everything that depends on them is computed anew in each frame.
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -61,67 +62,153 @@ Lattice make_lattice(int side) {
   return lattice;
 }
 
-}  // namespace
+struct Options {
+  std::map<std::string, std::string> set{
+      {"bodies", "1000"}, {"side", "10"},    {"width", "1920"},  {"height", "1080"}, {"frames", "60"}, {"read", "yuv"},
+      {"upload", "1"},    {"quality", "auto"}, {"context", "auto"}, {"around", "water"}, {"json", "0"}};
+  int number(const char* name) const { return std::atoi(set.at(name).c_str()); }
+  const std::string& text(const char* name) const { return set.at(name); }
+};
 
-int main(int argc, char** argv) {
-  std::map<std::string, std::string> set{{"bodies", "12"},  {"side", "10"},      {"width", "1280"},
-                                         {"height", "720"}, {"frames", "30"},    {"read", "yuv"},
-                                         {"upload", "1"},   {"quality", "auto"}, {"context", "auto"}};
+Options options_of(int argc, char** argv) {
+  Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    set[argument.substr(0, argument.find('='))] = argument.substr(argument.find('=') + 1);
+    const auto found = options.set.find(argument.substr(0, argument.find('=')));
+    if (found == options.set.end()) {
+      std::fprintf(stderr, "bench_render_frames: %s is not accepted; give NAME=VALUE with one of", argument.c_str());
+      for (const auto& [name, value] : options.set) std::fprintf(stderr, " %s", name.c_str());
+      std::fprintf(stderr, "\n");
+      std::exit(2);
+    }
+    found->second = argument.substr(argument.find('=') + 1);
   }
-  const auto number = [&](const char* name) { return std::atoi(set[name].c_str()); };
-  const auto context = make_context({.kind = context_kind_named(set["context"])});
-  Renderer renderer(*context, {number("width"), number("height"), quality_named(set["quality"]), 0});
+  return options;
+}
 
-  const int bodies = number("bodies"), side = number("side");
-  const Lattice lattice = make_lattice(side);
+// Lattices side by side, seen from above at an angle.
+struct Group {
+  Group(const Lattice& lattice, int bodies, int side, const std::string& around) {
+    const int columns = int(std::ceil(std::sqrt(1.6 * bodies)));
+    const float spacing = 0.16f * float(side);
+    for (int i = 0; i < bodies; ++i) {
+      placements.push_back({.offset = {spacing * float(i % columns), spacing * float(i / columns), 0}});
+      box.extend(bounds_of(lattice.masses).moved(placements.back().offset));
+      positions.insert(positions.end(), lattice.masses.begin(), lattice.masses.end());
+    }
+    scene.placements = placements;
+    scene.looks = looks;
+    scene.surroundings = around == "land"   ? Surroundings::land
+                         : around == "none" ? Surroundings::none
+                                            : Surroundings::water;
+    scene.floor = scene.surroundings == Surroundings::land ? 0 : -0.1f * float(side);
+  }
+  std::vector<Placement> placements;
+  std::vector<float> positions;
+  std::vector<Look> looks{{muscle_color(0, 0.5f), 0.3f}};
+  Bounds box;
+  Scene scene;
+};
+
+// The mean of each part over the pictures in which its time was known.
+class MeanTimes {
+ public:
+  void add(const std::vector<PassTime>& times) {
+    if (times.empty()) return;
+    ++count_;
+    sums_.resize(times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      sums_[i].name = times[i].name;
+      sums_[i].milliseconds += times[i].milliseconds;
+    }
+  }
+  std::vector<PassTime> means() const {
+    std::vector<PassTime> means = sums_;
+    for (PassTime& part : means) part.milliseconds /= count_;
+    return means;
+  }
+
+ private:
+  std::vector<PassTime> sums_;
+  int count_ = 0;
+};
+
+struct Result {
+  double setup = 0, seconds = 0;  // of set_bodies, of a picture
+  std::vector<PassTime> parts;
+};
+
+Result measure(const Options& options, Renderer& renderer, const Lattice& lattice) {
+  Result result;
+  const int bodies = options.number("bodies"), side = options.number("side"), frames = options.number("frames");
   const double begin_setup = now();
   renderer.set_bodies(
       std::vector<Body>(std::size_t(bodies), Body{lattice.masses, lattice.faces, lattice.springs, {}, {}}));
-  const double setup = now() - begin_setup;
-
-  std::vector<Placement> placements;
-  const int columns = int(std::ceil(std::sqrt(1.6 * bodies)));
-  const float spacing = 0.16f * float(side);
-  Bounds group;
-  for (int i = 0; i < bodies; ++i) {
-    placements.push_back({.offset = {spacing * float(i % columns), spacing * float(i / columns), 0}});
-    group.extend(bounds_of(lattice.masses).moved(placements.back().offset));
-  }
-  std::vector<float> positions;
-  for (int i = 0; i < bodies && number("upload"); ++i)
-    positions.insert(positions.end(), lattice.masses.begin(), lattice.masses.end());
-  const std::vector<Look> looks{{muscle_color(0, 0.5f), 0.3f}};
-  Scene scene;
-  scene.positions = positions;
-  scene.placements = placements;
-  scene.looks = looks;
-  scene.floor = -0.1f * float(side);
+  result.setup = now() - begin_setup;
+  Group group(lattice, bodies, side, options.text("around"));
+  if (options.number("upload")) group.scene.positions = group.positions;
   Orbit orbit{.elevation = 0.7f};
-  orbit.frame(group, float(renderer.width()) / float(renderer.height()));
-
-  const PixelFormat format = set["read"] == "rgb" ? PixelFormat::rgb : PixelFormat::yuv420;
+  orbit.frame(group.box, float(renderer.width()) / float(renderer.height()));
+  const std::string& read = options.text("read");
+  const PixelFormat format = read == "rgb" ? PixelFormat::rgb : PixelFormat::yuv420;
   Readback readback(format, renderer.width(), renderer.height());
   Image image;
-  const int warm_up = 3, frames = number("frames");
+  MeanTimes times;
+  constexpr int warm_up = 8;
   double begin = 0;
   for (int i = 0; i < warm_up + frames; ++i) {
     if (i == warm_up) {
       glFinish();
       begin = now();
     }
-    scene.time = i / 60.0;
-    renderer.draw(scene, orbit.camera());
-    if (set["read"] == "none") continue;
+    group.scene.time = i / 60.0;
+    renderer.draw(group.scene, orbit.camera());
+    if (i >= warm_up) times.add(renderer.times());
+    if (read == "none") continue;
     if (readback.full()) readback.finish(image);
     readback.start(renderer);
   }
   glFinish();
-  const double seconds = (now() - begin) / frames;
-  std::printf("%s, %s: %d bodies of %zu masses, %dx%d, read %s: %.2f ms a frame, %.1f frames/s (set up in %.2f s)\n",
-              context->describe().c_str(), std::string(name_of(renderer.quality())).c_str(), bodies,
-              lattice.masses.size() / 3, renderer.width(), renderer.height(), set["read"].c_str(), 1e3 * seconds,
-              1 / seconds, setup);
+  result.seconds = (now() - begin) / frames;
+  result.parts = times.means();
+  return result;
+}
+
+void print_text(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
+                const Result& result) {
+  std::printf("%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms a picture, %.1f pictures/s (set up in %.2f s)\n",
+              context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
+              lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(),
+              1e3 * result.seconds, 1 / result.seconds, result.setup);
+  for (const PassTime& part : result.parts) std::printf("  %-20s %8.3f ms\n", part.name.c_str(), part.milliseconds);
+}
+
+void print_json(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
+                const Result& result) {
+  std::printf("{\"drawn_with\": \"%s\", \"quality\": \"%s\", \"bodies\": %d, \"masses\": %zu, \"width\": %d, \"height\": %d, "
+              "\"read\": \"%s\", \"milliseconds\": %.4f, \"pictures_a_second\": %.2f, \"parts\": {",
+              context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
+              lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(),
+              1e3 * result.seconds, 1 / result.seconds);
+  for (std::size_t i = 0; i < result.parts.size(); ++i)
+    std::printf("%s\"%s\": %.4f", i ? ", " : "", result.parts[i].name.c_str(), result.parts[i].milliseconds);
+  std::printf("}}\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Options options = options_of(argc, argv);
+    const auto context = make_context({.kind = context_kind_named(options.text("context")), .debug = false});
+    Renderer renderer(*context, {.width = options.number("width"),
+                                 .height = options.number("height"),
+                                 .quality = quality_named(options.text("quality"))});
+    const Lattice lattice = make_lattice(options.number("side"));
+    const Result result = measure(options, renderer, lattice);
+    (options.number("json") ? print_json : print_text)(options, *context, renderer, lattice, result);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_render_frames: %s\n", error.what());
+    return 1;
+  }
 }

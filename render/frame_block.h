@@ -10,9 +10,9 @@
 namespace mercury::render {
 
 struct FrameBlock {
-  Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow;
+  Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow = Eigen::Matrix4f::Identity();
   Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color,
-      fog, cut, screen, depth, shadow_size, ground, water, octave;
+      fog, cut, screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
 };
 
 // Sizes for patterns that stay in their place in the world and yet suit any distance: a power of two, and the share of
@@ -22,15 +22,7 @@ struct Octave {
 };
 Octave octave_of(float distance);
 
-// The light's view of all that can throw a shadow.
-struct ShadowFit {
-  Eigen::Matrix4f matrix;  // world to texture coordinates and depth, 0 to 1 each
-  float width = 1;         // of the square that the map covers [m]
-  float depth = 1;         // that its depth range covers [m]
-};
-ShadowFit fit_shadow(const Bounds& casters, const Eigen::Vector3f& to_key, int side);
-
-FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, const ShadowFit& shadow,
-                       const Bounds& bodies, int ground_side, int width, int height);
+// All but what FitPass fills in.
+FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height);
 
 }  // namespace mercury::render

@@ -5,34 +5,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/context.h"
 #include "render/gl_objects.h"
+#include "render/host_buffer.h"
 #include "render/renderer.h"
 
 namespace mercury::render {
-namespace {
-
-constexpr GLuint64 patience = 20'000'000'000;  // [ns] for one picture, before the card is taken for dead
-
-// Host memory that the card writes into.
-struct Slot {
-  GlName<ReleaseBuffer> buffer;
-  const std::uint8_t* mapped = nullptr;
-  GLsync fence = nullptr;
-};
-
-Slot make_slot(std::size_t bytes) {
-  GLuint name = 0;
-  glCreateBuffers(1, &name);
-  Slot slot{GlName<ReleaseBuffer>(name)};
-  const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  glNamedBufferStorage(name, GLsizeiptr(bytes), nullptr, access | GL_CLIENT_STORAGE_BIT);
-  slot.mapped = static_cast<const std::uint8_t*>(glMapNamedBufferRange(name, 0, GLsizeiptr(bytes), access));
-  if (!slot.mapped) throw ContextError("the driver does not give host memory to read a picture back");
-  return slot;
-}
-
-}  // namespace
 
 struct Readback::Parts {
   PixelFormat format;
@@ -40,13 +17,8 @@ struct Readback::Parts {
   std::size_t words;
   Program pack;
   Buffer packed;
-  std::vector<Slot> slots;
+  std::vector<HostBuffer> slots;
   std::size_t first = 0, pending = 0;
-
-  ~Parts() {
-    for (Slot& slot : slots)
-      if (slot.fence) glDeleteSync(slot.fence);
-  }
 };
 
 std::size_t image_size(PixelFormat format, int width, int height) {
@@ -68,7 +40,7 @@ Readback::Readback(PixelFormat format, int width, int height, int ring) : parts_
   parts_->words = (image_size(format, width, height) + 3) / 4;
   parts_->pack = make_program({"readback.comp"});
   parts_->packed.reserve(4 * parts_->words);
-  for (int i = 0; i < std::max(ring, 1); ++i) parts_->slots.push_back(make_slot(4 * parts_->words));
+  for (int i = 0; i < std::max(ring, 1); ++i) parts_->slots.emplace_back(4 * parts_->words);
 }
 
 Readback::~Readback() = default;
@@ -97,30 +69,22 @@ void Readback::start(const Renderer& renderer) {
   const std::size_t groups = (p.words + 63) / 64;
   const std::size_t across = std::min<std::size_t>(groups, 32768);
   glDispatchCompute(GLuint(across), GLuint((groups + across - 1) / across), 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  Slot& slot = p.slots[(p.first + p.pending) % p.slots.size()];
-  glCopyNamedBufferSubData(p.packed.get(), slot.buffer.get(), 0, 0, GLsizeiptr(4 * p.words));
-  slot.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  glFlush();
+  p.slots[(p.first + p.pending) % p.slots.size()].start(p.packed, 4 * p.words);
   ++p.pending;
 }
 
 void Readback::finish(Image& into) {
   Parts& p = *parts_;
   if (p.pending == 0) throw std::logic_error("Readback::finish: no picture is under way");
-  Slot& slot = p.slots[p.first];
-  const GLenum outcome = glClientWaitSync(slot.fence, GL_SYNC_FLUSH_COMMANDS_BIT, patience);
-  glDeleteSync(slot.fence);
-  slot.fence = nullptr;
+  HostBuffer& slot = p.slots[p.first];
   p.first = (p.first + 1) % p.slots.size();
   --p.pending;
-  if (outcome != GL_ALREADY_SIGNALED && outcome != GL_CONDITION_SATISFIED)
-    throw ContextError("the card did not finish a picture within 20 s");
+  const std::uint8_t* bytes = slot.finish();
   into.width = p.width;
   into.height = p.height;
   into.format = p.format;
   into.bytes.resize(image_size(p.format, p.width, p.height));
-  std::memcpy(into.bytes.data(), slot.mapped, into.bytes.size());
+  std::memcpy(into.bytes.data(), bytes, into.bytes.size());
 }
 
 Image read(const Renderer& renderer, PixelFormat format) {

@@ -12,6 +12,7 @@
 #include "render/bodies.h"
 #include "render/bounds_pass.h"
 #include "render/finish_pass.h"
+#include "render/fit_pass.h"
 #include "render/frame_block.h"
 #include "render/lattice_pass.h"
 #include "render/light_pass.h"
@@ -111,10 +112,9 @@ struct Renderer::Parts {
   float text_size = 0;
   std::optional<Passes> passes;
   BoundsPass bounds;
+  FitPass fit;
   PassTimer timer;
-  // Of the picture that is being drawn.
-  std::vector<Bounds> boxes;
-  std::string variant;
+  std::string variant;  // of the picture that is being drawn
 
   void prepare(const Scene& scene, const Camera& camera, const Style& style);
   void draw_light(const Scene& scene);
@@ -176,18 +176,20 @@ unsigned Renderer::position_buffer() const { return parts_->bodies.positions.get
 
 std::vector<Bounds> Renderer::body_bounds() {
   parts_->bodies.positions.bind_storage(binding::positions);
-  return parts_->bounds.measure(parts_->bodies);
+  parts_->bounds.measure(parts_->bodies);
+  parts_->bounds.start_reading();
+  return parts_->bounds.read();
 }
 
 // Everything that follows from the scene alone.
 void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style) {
   scene_buffers.upload(scene, bodies);
   scene_buffers.bind(bodies);
-  boxes = placed(bounds.measure(bodies), scene.placements);
-  const Bounds group = joined(boxes);
-  const ShadowFit shadow = fit_shadow(group, style.to_key, settings.shadow_side);
-  const FrameBlock block = frame_block(scene, camera, style, shadow, group, settings.ground_side, width, height);
+  bounds.measure(bodies);
+  if (!scene.labels.empty()) bounds.start_reading();
+  const FrameBlock block = frame_block(scene, camera, style, width, height);
   frame.write(&block, sizeof block);
+  fit.fit(frame, bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
   passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }));
@@ -247,7 +249,10 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   if (scene.surroundings == Surroundings::water)
     p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
   p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);
-  const Overlay text = written(scene, camera, p.boxes, style, p.width, p.height, p.text_size);
+  // By now the boxes have long been measured, and the card has the picture to draw: nobody waits.
+  const std::vector<Bounds> boxes =
+      scene.labels.empty() ? std::vector<Bounds>() : placed(p.bounds.read(), scene.placements);
+  const Overlay text = written(scene, camera, boxes, style, p.width, p.height, p.text_size);
   p.overlay.draw(text, p.targets.finished.get(), p.width, p.height, p.colormaps.get());
   p.timer.mark("finish");
   p.timer.end();

@@ -79,11 +79,4 @@ std::vector<Bounds> placed(std::vector<Bounds> bodies, std::span<const Placement
   return bodies;
 }
 
-Bounds joined(std::span<const Bounds> boxes) {
-  Bounds all;
-  for (const Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
-  return all;
-}
-
 }  // namespace mercury::render

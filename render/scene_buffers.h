@@ -25,7 +25,4 @@ class SceneBuffers {
 // The boxes of bodies as they stand in the picture; empty for one that is not shown.
 std::vector<Bounds> placed(std::vector<Bounds> bodies, std::span<const Placement> placements);
 
-// The box around all boxes that are not empty.
-Bounds joined(std::span<const Bounds> boxes);
-
 }  // namespace mercury::render

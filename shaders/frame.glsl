@@ -1,5 +1,10 @@
 // What all shaders of one picture share: FrameBlock of render/frame_block.h.
+// fit.comp, which fills in a part of it, defines FITS_FRAME.
+#ifdef FITS_FRAME
+layout(std140, binding = 0) buffer Frame {
+#else
 layout(std140, binding = 0) uniform Frame {
+#endif
   mat4 view_projection;          // world to clip, depth reversed
   mat4 inverse_view_projection;
   mat4 view;                     // world to eye, which looks along -z

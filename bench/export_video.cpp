@@ -1,0 +1,146 @@
+// How fast a group is filmed, and what limits: bench_export_video [name=value ...].
+// Names: robots width height frames device quality gl
+//        output (.mp4, .webm) crf ffmpeg json (0, 1)
+//
+// The film is made three times: simulated and drawn without encoding, with positions on the card and through the host;
+// encoded alone, from pictures kept in memory; and all together.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/studio.h"
+#include "robots/random_voxel.h"
+#include "sim/simulation.h"
+
+namespace {
+
+using namespace mercury;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+using Options = std::map<std::string, std::string>;
+
+Options options_of(int argc, char** argv) {
+  Options options{{"robots", "64"}, {"width", "1920"}, {"height", "1080"}, {"frames", "300"}, {"device", "auto"},
+                  {"quality", "auto"}, {"gl", "auto"}, {"output", "bench.mp4"}, {"ffmpeg", ""}, {"json", "0"}, {"crf", "-1"}};
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const auto found = options.find(argument.substr(0, argument.find('=')));
+    if (found == options.end()) {
+      std::fprintf(stderr, "bench_export_video: %s is not accepted; give NAME=VALUE with one of", argument.c_str());
+      for (const auto& [name, value] : options) std::fprintf(stderr, " %s", name.c_str());
+      std::fprintf(stderr, "\n");
+      std::exit(2);
+    }
+    found->second = argument.substr(argument.find('=') + 1);
+  }
+  return options;
+}
+
+// Keeps some pictures and throws the others away.
+class Kept final : public FrameWriter {
+ public:
+  void write(const render::Image& frame) override {
+    if (count_++ % 4 == 0 && frames.size() < 60) frames.push_back(frame);
+  }
+  void finish() override {}
+  std::string description() const override { return "nothing"; }
+  std::vector<render::Image> frames;
+
+ private:
+  std::size_t count_ = 0;
+};
+
+struct Film {
+  std::vector<Robot> robots;
+  Configuration configuration;
+  FilmTiming timing;
+  VideoSettings video;
+};
+
+struct Made {
+  double rate = 0;  // frames/s
+  bool on_card = false;
+};
+
+Made make(const Film& film, Stage& stage, FrameWriter& writer, bool interop) {
+  ViewSettings view;
+  view.interop = interop;
+  Studio studio(stage, Simulation(film.configuration, film.robots), view);
+  const FilmResult result = studio.film(writer, render::PixelFormat::yuv420, film.timing, true);
+  return {static_cast<double>(result.frames) / result.wall_seconds, studio.positions_on_card()};
+}
+
+double encode(const Film& film, const std::string& output, const std::vector<render::Image>& frames) {
+  const auto writer = open_frame_writer(output, film.video);
+  const double begin = now();
+  // There and back again, so that consecutive pictures are as alike as in the film.
+  const std::size_t count = frames.size();
+  for (std::int64_t i = 0; i < film.timing.frames; ++i) {
+    const std::size_t k = static_cast<std::size_t>(i) % (2 * count);
+    writer->write(frames[k < count ? k : 2 * count - 1 - k]);
+  }
+  writer->finish();
+  return static_cast<double>(film.timing.frames) / (now() - begin);
+}
+
+int measure(const Options& options) {
+  const auto number = [&](const char* name) { return std::atoi(options.at(name).c_str()); };
+  Film film{.robots = random_voxel_robots({}, 1, static_cast<std::size_t>(number("robots"))),
+            .timing = {.frames = number("frames"), .interval = 1.0 / 30, .pace = 1.0 / 30},
+            .video = {.size = {number("width"), number("height")}, .expected_frames = number("frames"), .crf = number("crf"),
+                      .ffmpeg = options.at("ffmpeg")}};
+  film.configuration.device = device_named(options.at("device"));
+  const int device = film.configuration.device.kind == DeviceKind::cpu ? -1 : film.configuration.device.index;
+  Stage stage = make_stage(render::context_kind_named(options.at("gl")), film.video.size,
+                           render::quality_named(options.at("quality")), device);
+  Kept kept;
+  {
+    Film warm_up = film;
+    warm_up.timing.frames = 10;
+    make(warm_up, stage, kept, true);
+    kept.frames.clear();
+  }
+  const Made drawn = make(film, stage, kept, true);
+  Kept again;
+  const Made through_host = make(film, stage, again, false);
+  const std::string& output = options.at("output");
+  const double encoded = encode(film, output, kept.frames);
+  const auto writer = open_frame_writer(output, film.video);
+  const double begin = now();
+  make(film, stage, *writer, true);
+  writer->finish();
+  const double whole = static_cast<double>(film.timing.frames) / (now() - begin);
+  const auto bytes = static_cast<double>(std::filesystem::file_size(output));
+  const char* limit = encoded < drawn.rate ? "the encoder" : "drawing and simulating";
+  const char* format =
+      number("json") ? "{\"simulated_on\": \"%s\", \"drawn_with\": \"%s\", \"quality\": \"%s\", \"encoder\": \"%s\", \"robots\": %d, "
+                       "\"width\": %d, \"height\": %d, \"drawn\": %.1f, \"on_card\": %d, \"drawn_through_host\": %.1f, "
+                       "\"encoded\": %.1f, \"exported\": %.1f, \"limit\": \"%s\", \"megabytes\": %.2f}\n"
+                     : "simulated on %s, drawn with %s, %s quality, encoded as %s: %d robots, %dx%d\n"
+                       "  simulated and drawn  %8.1f frames/s (positions on the card: %d)\n"
+                       "  ... through the host %8.1f frames/s\n"
+                       "  encoded alone        %8.1f frames/s\n"
+                       "  the whole export     %8.1f frames/s, limited by %s; %.2f MB\n";
+  std::printf(format, Simulation(film.configuration, film.robots).device_name().c_str(), stage.context->describe().c_str(),
+              std::string(name_of(stage.renderer.quality())).c_str(), writer->description().c_str(), number("robots"),
+              film.video.size.width, film.video.size.height, drawn.rate, drawn.on_card ? 1 : 0, through_host.rate, encoded,
+              whole, limit, bytes * 1e-6);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return measure(options_of(argc, argv));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_export_video: %s\n", error.what());
+    return 1;
+  }
+}

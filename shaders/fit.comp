@@ -1,0 +1,89 @@
+// What of the frame's block follows from where bodies are: what the shadow map and the floor's map of light cover.
+// One work group. An answer read back to the processor would make it wait for the card in every picture.
+#define FITS_FRAME
+#include "frame.glsl"
+#include "bodies.glsl"
+layout(local_size_x = 256) in;
+
+struct Box {
+  vec4 low, high;
+};
+layout(std430, binding = 11) readonly buffer Boxes { Box boxes[]; };
+layout(location = 0) uniform uint bodies;
+layout(location = 1) uniform vec2 sides;  // of the shadow map and of the floor's map of light [texels]
+
+shared vec3 lows[256];
+shared vec3 highs[256];
+
+// Rounded up to a multiple of an eighth of its power of two, so that it changes in steps and not every frame.
+float stepped(float size) {
+  int exponent;
+  frexp(max(size, 1e-6), exponent);
+  float unit = ldexp(1.0, exponent - 1) / 8.0;
+  return unit * ceil(size / unit);
+}
+
+float rounded(float x, float unit) { return unit * floor(x / unit + 0.5); }
+
+// The light's view of all that can throw a shadow.
+void fit_shadow(bool any, vec3 low, vec3 high) {
+  vec3 back = frame.to_key.xyz;
+  vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), back));
+  vec3 up = cross(back, right);
+  vec3 middle = any ? 0.5 * (low + high) : vec3(0.0);
+  vec3 half_size = any ? 0.5 * (high - low) : vec3(1.0);
+  float width = stepped(2.1 * max(max(dot(half_size, abs(right)), dot(half_size, abs(up))), 1e-3));
+  float depth = stepped(2.1 * max(dot(half_size, abs(back)), 1e-3));
+  // Whole texels, so that shadows do not crawl while bodies move.
+  float texel = width / sides.x;
+  mat4 rows = mat4(vec4(right, -rounded(dot(middle, right), texel)) / width,
+                   vec4(up, -rounded(dot(middle, up), texel)) / width, vec4(-back, dot(middle, back)) / depth,
+                   vec4(0.0, 0.0, 0.0, 1.0));
+  mat4 to_map = transpose(rows);
+  to_map[3].xyz += 0.5;
+  frame.shadow = to_map;
+  frame.shadow_size = vec4(width, depth, 0.0, 0.0);
+}
+
+// The floor's map of light reaches as far as shadows can fall.
+void fit_ground(bool any, vec3 low, vec3 high) {
+  vec3 to_key = frame.to_key.xyz;
+  float drop = any ? max(0.0, high.z - frame.ground.w) / max(to_key.z, 0.2) : 0.0;
+  if (!any) {
+    low = vec3(-1.0, -1.0, 0.0);
+    high = vec3(1.0, 1.0, 0.0);
+  }
+  vec3 fallen_low = min(low, low - drop * to_key), fallen_high = max(high, high - drop * to_key);
+  float margin = 0.05 * length(fallen_high - fallen_low) + drop * frame.to_key.w;
+  vec2 size = fallen_high.xy - fallen_low.xy + 2.0 * margin;
+  float side = stepped(max(size.x, size.y));
+  vec2 corner = 0.5 * (fallen_low.xy + fallen_high.xy) - 0.5 * side;
+  float texel = side / sides.y;
+  frame.ground.xyz = vec3(rounded(corner.x, texel), rounded(corner.y, texel), side);
+}
+
+void main() {
+  uint lane = gl_LocalInvocationID.x;
+  vec3 low = vec3(1e30), high = vec3(-1e30);
+  for (uint body = lane; body < bodies; body += 256u) {
+    Box box = boxes[body];
+    Placement placement = placements[body];
+    if ((placement.flags & PLACEMENT_HIDDEN) != 0u || box.low.x > box.high.x) continue;
+    low = min(low, box.low.xyz + placement.offset);
+    high = max(high, box.high.xyz + placement.offset);
+  }
+  lows[lane] = low;
+  highs[lane] = high;
+  for (uint half_count = 128u; half_count > 0u; half_count /= 2u) {
+    barrier();
+    if (lane < half_count) {
+      lows[lane] = min(lows[lane], lows[lane + half_count]);
+      highs[lane] = max(highs[lane], highs[lane + half_count]);
+    }
+  }
+  if (lane != 0u) return;
+  bool any = lows[0].x <= highs[0].x;
+  fit_shadow(any, lows[0], highs[0]);
+  fit_ground(any, lows[0], highs[0]);
+  frame.water.z = any ? highs[0].z : 0.0;
+}
