@@ -21,10 +21,20 @@ Body make_body(const Robot& robot, std::size_t lanes) {
   body.sums.own.assign(padded, 0);
   body.sums.reaction.assign(reaction_arrays * padded, 0);
   body.sums.rows.assign(4 * padded, 0);
+  body.sums.taken.assign(padded, 0);
   body.x_rows.assign(4 * padded, 0);
   body.v_rows.assign(4 * padded, 0);
   body.splits.assign(padded, 0);
   return body;
+}
+
+void clear(Sums& sums) {
+  for (Triples<std::int32_t>* triples : {&sums.own, &sums.reaction, &sums.taken}) {
+    std::ranges::fill(triples->x, 0);
+    std::ranges::fill(triples->y, 0);
+    std::ranges::fill(triples->z, 0);
+  }
+  std::ranges::fill(sums.rows, 0);
 }
 
 void update_laws(Body& body, const Configuration& configuration) {

@@ -25,12 +25,16 @@ struct Triples {
   }
 };
 
-// What acts on the masses in the present phase of a step, in units of FixedPointScale.
+// What acts on the masses, in units of FixedPointScale. All but `own` only grow, wrapping around: what was added since a
+// sum was last taken is a difference, and nothing needs to be set back to zero.
 struct Sums {
-  Triples<std::int32_t> own;       // of the springs that a mass owns
+  Triples<std::int32_t> own;       // of the springs that a mass owns, in this step
   Triples<std::int32_t> reaction;  // of the runs it is partner in, pulls and contacts: reaction_arrays one after the other
   Aligned<std::int32_t> rows;      // of the rows it is partner in and of faces: x, y, z and a fourth without meaning
+  Triples<std::int32_t> taken;     // reaction, with or without rows, when it was last taken
+  bool with_rows = false;
 };
+void clear(Sums& sums);
 
 struct Body {
   const Robot* robot = nullptr;

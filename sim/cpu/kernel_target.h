@@ -30,4 +30,5 @@ HWY_BEFORE_NAMESPACE();
 #include "sim/springs.h"
 HWY_AFTER_NAMESPACE();
 
+#include "sim/cpu/muscle_factors.h"
 #include "sim/cpu/stepper.h"

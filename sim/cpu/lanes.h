@@ -19,6 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 inline constexpr hn::CappedTag<float, 8> floats;
 inline constexpr hn::RebindToSigned<decltype(floats)> integers;
 inline constexpr hn::RebindToUnsigned<decltype(floats)> words;
+inline constexpr hn::RepartitionToWide<decltype(words)> long_words;
 inline constexpr std::size_t lane_count = hn::MaxLanes(floats);
 
 struct Mask {
@@ -76,8 +77,13 @@ HWY_INLINE float largest(Lanes a) { return hn::GetLane(hn::MaxOfLanes(floats, a.
 HWY_INLINE Integers operator+(Integers a, Integers b) { return {hn::Add(a.v, b.v)}; }
 HWY_INLINE Integers operator-(Integers a, Integers b) { return {hn::Sub(a.v, b.v)}; }
 HWY_INLINE Integers bits_of(Lanes a) { return {hn::BitCast(integers, a.v)}; }
+// The bits of |a|: the larger, the larger |a|, and largest for NaN.
+HWY_INLINE Integers magnitude(Lanes a) { return {hn::BitCast(integers, hn::Abs(a.v))}; }
+HWY_INLINE Integers larger(Integers a, Integers b) { return {hn::Max(a.v, b.v)}; }
+HWY_INLINE std::int32_t largest(Integers a) { return hn::GetLane(hn::MaxOfLanes(integers, a.v)); }
 HWY_INLINE Integers round_to_int(Lanes a) { return {hn::NearestInt(a.v)}; }
 HWY_INLINE Lanes float_of(Integers a) { return hn::ConvertTo(floats, a.v); }
+HWY_INLINE Integers integers_of(Words a) { return {hn::BitCast(integers, a.v)}; }
 HWY_INLINE Integers no_integers() { return {hn::Zero(integers)}; }
 
 HWY_INLINE Words operator+(Words a, Words b) { return hn::Add(a.v, b.v); }
@@ -101,10 +107,36 @@ HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); 
 HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, integers, to); }
 HWY_INLINE void store_aligned(Words a, std::uint32_t* to) { hn::Store(a.v, words, to); }
 HWY_INLINE void store(Integers a, std::int32_t* to) { hn::StoreU(a.v, integers, to); }
-// table[id] for each lane's id.
-HWY_INLINE Lanes look_up(const float* table, const MaterialId* ids) {
+// table[id] for each lane's id where the mask holds, elsewhere 0 or table[id].
+HWY_INLINE Lanes look_up(const float* table, const MaterialId* ids, Mask wanted) {
   const auto narrow = hn::LoadU(hn::Rebind<MaterialId, decltype(integers)>(), ids);
-  return hn::GatherIndex(floats, table, hn::PromoteTo(integers, narrow));
+  const auto index = hn::PromoteTo(integers, narrow);
+  // An x86 gather leaves unwanted lanes as they were, so it waits for the last use of the register. Only a mask that is
+  // no constant makes the compiler clear the register first.
+#if HWY_TARGET == HWY_AVX2
+  return hn::Vec<decltype(floats)>{_mm256_mask_i32gather_ps(_mm256_setzero_ps(), table, index.raw, wanted.m.raw, 4)};
+#elif HWY_TARGET == HWY_AVX3
+  return hn::Vec<decltype(floats)>{_mm256_mmask_i32gather_ps(_mm256_setzero_ps(), wanted.m.raw, index.raw, table, 4)};
+#else
+  (void)wanted;
+  return hn::GatherIndex(floats, table, index);
+#endif
+}
+
+// 64-bit integers, one a lane.
+struct Phases {
+  hn::Vec<decltype(long_words)> lower, upper;  // the lanes of each half
+};
+HWY_INLINE Phases operator+(Phases a, Phases b) { return {hn::Add(a.lower, b.lower), hn::Add(a.upper, b.upper)}; }
+HWY_INLINE Phases load_aligned(const std::uint64_t* from) {
+  return {hn::Load(long_words, from), hn::Load(long_words, from + lane_count / 2)};
+}
+HWY_INLINE void store_aligned(Phases a, std::uint64_t* to) {
+  hn::Store(a.lower, long_words, to);
+  hn::Store(a.upper, long_words, to + lane_count / 2);
+}
+HWY_INLINE Words upper_words(Phases a) {
+  return hn::ConcatOdd(words, hn::BitCast(words, a.upper), hn::BitCast(words, a.lower));
 }
 
 // Three of them, as Vec3 is three floats.

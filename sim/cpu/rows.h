@@ -53,11 +53,25 @@ HWY_INLINE Lanes4 turned(Lanes4 r) {
   return {lower_pairs(a, c), upper_pairs(a, c), lower_pairs(b, d), upper_pairs(b, d)};
 }
 
-// Four numbers of each of the masses whose rows start at `offsets`.
-HWY_INLINE Lanes4 collect(const float* rows, const std::uint32_t* offsets) {
+// The rows of as many masses as there are lanes, still as rows; sums of rows cost less than sums of turned rows where
+// several rows go into one sum.
+struct Rows {
+  Lanes r0, r1, r2, r3;
+};
+HWY_INLINE Rows operator+(Rows a, Rows b) { return {a.r0 + b.r0, a.r1 + b.r1, a.r2 + b.r2, a.r3 + b.r3}; }
+HWY_INLINE Rows operator-(Rows a, Rows b) { return {a.r0 - b.r0, a.r1 - b.r1, a.r2 - b.r2, a.r3 - b.r3}; }
+
+// Of the masses whose rows start at `offsets`.
+HWY_INLINE Rows collect(const float* rows, const std::uint32_t* offsets) {
   const auto row = [&](std::size_t i) HWY_ATTR { return hn::Load(float_row, rows + offsets[i]); };
-  return turned({side_by_side(floats, row, 0), side_by_side(floats, row, 1), side_by_side(floats, row, 2),
-                 side_by_side(floats, row, 3)});
+  return {side_by_side(floats, row, 0), side_by_side(floats, row, 1), side_by_side(floats, row, 2),
+          side_by_side(floats, row, 3)};
+}
+HWY_INLINE Lanes4 turned(Rows a) { return turned(Lanes4{a.r0, a.r1, a.r2, a.r3}); }
+// Without the fourth numbers.
+HWY_INLINE Lanes3 vectors(Rows a) {
+  const Lanes4 t = turned(a);
+  return {t.x, t.y, t.z};
 }
 
 // Writes the rows of consecutive masses.
@@ -73,7 +87,7 @@ HWY_INLINE void store_rows(Lanes4 a, float* to) {
 // Adds to the rows that start at `offsets`, which may repeat.
 HWY_INLINE void add_to_rows(Integers3 a, std::int32_t* rows, const std::uint32_t* offsets) {
   const auto as_floats = [](Integers v) HWY_ATTR { return Lanes(hn::BitCast(floats, v.v)); };
-  const Lanes4 r = turned({as_floats(a.x), as_floats(a.y), as_floats(a.z), as_floats(a.z)});
+  const Lanes4 r = turned(Lanes4{as_floats(a.x), as_floats(a.y), as_floats(a.z), as_floats(a.z)});
   const auto add_to_row = [&](std::size_t i, auto row) HWY_ATTR {
     std::int32_t* const at = rows + offsets[i];
     hn::Store(hn::Add(hn::Load(integer_row, at), row), integer_row, at);
@@ -84,12 +98,11 @@ HWY_INLINE void add_to_rows(Integers3 a, std::int32_t* rows, const std::uint32_t
   part(integers, bits_of(r.w).v, add_to_row, 3);
 }
 
-// The rows of consecutive masses, which are zero thereafter.
-HWY_INLINE Integers3 take_rows(std::int32_t* rows) {
+// The rows of consecutive masses.
+HWY_INLINE Integers3 sum_rows(const std::int32_t* rows) {
   const auto row = [&](std::size_t i) HWY_ATTR { return hn::BitCast(float_row, hn::Load(integer_row, rows + 4 * i)); };
-  const Lanes4 a = turned({side_by_side(floats, row, 0), side_by_side(floats, row, 1), side_by_side(floats, row, 2),
-                           side_by_side(floats, row, 3)});
-  for (std::size_t i = 0; i < 4 * lane_count; i += lane_count) hn::Store(hn::Zero(integers), integers, rows + i);
+  const Lanes3 a = vectors({side_by_side(floats, row, 0), side_by_side(floats, row, 1), side_by_side(floats, row, 2),
+                            side_by_side(floats, row, 3)});
   return {bits_of(a.x), bits_of(a.y), bits_of(a.z)};
 }
 

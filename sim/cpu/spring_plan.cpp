@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "sim/face_pairs.h"
 #include "sim/fixed_point.h"
@@ -14,13 +15,16 @@ struct Link {
   std::uint32_t spring;
 };
 
-// A run that has springs in fewer than half of its lanes costs more than the same springs in rows.
-std::size_t fewest_in_run(std::size_t lanes) { return std::max<std::size_t>(1, lanes / 2); }
+// What a row costs in runs, and what it costs every block that a robot has rows at all: masses are then kept in rows too.
+constexpr double row_cost = 2.5, rows_cost = 1.5;
+// Springs in rows a lane, about.
+constexpr double row_fill = 0.9;
 
 class Planner {
  public:
   Planner(const Robot& robot, const Places& places) : robot_(robot), places_(places), lanes_(places.lanes) {
     find_runs();
+    choose_runs();
     share_out_rest();
     plan_.blocks.resize(places.blocks());
     plan_.bias.assign(places.padded(), 0);
@@ -37,30 +41,47 @@ class Planner {
   std::uint32_t block_of(std::uint32_t place) const { return place / static_cast<std::uint32_t>(lanes_); }
   std::size_t lane_of(std::uint32_t place) const { return place % lanes_; }
 
-  // Springs of one block with the same way from owner to partner make a run, if they are enough.
+  // Springs of one block with the same way from owner to partner could make a run.
   void find_runs() {
-    std::vector<Link> links;
-    links.reserve(robot_.springs.size());
+    links_.reserve(robot_.springs.size());
     for (std::uint32_t s = 0; s < robot_.springs.size(); ++s) {
       const auto [low, high] = std::minmax(places_.of_mass[robot_.springs[s].a], places_.of_mass[robot_.springs[s].b]);
-      links.push_back({low, high, s});
+      links_.push_back({low, high, s});
     }
+    // Two springs between the same masses cannot share a run.
     const auto key = [&](const Link& link) { return std::tuple(block_of(link.owner), link.partner - link.owner); };
-    std::ranges::sort(links, {}, [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
-    for (auto first = links.begin(); first != links.end();) {
-      const auto last = std::find_if(first, links.end(), [&](const Link& link) { return key(link) != key(*first); });
-      sort_into_runs({first, last});
+    std::ranges::sort(links_, {}, [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
+    for (auto first = links_.begin(); first != links_.end();) {
+      const auto last = std::find_if(first, links_.end(), [&](const Link& link) { return key(link) != key(*first); });
+      const auto again = std::stable_partition(first, last, [&, before = ~0u](const Link& link) mutable {
+        return std::exchange(before, link.owner) != link.owner;
+      });
+      for (const auto& [begin, end] : {std::pair(first, again), std::pair(again, last)})
+        if (begin != end) candidates_.push_back({begin, end});
       first = last;
     }
   }
 
-  // Links of the same block and way. Two springs between the same masses cannot share a run.
-  void sort_into_runs(std::span<const Link> links) {
-    std::vector<Link> run, again;
-    for (const Link& link : links) (run.empty() || run.back().owner != link.owner ? run : again).push_back(link);
-    std::vector<Link>& to = run.size() >= fewest_in_run(lanes_) ? in_runs_ : in_rows_;
-    to.insert(to.end(), run.begin(), run.end());
-    in_rows_.insert(in_rows_.end(), again.begin(), again.end());
+  // Runs only where so many lanes of a block are in use that this is cheapest.
+  void choose_runs() {
+    std::size_t fewest = 1;
+    double cheapest = cost(1);
+    for (std::size_t n = 2; n <= lanes_ + 1; ++n)
+      if (const double c = cost(n); c < cheapest) {
+        cheapest = c;
+        fewest = n;
+      }
+    for (const std::span<const Link> candidate : candidates_) {
+      std::vector<Link>& to = candidate.size() >= fewest ? in_runs_ : in_rows_;
+      to.insert(to.end(), candidate.begin(), candidate.end());
+    }
+  }
+  double cost(std::size_t fewest_in_run) const {
+    double runs = 0, rest = 0;
+    for (const std::span<const Link> candidate : candidates_)
+      (candidate.size() >= fewest_in_run ? runs : rest) += candidate.size() >= fewest_in_run ? 1 : static_cast<double>(candidate.size());
+    if (rest == 0) return runs;
+    return runs + row_cost * rest / (row_fill * static_cast<double>(lanes_)) + rows_cost * static_cast<double>(places_.blocks());
   }
 
   // The longest lane sets how many rows a block has: springs go to the end that has fewer.
@@ -134,6 +155,8 @@ class Planner {
   const Robot& robot_;
   const Places& places_;
   const std::size_t lanes_;
+  std::vector<Link> links_;
+  std::vector<std::span<const Link>> candidates_;
   std::vector<Link> in_runs_, in_rows_;
   std::size_t next_in_runs_ = 0, next_in_rows_ = 0;
   SpringPlan plan_;

@@ -18,7 +18,7 @@ namespace mercury::cpu {
 
 // Forces on partners of runs are added to one of several arrays in turn: a load that overlaps a store of other alignment
 // made shortly before would have to wait for it.
-inline constexpr std::uint32_t reaction_arrays = 3;
+inline constexpr std::uint32_t reaction_arrays = 2;
 
 struct Run {
   std::uint32_t partner;   // place of the first lane's partner

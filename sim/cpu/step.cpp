@@ -5,10 +5,14 @@
 namespace mercury::cpu {
 namespace {
 
+// Wraps around.
+void add(std::int32_t& sum, float units) {
+  sum = static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) + static_cast<std::uint32_t>(round_to_int(units)));
+}
 void add(Sums& sums, std::size_t place, Vec3 units) {
-  sums.reaction.x[place] += round_to_int(units.x);
-  sums.reaction.y[place] += round_to_int(units.y);
-  sums.reaction.z[place] += round_to_int(units.z);
+  add(sums.reaction.x[place], units.x);
+  add(sums.reaction.y[place], units.y);
+  add(sums.reaction.z[place], units.z);
 }
 
 }  // namespace
@@ -55,13 +59,8 @@ bool accept_state(Body& body) {
 
 void explode(Body& body, std::int64_t step) {
   body.status.exploded_step = step;
-  const auto clear = [](auto& values) { std::ranges::fill(values, 0); };
-  for (Triples<std::int32_t>* sums : {&body.sums.own, &body.sums.reaction}) {
-    clear(sums->x);
-    clear(sums->y);
-    clear(sums->z);
-  }
-  clear(body.sums.rows);
+  body.rows_are_current = false;
+  clear(body.sums);
 }
 
 }  // namespace mercury::cpu
