@@ -16,7 +16,7 @@ namespace mercury::cpu::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr hn::CappedTag<float, 8> floats;
+inline constexpr hn::CappedTag<float, 16> floats;
 inline constexpr hn::RebindToSigned<decltype(floats)> integers;
 inline constexpr hn::RebindToUnsigned<decltype(floats)> words;
 inline constexpr hn::RepartitionToWide<decltype(words)> long_words;
@@ -116,7 +116,7 @@ HWY_INLINE Lanes look_up(const float* table, const MaterialId* ids, Mask wanted)
 #if HWY_TARGET == HWY_AVX2
   return hn::Vec<decltype(floats)>{_mm256_mask_i32gather_ps(_mm256_setzero_ps(), table, index.raw, wanted.m.raw, 4)};
 #elif HWY_TARGET == HWY_AVX3
-  return hn::Vec<decltype(floats)>{_mm256_mmask_i32gather_ps(_mm256_setzero_ps(), wanted.m.raw, index.raw, table, 4)};
+  return hn::Vec<decltype(floats)>{_mm512_mask_i32gather_ps(_mm512_setzero_ps(), wanted.m.raw, index.raw, table, 4)};
 #else
   (void)wanted;
   return hn::GatherIndex(floats, table, index);

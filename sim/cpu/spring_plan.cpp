@@ -72,8 +72,10 @@ class Planner {
         fewest = n;
       }
     for (const std::span<const Link> candidate : candidates_) {
-      std::vector<Link>& to = candidate.size() >= fewest ? in_runs_ : in_rows_;
-      to.insert(to.end(), candidate.begin(), candidate.end());
+      if (candidate.size() >= fewest)
+        runs_.push_back(candidate);
+      else
+        in_rows_.insert(in_rows_.end(), candidate.begin(), candidate.end());
     }
   }
   double cost(std::size_t fewest_in_run) const {
@@ -117,16 +119,11 @@ class Planner {
 
   void append_runs(std::uint32_t block) {
     const auto stride = static_cast<std::uint32_t>(places_.padded());
-    while (next_in_runs_ < in_runs_.size() && block_of(in_runs_[next_in_runs_].owner) == block) {
-      const Link& first = in_runs_[next_in_runs_];
-      const std::uint32_t way = first.partner - first.owner;
-      const auto partner = static_cast<std::uint32_t>(block * lanes_) + way;
+    for (; next_run_ < runs_.size() && block_of(runs_[next_run_].front().owner) == block; ++next_run_) {
+      const Link& first = runs_[next_run_].front();
+      const auto partner = static_cast<std::uint32_t>(block * lanes_) + (first.partner - first.owner);
       const std::size_t slot = append_slot(block);
-      for (; next_in_runs_ < in_runs_.size(); ++next_in_runs_) {
-        const Link& link = in_runs_[next_in_runs_];
-        if (block_of(link.owner) != block || link.partner - link.owner != way) break;
-        fill(slot, link);
-      }
+      for (const Link& link : runs_[next_run_]) fill(slot, link);
       for (std::uint32_t lane = 0; lane < lanes_; ++lane) expect(partner + lane);
       plan_.runs.push_back({partner, plan_.blocks[block].runs++ % reaction_arrays * stride + partner});
     }
@@ -156,9 +153,9 @@ class Planner {
   const Places& places_;
   const std::size_t lanes_;
   std::vector<Link> links_;
-  std::vector<std::span<const Link>> candidates_;
-  std::vector<Link> in_runs_, in_rows_;
-  std::size_t next_in_runs_ = 0, next_in_rows_ = 0;
+  std::vector<std::span<const Link>> candidates_, runs_;
+  std::vector<Link> in_rows_;
+  std::size_t next_run_ = 0, next_in_rows_ = 0;
   SpringPlan plan_;
 };
 
