@@ -18,7 +18,7 @@ struct Prepared {
   std::vector<FacePair> pairs;
 };
 
-Prepared prepare(const Robot& robot) { return {schedule_springs(robot), pair_faces(robot)}; }
+Prepared prepare(const Robot& robot) { return {schedule_springs(robot), spread_over_banks(pair_faces(robot))}; }
 
 // The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
 std::vector<float> lengths_of(const Robot& robot) {

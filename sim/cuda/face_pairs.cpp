@@ -1,60 +1,9 @@
-#include <algorithm>
 #include <array>
-#include <bit>
 
 #include "sim/cuda/schedule.h"
 
 namespace mercury::cuda {
 namespace {
-
-struct HalfEdge {
-  std::uint32_t key = 0;  // both masses, the lower one first
-  std::uint32_t face = 0;
-};
-
-std::uint32_t edge_key(std::uint32_t a, std::uint32_t b) { return std::min(a, b) << 16 | std::max(a, b); }
-
-std::array<std::uint16_t, 3> corners(const Face& face) { return {face.a, face.b, face.c}; }
-
-// The pair of two faces that share exactly the edge `key`, each with its own orientation.
-FacePair pair_of(const Face& first, const Face& second, std::uint32_t key) {
-  const auto on_edge = [&](std::uint16_t mass) { return mass == key >> 16 || mass == (key & 0xffff); };
-  auto corner = corners(first);
-  while (on_edge(corner[1])) std::ranges::rotate(corner, corner.begin() + 1);
-  // The first face is now (a, b, c) with the edge c -> a; a consistent neighbour runs a -> c -> d.
-  const auto [a, b, c] = corner;
-  for (const std::uint16_t d : corners(second))
-    if (!on_edge(d)) return {a, b, c, d};
-  return {a, b, c, a};
-}
-
-std::vector<FacePair> match(const Robot& robot) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * robot.faces.size());
-  for (std::uint32_t f = 0; f < robot.faces.size(); ++f) {
-    const Face& face = robot.faces[f];
-    edges.push_back({edge_key(face.a, face.b), f});
-    edges.push_back({edge_key(face.b, face.c), f});
-    edges.push_back({edge_key(face.c, face.a), f});
-  }
-  // By distance of the faces in the file first: a square's two triangles stand side by side there.
-  std::ranges::sort(edges, {}, [](const HalfEdge& e) { return std::uint64_t{e.key} << 32 | e.face; });
-  std::vector<std::array<std::uint32_t, 3>> candidates;  // how far apart, face, edge
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i)
-    if (edges[i].key == edges[i + 1].key && edges[i].face != edges[i + 1].face)
-      candidates.push_back({edges[i + 1].face - edges[i].face, edges[i].face, edges[i].key});
-  std::ranges::sort(candidates);
-  std::vector<FacePair> pairs;
-  std::vector<std::uint8_t> matched(robot.faces.size());
-  for (const auto& [apart, face, key] : candidates) {
-    if (matched[face] || matched[face + apart]) continue;
-    matched[face] = matched[face + apart] = 1;
-    pairs.push_back(pair_of(robot.faces[face], robot.faces[face + apart], key));
-  }
-  for (std::size_t f = 0; f < robot.faces.size(); ++f)
-    if (!matched[f]) pairs.push_back({robot.faces[f].a, robot.faces[f].b, robot.faces[f].c, robot.faces[f].a});
-  return pairs;
-}
 
 // Up to 32 pairs, and the banks that their four columns of masses take.
 struct Bundle {
@@ -98,7 +47,9 @@ void place(std::vector<Bundle>& bundles, const FacePair& pair) {
   bundles.emplace_back().add(pair);
 }
 
-std::vector<FacePair> spread_over_banks(const std::vector<FacePair>& pairs) {
+}  // namespace
+
+std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs) {
   std::vector<Bundle> bundles;
   for (const FacePair& pair : pairs) place(bundles, pair);
   std::vector<FacePair> ordered;
@@ -108,9 +59,5 @@ std::vector<FacePair> spread_over_banks(const std::vector<FacePair>& pairs) {
   }
   return ordered;
 }
-
-}  // namespace
-
-std::vector<FacePair> pair_faces(const Robot& robot) { return spread_over_banks(match(robot)); }
 
 }  // namespace mercury::cuda

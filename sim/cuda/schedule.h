@@ -7,8 +7,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "sim/face_pairs.h"
 #include "sim/robot.h"
 
 namespace mercury::cuda {
@@ -33,17 +35,11 @@ struct Schedule {
 
 Schedule schedule_springs(const Robot& robot);
 
-// Two triangles (a, b, c) and (a, c, d) that share an edge, so that their common masses are read once. A triangle
-// without a neighbour left has d = a: its second triangle has no area and no force.
-struct FacePair {
-  std::uint16_t a = 0, b = 0, c = 0, d = 0;
-};
-
 // An empty place.
 inline constexpr FacePair no_faces{0, 0, 0, 0};
 
-// Every face once. Of 32 pairs in a row no two have masses of the same bank in the same column; places that this leaves
-// free are empty.
-std::vector<FacePair> pair_faces(const Robot& robot);
+// The same pairs in another order, each perhaps told from another corner: of 32 in a row no two have masses of the same
+// bank in the same column; places that this leaves free are empty.
+std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs);
 
 }  // namespace mercury::cuda

@@ -116,7 +116,7 @@ TEST(FacePairs, HoldEveryFaceOnceWithoutBankConflicts) {
   for (const Robot& robot : robots()) {
     std::multiset<std::set<int>> expected, found;
     for (const Face& f : robot.faces) expected.insert({f.a, f.b, f.c});
-    const std::vector<FacePair> pairs = pair_faces(robot);
+    const std::vector<FacePair> pairs = spread_over_banks(pair_faces(robot));
     for (std::size_t first = 0; first < pairs.size(); first += lanes) {
       std::array<std::set<int>, 4> banks;
       for (std::size_t i = first; i < std::min(first + lanes, pairs.size()); ++i) {
