@@ -16,6 +16,7 @@ using Choose = std::function<void(CommandBody)>;
 
 // Each adds one subcommand to the program; `choose` is called while the command line is parsed.
 void add_run_command(CLI::App& program, const Choose& choose);
+void add_view_command(CLI::App& program, const Choose& choose);
 void add_render_command(CLI::App& program, const Choose& choose);
 void add_new_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);

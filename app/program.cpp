@@ -19,6 +19,7 @@ namespace {
 
 constexpr const char* examples =
     "Examples:\n"
+    "  mercury view                                              a window with the sample robots\n"
     "  mercury render --random voxel:12 --seed 1 -o group.mp4    film twelve random robots\n"
     "  mercury run --random voxel:64 --seconds 2 --json          simulate and print the results\n"
     "  mercury new voxel --count 10 --seed 7 -o robots/          make robot files\n"
@@ -43,6 +44,7 @@ class Program {
     app_.require_subcommand(1);
     app_.get_formatter()->column_width(34);
     const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
+    add_view_command(app_, choose);
     add_render_command(app_, choose);
     add_run_command(app_, choose);
     add_new_command(app_, choose);
@@ -136,7 +138,7 @@ class Program {
                                         suggestion(word, names), full_name(command)));
   }
 
-  CLI::App app_{"Mercury simulates soft robots and films them.", "mercury"};
+  CLI::App app_{"Mercury simulates soft robots, shows and films them.", "mercury"};
   CommandBody body_;
   std::optional<ConfigFile> config_;
   bool help_ = false;

@@ -1,0 +1,42 @@
+// Dear ImGui in a window: its context, fonts and looks.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/window/window.h"
+#include "render/scene.h"
+
+struct ImFont;
+
+namespace mercury::window {
+
+// One at a time; the window must outlive it.
+class Interface {
+ public:
+  // `layout_file`: where sizes and places of what floats are kept; empty = nowhere.
+  Interface(Window& window, const std::filesystem::path& layout_file);
+  ~Interface();
+  Interface(const Interface&) = delete;
+  Interface& operator=(const Interface&) = delete;
+
+  // Takes hold in the next frame. `text_scale`: 1 = as the screen suggests.
+  void set_looks(render::Theme theme, float text_scale);
+
+  void begin_frame();
+  void end_frame();  // draws it over the window's framebuffer
+
+ private:
+  void build_fonts();
+
+  Window& window_;
+  std::string layout_file_;
+  render::Theme theme_ = render::Theme::dark;
+  float text_scale_ = 1, screen_scale_ = 0;
+  bool changed_ = true;
+};
+
+// Valid between frames of the interface.
+ImFont* large_font();
+
+}  // namespace mercury::window

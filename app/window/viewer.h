@@ -1,0 +1,30 @@
+// The interactive window, from its opening to its end.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/view_settings.h"
+#include "app/window/window.h"
+#include "render/renderer.h"
+#include "sim/configuration.h"
+#include "sim/robot.h"
+
+namespace mercury::window {
+
+struct ViewerOptions {
+  std::vector<Robot> robots;
+  Configuration configuration;
+  ViewSettings view;
+  render::Quality quality = render::Quality::automatic;
+  WindowSize size{0, 0};           // 0 = of the last time
+  std::filesystem::path report;    // where to tell what happens (observations.h); empty = nowhere
+  bool remember = true;            // settings of earlier windows are used, and kept for later ones
+  std::vector<std::string> notes;  // shown at the start
+};
+
+// Returns the exit status when the window is closed. Throws NoDisplay.
+int run_viewer(ViewerOptions options);
+
+}  // namespace mercury::window

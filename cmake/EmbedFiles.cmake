@@ -1,0 +1,32 @@
+# cmake -D FILES=A|B|... -D OUTPUT=FILE.cpp -P EmbedFiles.cmake
+# Puts the files into the program as they are, by the assembler: a compiler would take seconds over so many numbers.
+string(REPLACE "|" ";" FILES "${FILES}")
+set(number 0)
+set(blobs "")
+set(declarations "")
+set(entries "")
+foreach(file IN LISTS FILES)
+  get_filename_component(name ${file} NAME)
+  set(symbol mercury_embedded_${number})
+  string(APPEND blobs "    \".balign 16\\n${symbol}:\\n.incbin \\\"${file}\\\"\\n${symbol}_end:\\n.byte 0\\n\"\n")
+  string(APPEND declarations "extern \"C\" __attribute__((visibility(\"hidden\"))) const char ${symbol}[], ${symbol}_end[];\n")
+  string(APPEND entries "    {\"${name}\", {${symbol}, static_cast<std::size_t>(${symbol}_end - ${symbol})}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUTPUT} "// Made at build time.
+#include \"app/window/embedded.h\"
+
+__asm__(\".pushsection .rodata\\n\"
+${blobs}    \".popsection\\n\");
+
+${declarations}
+namespace mercury::window {
+
+std::span<const EmbeddedFile> embedded_files() {
+  static const EmbeddedFile files[] = {
+${entries}  };
+  return files;
+}
+
+}  // namespace mercury::window
+")
