@@ -5,11 +5,6 @@
 #include "render/bindings.h"
 
 namespace mercury::render {
-namespace {
-
-constexpr std::size_t most_a_call = std::size_t(1) << 27;  // quads: 6 vertices each still count within 32 bits
-
-}  // namespace
 
 void set_scale(GLint location, const Scale& scale) {
   const float width = scale.high - scale.low;
@@ -36,9 +31,9 @@ void LatticePass::draw_springs(const Bodies& bodies, const Scene& scene, GLuint 
   glUniform1f(0, scene.spring_radius > 0 ? scene.spring_radius : 0.055f * bodies.typical_spring());
   glUniform1i(1, !scene.spring_values.empty() ? 2 : !scene.mass_values.empty() ? 1 : 0);
   set_scale(2, scene.scale);
-  for (std::size_t first = 0; first < bodies.spring_count(); first += most_a_call) {
+  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_a_call) {
     glUniform1ui(3, GLuint(first));
-    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_a_call, bodies.spring_count() - first)));
+    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.spring_count() - first)));
   }
 }
 
@@ -47,7 +42,7 @@ void LatticePass::draw_masses(const Bodies& bodies, const Scene& scene, GLuint p
   glUniform1f(0, scene.mass_radius > 0 ? scene.mass_radius : 0.11f * bodies.typical_spring());
   glUniform1i(1, scene.mass_values.empty() ? 0 : 1);
   set_scale(2, scene.scale);
-  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_a_call, bodies.mass_count())));
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.mass_count())));
 }
 
 void LatticePass::draw(const Bodies& bodies, const Scene& scene) {

@@ -23,6 +23,8 @@ class LatticePass {
   Buffer values_;
 };
 
+inline constexpr std::size_t most_quads_a_call = std::size_t(1) << 27;  // 6 vertices each still count within 32 bits
+
 inline constexpr int colormap_entries = 256;
 
 // Tells the program in use how values become places in the texture of colour maps: x = value * [0] + [1], y = [2].

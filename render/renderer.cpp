@@ -20,6 +20,7 @@
 #include "render/overlay_pass.h"
 #include "render/quality.h"
 #include "render/scene_buffers.h"
+#include "render/section_pass.h"
 #include "render/skin_pass.h"
 #include "render/targets.h"
 
@@ -42,6 +43,13 @@ std::string surroundings_variant(const Scene& scene, const FrameBlock& block) {
 template <typename Property>
 bool any_placement(const Scene& scene, Property property) {
   return std::any_of(scene.placements.begin(), scene.placements.end(), property);
+}
+
+// Whether a cut is seen from the side that it has taken away, and shows bodies as solid. With springs or masses, it is a
+// window to them.
+bool draws_inside(const Scene& scene, const Camera& camera) {
+  return scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses &&
+         scene.cut->normal.dot(camera.eye) > scene.cut->offset;
 }
 
 std::string skin_variant(const Scene& scene) {
@@ -113,11 +121,14 @@ struct Renderer::Parts {
   std::optional<Passes> passes;
   BoundsPass bounds;
   FitPass fit;
+  SectionPass section;
   PassTimer timer;
   std::string variant;  // of the picture that is being drawn
 
   void prepare(const Scene& scene, const Camera& camera, const Style& style);
-  void draw_light(const Scene& scene);
+  template <typename Draw>
+  void draw_sides(const Scene& scene, const Camera& camera, Draw draw_skins);
+  void draw_light(const Scene& scene, const Camera& camera);
   void draw_solid(const Scene& scene, const Camera& camera);
 };
 
@@ -143,6 +154,7 @@ void Renderer::resize(int width, int height) {
   if (width == p.width && height == p.height) return;
   p.targets = make_targets(width, height, p.settings.samples);
   p.passes->resize(width, height);
+  p.section.resize(width, height);
   p.width = width;
   p.height = height;
 }
@@ -195,36 +207,50 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }));
 }
 
-void Renderer::Parts::draw_light(const Scene& scene) {
+// Calls draw_skins(variant) for the sides of skins that are seen.
+template <typename Draw>
+void Renderer::Parts::draw_sides(const Scene& scene, const Camera& camera, Draw draw_skins) {
+  if (!scene.show.skin) return;
+  const bool inside = draws_inside(scene, camera);
+  // Skins are closed: their backs show where they are cut alone.
+  scene.cut && !inside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
+  draw_skins("");
+  if (!inside) return;
+  glCullFace(GL_FRONT);
+  draw_skins(cut_variant);
+  glCullFace(GL_BACK);
+}
+
+void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
-  // Skins are closed: their insides show where they are cut alone.
   scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   passes->light.draw(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none, [&] {
     if (scene.show.skin) passes->skin.draw_shadow(bodies);
     passes->lattice.draw_shadow(bodies, scene);
   });
   timer.mark("shadows");
-  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   passes->occlusion.draw(6 * bodies.typical_spring(), [&] {
-    if (scene.show.skin) passes->skin.draw_depth(bodies);
+    draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(bodies, side); });
   });
   timer.mark("occlusion");
 }
 
 void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
+  glBindTextureUnit(binding::colormap, colormaps.get());
+  if (draws_inside(scene, camera)) section.draw(bodies, scene);
   glBindFramebuffer(GL_FRAMEBUFFER, targets.drawing.get());
   glViewport(0, 0, width, height);
   const float farthest = 0;
   glClearNamedFramebufferfv(targets.drawing.get(), GL_DEPTH, 0, &farthest);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
-  glBindTextureUnit(binding::colormap, colormaps.get());
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
-  if (scene.show.skin) passes->skin.draw(bodies, color_by, scene.scale, variant + skin_variant(scene));
+  draw_sides(scene, camera, [&](const char* side) {
+    passes->skin.draw(bodies, color_by, scene.scale, variant + skin_variant(scene) + side);
+  });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");
   passes->lattice.draw(bodies, scene);
@@ -242,7 +268,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.timer.begin();
   p.prepare(scene, camera, style);
   p.timer.mark("positions");
-  p.draw_light(scene);
+  p.draw_light(scene, camera);
   p.draw_solid(scene, camera);
   glDepthFunc(GL_GREATER);
   p.passes->annotation.draw_paths(scene.paths, 0.0035f * float(p.height));

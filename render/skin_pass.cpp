@@ -23,8 +23,8 @@ SkinPass::SkinPass(const std::string& defines)
     : corners_(make_vertex_array()),
       face_frames_program_(make_program({"face_frames.comp"})),
       mass_normals_program_(make_program({"mass_normals.comp"})),
-      depth_(make_program({"skin.vert", "depth.frag"}, define("COLOR_BY", 0))),
       shadow_(make_program({"shadow.vert", "depth.frag"})),
+      depth_({"skin.vert", "depth.frag"}, define("COLOR_BY", 0)),
       skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
@@ -77,8 +77,8 @@ void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, 
   draw_triangles(bodies);
 }
 
-void SkinPass::draw_depth(const Bodies& bodies) const {
-  glUseProgram(depth_.get());
+void SkinPass::draw_depth(const Bodies& bodies, const std::string& variant) const {
+  glUseProgram(depth_.get(variant));
   draw_triangles(bodies);
 }
 

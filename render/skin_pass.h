@@ -19,17 +19,20 @@ class SkinPass {
   enum class ColorBy { looks, face_values, mass_values };
   // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
   void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const;
-  void draw_depth(const Bodies& bodies) const;
+  // `variant`: "" or, with a cut whose inside is drawn, cut_variant.
+  void draw_depth(const Bodies& bodies, const std::string& variant) const;
   void draw_shadow(const Bodies& bodies) const;
 
  private:
   void draw_triangles(const Bodies& bodies) const;
 
   VertexArray corners_;
-  Program face_frames_program_, mass_normals_program_, depth_, shadow_;
-  ProgramVariants skin_;
+  Program face_frames_program_, mass_normals_program_, shadow_;
+  ProgramVariants depth_, skin_;
   Buffer face_frames_, face_normals_, face_areas_, mass_normals_;
 };
+
+inline constexpr const char* cut_variant = "#define CUT\n";
 
 // Runs the current compute program, whose local size is 64, for at least `count` invocations.
 void dispatch(std::size_t count);

@@ -5,12 +5,17 @@
 #include "shading.glsl"
 #include "caustics.glsl"
 #include "occlusion.glsl"
+#ifdef CUT
+#include "cut.glsl"
+layout(binding = 10) uniform sampler2D section;  // looks of bodies' insides, where the cut is seen
+#endif
 layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]; };
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
 
 // COLOR_BY: 0 looks, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
+// CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
 layout(location = 0) in vec3 local;
-layout(location = 1) in vec3 world;
+layout(location = 1) in vec3 skin_point;
 layout(location = 2) flat in uint flags;
 #ifdef ROUNDED
 layout(location = 3) in vec3 smooth_normal;
@@ -62,6 +67,13 @@ void main() {
   uint face = uint(gl_PrimitiveID);
   FaceRecord record = face_records[face];
   FaceFrame face_frame = face_frames[face];
+  vec3 world = skin_point;
+#ifdef CUT
+  // From the pixel, not from the skin: neighbours across an edge of the skin see one plane.
+  vec2 place = gl_FragCoord.xy * frame.screen.zw;
+  world = point_of_cut(transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0));
+  gl_FragDepth = depth_of(world);
+#endif
   vec3 from_eye = world - frame.eye.xyz;
   float range = length(from_eye);
   vec3 to_eye = -from_eye / range;
@@ -76,6 +88,10 @@ void main() {
   }
 #endif
   normal = normalize(normal);
+#ifdef CUT
+  normal = flat_normal = frame.cut.xyz;
+  seam = 0.0;
+#endif
   if (dot(flat_normal, to_eye) < 0.0) {
     normal = -normal;
     flat_normal = -flat_normal;
@@ -93,6 +109,11 @@ void main() {
 #endif
   float activation = 0.0;
   vec3 albedo = textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb;
+#endif
+#ifdef CUT
+  vec4 inside = texelFetch(section, ivec2(gl_FragCoord.xy), 0);
+  albedo = inside.rgb * (1.0 + 0.25 * min(inside.a, 0.0));
+  activation = inside.a;
 #endif
   albedo *= 1.0 - 0.28 * seam;
 #ifdef MARKED

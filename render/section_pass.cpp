@@ -1,0 +1,53 @@
+#include "render/section_pass.h"
+
+#include <algorithm>
+#include <array>
+
+#include "render/bindings.h"
+#include "render/lattice_pass.h"
+
+namespace mercury::render {
+namespace {
+
+constexpr float reach_of_springs = 1.6f;  // typical springs; beyond, the inside of a body has no look of its own
+
+}  // namespace
+
+SectionPass::SectionPass() : empty_(make_vertex_array()), program_(make_program({"section.vert", "section.frag"})) {}
+
+void SectionPass::resize(int width, int height) {
+  width_ = width;
+  height_ = height;
+  looks_ = Texture();
+}
+
+void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
+  if (!looks_) {
+    looks_ = make_texture(GL_RGBA16F, width_, height_);
+    nearness_ = make_texture(GL_DEPTH_COMPONENT32F, width_, height_);
+    framebuffer_ = make_framebuffer({looks_.get()}, nearness_.get());
+  }
+  const std::array<float, 4> plain{0.35f, 0.35f, 0.35f, 0};
+  const float nothing = 0;
+  glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 0, plain.data());
+  glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, &nothing);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDisable(GL_CULL_FACE);
+  bodies.springs.bind_storage(binding::first_free);
+  bodies.spring_looks.bind_storage(binding::first_free + 1);
+  glUseProgram(program_.get());
+  glBindVertexArray(empty_.get());
+  glUniform1f(0, reach_of_springs * bodies.typical_spring());
+  glUniform1i(1, !scene.mass_values.empty() ? 1 : !scene.face_values.empty() ? 2 : 0);
+  set_scale(2, scene.scale);
+  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_a_call) {
+    glUniform1ui(3, GLuint(first));
+    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.spring_count() - first)));
+  }
+  glBindTextureUnit(binding::section, looks_.get());
+}
+
+}  // namespace mercury::render

@@ -1,0 +1,39 @@
+// A spring near the cut as a square in the cut's plane, 6 vertices, around the place nearest to the spring's middle.
+#include "frame.glsl"
+#include "bodies.glsl"
+#include "ribbon.glsl"
+layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
+layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
+layout(std430, binding = 12) readonly buffer SpringLooks { uint spring_looks[]; };
+layout(location = 0) uniform float reach;       // [m]
+layout(location = 1) uniform int color_by;      // 0 looks, 1 mass values, 2 nothing that masses or springs have
+layout(location = 2) uniform vec3 value_scale;
+layout(location = 3) uniform uint first;        // springs of earlier calls
+layout(binding = 7) uniform sampler2D colormap;
+
+layout(location = 0) out vec3 off;   // from the spring's middle
+layout(location = 1) flat out vec4 look;  // colour, activation
+out gl_PerVertex { vec4 gl_Position; };
+
+vec4 look_of(uint spring, uint a, uint b) {
+  if (color_by == 0) return looks[min(spring_looks[spring], uint(looks.length()) - 1u)];
+  if (color_by == 2) return vec4(0.35, 0.35, 0.35, 0.0);
+  float value = 0.5 * (mass_values[a] + mass_values[b]);
+  return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
+}
+
+void main() {
+  uint spring = first + uint(gl_VertexID) / 6u;
+  vec2 corner = vec2(2.0, 1.0) * ribbon_corner(gl_VertexID % 6) - vec2(1.0, 0.0);
+  uint a = springs[2u * spring], b = springs[2u * spring + 1u];
+  Placement placement = placements[mass_bodies[a]];
+  vec3 middle = 0.5 * (position_of(a) + position_of(b)) + placement.offset;
+  vec3 normal = frame.cut.xyz;
+  float height = dot(normal, middle) - frame.cut.w;
+  vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
+  float half_side = sqrt(max(0.0, reach * reach - height * height));
+  off = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
+  look = look_of(spring, a, b);
+  gl_Position = frame.view_projection * vec4(middle + off, 1.0);
+  if (abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}
