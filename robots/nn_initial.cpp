@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "robots/nn_robot.h"
 #include "robots/random.h"
@@ -102,9 +104,24 @@ void add_limbs(Features& features, std::uint64_t count, Random& random) {
     for (int attempt = 0; attempt < 20 && crowded(along); ++attempt) along = direction(random);
     taken.push_back(along);
     taken.push_back(mirror(along));
-    const double threshold = random.uniform(0.4, 1.0), reach = random.uniform(1.2, 3.2);
+    const double threshold = random.uniform(0.3, 0.9), reach = random.uniform(1.5, 3);
     const Vector move = reach / (ball_radius - threshold) * unit(along + 0.5 * direction(random));
     features.add(along, threshold, move);
+  }
+}
+
+// Three to six equal limbs around the z axis: a star.
+void add_arms(Features& features, std::uint64_t count, Random& random) {
+  const double threshold = random.uniform(0.6, 0.9), reach = random.uniform(1.5, 3);
+  const double lean = random.uniform(-0.4, 0.4), droop = random.uniform(-0.8, 0.8);
+  const double cosine[] = {-0.5, 0, (std::sqrt(5.) - 1) / 4, 0.5};  // of a third, a quarter, a fifth, a sixth of a turn
+  const double c = cosine[count - 3], s = std::sqrt(1 - c * c);
+  const std::size_t first = features.list().size();
+  double x = 1, y = 0;
+  for (std::size_t arm = 0; arm < count; ++arm) {
+    const Vector move = reach / (ball_radius - threshold) * unit({x, y, droop});
+    features.add_alone({unit({x, y, lean}), threshold, move, first + (count - arm) % count});
+    std::tie(x, y) = std::pair(c * x - s * y, s * x + c * y);
   }
 }
 
@@ -112,7 +129,7 @@ void add_limbs(Features& features, std::uint64_t count, Random& random) {
 void add_bends(Features& features, std::uint64_t count, const Vector& proportions, Random& random) {
   for (std::uint64_t i = 0; i < count; ++i) {
     const Vector along = unit(proportions * proportions * direction(random));
-    const double threshold = random.uniform(-0.6, 0.6), amount = random.uniform(0.4, 1.2);
+    const double threshold = random.uniform(-0.6, 0.6), amount = random.uniform(0.3, 0.9);
     const Vector move = amount * direction_across(along, random);
     features.add(along, threshold, move);
   }
@@ -135,18 +152,19 @@ void fill_with_small_features(Features& features, Random& random) {
 
 struct Plan {
   Vector proportions;  // of the trunk, the longest 1
-  std::uint64_t limbs, bends;
+  std::uint64_t limbs, arms, bends;
   bool cup;
 };
 
 Plan random_plan(bool mirrored, Random& random) {
   Plan plan{};
-  for (double& p : plan.proportions) p = random.uniform(0.3, 1);
+  for (double& p : plan.proportions) p = random.uniform(0.4, 1);
   const double longest = *std::max_element(plan.proportions.begin(), plan.proportions.end());
   plan.proportions = 1 / longest * plan.proportions;
-  plan.limbs = random.below(mirrored ? 4 : 6);
-  plan.bends = random.below(4);
-  plan.cup = random.chance(0.25);
+  if (random.chance(0.15)) plan.arms = 3 + random.below(4);
+  else plan.limbs = random.below(mirrored ? 4 : 6);
+  plan.bends = random.below(3);
+  plan.cup = random.chance(0.2);
   return plan;
 }
 
@@ -193,10 +211,11 @@ Trunk random_trunk(const std::vector<int>& hidden, bool mirrored, Random& random
     Vector proportions = {1, 1, 1};
     const bool first = l == 0, last = l + 1 == hidden.size();
     const Plan plan = last ? random_plan(mirrored, random) : Plan{};
-    if (last) proportions = (plan.limbs > 0 ? random.uniform(0.5, 0.8) : 1) * plan.proportions;
+    if (last) proportions = (plan.limbs + plan.arms > 0 ? random.uniform(0.5, 0.8) : 1) * plan.proportions;
     if (first) gather(features, proportions);
     if (last) {
       add_limbs(features, plan.limbs, random);
+      if (plan.arms > 0 && width >= Trunk::carried + plan.arms) add_arms(features, plan.arms, random);
       add_bends(features, plan.bends, plan.proportions, random);
       if (plan.cup) add_cup(features, mirrored ? Vector{0, 0, 1} : direction(random), random);
     }
