@@ -50,6 +50,12 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
   return winners.size() < output.count() ? 1 : 0;
 }
 
+// Robots that were tried, or made, for an environment say so in their origin.
+std::string environment_for(const NewOptions& options) {
+  if (options.best_of > 0) return std::string(name_of(options.simulation.configuration().environment));
+  return options.simulation.chosen_environment();
+}
+
 int make_files(const NewOptions& options, const MakeRobot& make) {
   return options.best_of > 0 ? keep_best(options, make) : write_robots(options.output, make);
 }
@@ -69,7 +75,8 @@ void add_kind(CLI::App& family, const Choose& choose, const char* name, const ch
   command->footer(footer);
   command->callback([options, choose, make] {
     choose([options, make] {
-      const auto chosen = options->kind.chosen();
+      auto chosen = options->kind.chosen();
+      chosen.environment = environment_for(options->shared);
       return make_files(options->shared,
                         [&](std::uint64_t seed, std::uint64_t index) { return make(chosen, seed, index); });
     });

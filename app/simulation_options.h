@@ -26,6 +26,9 @@ class SimulationOptions {
   // about that is added to `notes`.
   Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;
 
+  // What --environment was given; empty = it was not.
+  std::string chosen_environment() const { return environment_.value_or(""); }
+
   // Time to simulate [s]. Throws InputError unless it is finite and >= 0 and has at most 1e15 steps of dt.
   double seconds(double otherwise = 10) const;
   std::int64_t steps() const;  // nearest to seconds() / dt

@@ -76,6 +76,9 @@ class Adapter : public nlohmann::json_sax<Json> {
 }  // namespace
 
 void read_json(std::string_view document, DocumentEvents& events) {
+  // The parser takes a NUL for the end, and would not look at what follows.
+  const std::size_t nul = document.find('\0');
+  if (nul != std::string_view::npos) throw InputError(place_of(document, nul + 1), "not valid JSON: a NUL byte");
   Adapter adapter(document, events);
   Json::sax_parse(document, &adapter);
 }

@@ -57,6 +57,7 @@ struct NnOptions {
   std::size_t points = 512;
   float alpha = 0;                     // [m]; 0 = as in NnGenome
   double mirrored = 0.5;               // share of robots with mirror symmetry
+  std::string environment;             // as in NnGenome
 };
 
 // Throws InputError("--hidden: 3 is not accepted; ...") and the like unless there are at most 15 hidden layers of 6 to 4,096 neurons, 64 to

@@ -201,6 +201,7 @@ VoxelGrid random_voxel_grid(const RandomVoxelOptions& options, std::uint64_t see
 Robot random_voxel_robot(const RandomVoxelOptions& options, std::uint64_t seed, std::uint64_t index) {
   return make_voxel_robot(random_voxel_grid(options, seed, index),
                           {.name = "voxel-" + std::to_string(seed) + "-" + std::to_string(index),
+                           .environment = options.environment,
                            .seed = seed,
                            .index = index});
 }

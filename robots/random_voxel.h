@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "robots/voxel.h"
@@ -23,6 +24,7 @@ struct RandomVoxelOptions {
   double tissue = 0.17;
   double bone = 0.08;
   int frequencies = 1;           // how many of the five muscle frequencies one robot uses
+  std::string environment;       // where they are meant to live, kept in their origin; empty = not said
 };
 
 // Throws InputError("--air: ...") and the like unless sizes, patch and frequencies (at most 5) are at least 1,

@@ -35,6 +35,8 @@ std::string refusal_of(const Parts& parts) {
 TEST(BadRobotFiles, TheSoundDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), "no error"); }
 
 TEST(BadRobotFiles, NotJson) {
+  const std::string sound = R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})" "\n";
+  EXPECT_EQ(refusal_of_json(sound), "no error");
   EXPECT_EQ(refusal_of_json(""), "line 1, column 0: not valid JSON: unexpected end of input");
   EXPECT_EQ(refusal_of_json("hello"), "line 1, column 1: not valid JSON: invalid literal");
   EXPECT_EQ(refusal_of_json("{\"format\":\"mercury-robot\",\n\"masses\":[[0,0"),
@@ -42,7 +44,10 @@ TEST(BadRobotFiles, NotJson) {
   EXPECT_EQ(refusal_of_json("{} {}"), "line 1, column 4: not valid JSON: unexpected '{'");
   EXPECT_EQ(refusal_of_json("{\"a\":\"\xff\"}"), "line 1, column 7: not valid JSON: invalid string: ill-formed UTF-8 byte");
   EXPECT_EQ(refusal_of({.masses = "[[0,0,NaN]]"}), "line 1, column 54: not valid JSON: invalid literal");
-  EXPECT_EQ(refusal_of_json(std::string(1000, '\0')), "line 1, column 1: not valid JSON: unexpected end of input");
+  EXPECT_EQ(refusal_of_json(std::string(1000, '\0')), "line 1, column 1: not valid JSON: a NUL byte");
+  EXPECT_EQ(refusal_of_json(sound + std::string(1, '\0')), "line 2, column 1: not valid JSON: a NUL byte");
+  EXPECT_EQ(refusal_of_json(sound + std::string("\0{]", 3)), "line 2, column 1: not valid JSON: a NUL byte");
+  EXPECT_EQ(refusal_of_json(std::string("{\"a\":\"\0\"}", 9)), "line 1, column 7: not valid JSON: a NUL byte");
 }
 
 TEST(BadRobotFiles, NotARobot) {
