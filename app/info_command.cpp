@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <variant>
 
 #include "app/commands.h"
 #include "app/configuration_json.h"
@@ -15,6 +16,8 @@
 #include "robots/file.h"
 #include "robots/inspect.h"
 #include "robots/origin.h"
+#include "sim/chip.h"
+#include "sim/simulation.h"
 
 namespace mercury {
 namespace {
@@ -47,12 +50,36 @@ std::string surface_text(const Inspection& inspection) {
 
 void line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, text); }
 
+std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", static_cast<double>(bytes) / 1024); }
+
+// Where its masses can be stepped without leaving the chip (docs/performance.md), here and in general.
+void describe_fit(const Robot& robot) {
+  constexpr std::size_t everywhere = 48 * 1024;  // what each CUDA device gives a block
+  Configuration configuration;
+  if (environment_of(robot) == Land::name) configuration.environment = Land{};
+  const std::size_t bytes = chip_bytes(robot, configuration);
+  line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
+                                environment_of(robot) == Land::name ? "on land" : "in water",
+                                bytes <= everywhere ? "fits every CUDA device, which has 48 kB or more"
+                                                    : "more than the 48 kB of the smallest CUDA devices"));
+  for (int device = 0; device < cuda_device_count(); ++device) {
+    const ChipFit fit = chip_fit(robot, configuration, device);
+    const char* where = !fit.on_chip            ? "does not fit, stepped in device memory, more slowly"
+                        : !fit.contacts_on_chip && std::holds_alternative<Land>(configuration.environment)
+                            ? "fits but for its contacts"
+                            : "fits";
+    line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device), kilobytes(fit.most_bytes),
+                         where, fit.robots_at_once));
+  }
+  line("", "the CPU takes any size");
+}
+
 void describe(const Robot& robot) {
   const Inspection found = inspect(robot);
   const std::string kind = kind_of(robot), environment = environment_of(robot);
   fmt::print("{}\n", robot.name);
   if (!kind.empty() || !environment.empty())
-    line("made", fmt::format("{}{}{}", kind.empty() ? "" : "as a " + kind + " robot", kind.empty() || environment.empty() ? "" : ", ",
+    line("made", fmt::format("{}{}{}", kind.empty() ? "" : (kind == "nn" ? "as an " : "as a ") + kind + " robot", kind.empty() || environment.empty() ? "" : ", ",
                              environment.empty() ? "" : "for " + environment));
   line("masses", fmt::format("{}{}", found.masses, found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
   line("springs", fmt::format("{}, {:.1f} a mass, {:.3g} to {:.3g} m, {} muscles", found.springs, found.springs_a_mass,
@@ -61,6 +88,7 @@ void describe(const Robot& robot) {
   line("surface", surface_text(found));
   line("materials", materials_text(found));
   line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
+  describe_fit(robot);
   if (found.components > 1) line("parts", fmt::format("{} that no spring joins", found.components));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/chip.h"
 #include "sim/cuda/batch.h"
 #include "sim/cuda/block.cuh"
 #include "sim/cuda/step.h"
@@ -210,6 +211,21 @@ class CudaBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return std::make_unique<CudaBackend>(device); }
+
+ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int device) {
+  if (device < 0 || device >= cuda_device_count())
+    throw DeviceError("CUDA device " + std::to_string(device) + " is not there");
+  check(cudaSetDevice(device), "choosing the device");
+  constexpr std::uint32_t many = 1u << 20;  // robots
+  BatchView batch{};
+  batch.robot_count = many;
+  batch.group_stride = groups_of(robot);
+  batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
+  const Shape shape = choose_shape(configuration.solver, configuration.environment, batch, true);
+  const AnyHooks hooks = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+  return {most_shared_bytes(), shape.on_chip, shape.on_chip && shape.contacts_on_chip,
+          robots_in_flight(configuration.solver, hooks, shape)};
+}
 
 int cuda_device_count() {
   int count = 0;

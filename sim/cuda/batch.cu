@@ -20,18 +20,6 @@ struct Prepared {
 
 Prepared prepare(const Robot& robot) { return {schedule_springs(robot), spread_over_banks(pair_faces(robot))}; }
 
-// The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
-std::vector<float> lengths_of(const Robot& robot) {
-  std::vector<float> lengths{0};
-  for (const Spring& spring : robot.springs) {
-    const auto place = std::ranges::lower_bound(lengths, spring.rest_length);
-    if (place != lengths.end() && *place == spring.rest_length) continue;
-    lengths.insert(place, spring.rest_length);
-    if (lengths.size() > max_lengths) break;
-  }
-  return lengths;
-}
-
 // Turns the partner of every record from one unit into another: mass index (rows 0) or word offset among groups of so
 // many rows.
 __global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_rows,
@@ -72,7 +60,7 @@ Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), rob
   oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(), [&](std::size_t i) { measures_[i] = measure(*robots_[i]); });
   for (const Robot* robot : robots_) {
     first_mass_.push_back(first_mass_.back() + robot->masses.size());
-    group_stride_ = std::max(group_stride_, static_cast<std::uint32_t>((robot->masses.size() + lanes - 1) / lanes));
+    group_stride_ = std::max(group_stride_, groups_of(*robot));
   }
   if (size() > 0) upload(measures_);
 }

@@ -1,5 +1,6 @@
 // Stands in for the CUDA backend in a build without nvcc.
 #include "sim/backend.h"
+#include "sim/chip.h"
 #include "sim/error.h"
 
 namespace mercury {
@@ -7,6 +8,7 @@ namespace mercury {
 std::unique_ptr<Backend> make_cuda_backend(const Device&) {
   throw DeviceError("this build has no CUDA backend: build with nvcc on PATH, or use --device cpu");
 }
+ChipFit chip_fit(const Robot&, const Configuration&, int) { throw DeviceError("this build has no CUDA backend"); }
 int cuda_device_count() { return 0; }
 std::string cuda_device_name(int) { return {}; }
 bool built_with_cuda() { return false; }

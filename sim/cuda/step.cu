@@ -167,7 +167,7 @@ bool fit_one(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limit
 
 }  // namespace
 
-std::uint32_t working_rows(Solver solver) { return solver == Solver::force ? working_rows_force : working_rows_xpbd; }
+std::size_t most_shared_bytes() { return device_limits().shared_per_block; }
 
 Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws) {
   const Limits limits = device_limits();
@@ -176,8 +176,7 @@ Shape choose_shape(Solver solver, const Environment& environment, const BatchVie
   Shape shape;
   shape.shared_table = same_laws;
   shape.record_words = batch.record_words;
-  const Land* land = std::get_if<Land>(&environment);
-  if (land && land->self_collision && land->contact_stiffness > 0) shape.contact_buckets = std::bit_ceil(groups * lanes);
+  shape.contact_buckets = contact_buckets(environment, groups);
   // Fewer robots than multiprocessors: each gets one to itself.
   if (robots > limits.multiprocessors && fit_several(shape, groups, rows, limits, robots)) return shape;
   if (fit_one(shape, groups, rows, limits)) return shape;

@@ -3,24 +3,12 @@
 
 #include <variant>
 
+#include "sim/cuda/block_layout.h"
 #include "sim/cuda/layout.h"
 #include "sim/environments.h"
 #include "sim/integration.h"
 
 namespace mercury::cuda {
-
-// What a block has and does.
-struct Shape {
-  std::uint32_t robots_per_block = 1;
-  std::uint32_t warps_per_robot = 1;
-  std::uint32_t table_copy_bits = 0;  // 2^this many copies of the material table, at most 16
-  bool shared_table = false;        // all robots of the batch have the same materials
-  bool on_chip = true;              // masses in shared memory, else in the workspace
-  std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
-  std::uint32_t record_words = 2;   // of the batch
-  bool contacts_on_chip = true;       // else behind the working memory in the workspace
-  std::size_t shared_bytes = 0;
-};
 
 struct StepArguments {
   BatchView batch;
@@ -34,10 +22,11 @@ struct StepArguments {
 
 using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
 
-std::uint32_t working_rows(Solver solver);
-
 // The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
 Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws);
+
+// Shared memory that a block may have on the present device [bytes].
+std::size_t most_shared_bytes();
 
 // Robots that the present device steps at the same time.
 std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape);

@@ -20,6 +20,8 @@ TEST_F(InfoCommand, TellsWhatAFileHolds) {
   EXPECT_THAT(outcome.output, HasSubstr("closed, Euler characteristic 2, 0.06 m2, 0.001 m3"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("faces +12"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("size +0.1 x 0.1 x 0.1 m\n"));
+  // A group of 32 masses at 36 bytes, 256 materials at 8, 256 rest lengths at 4, and 16.
+  EXPECT_THAT(outcome.output, HasSubstr("needs 4.1 kB of a CUDA block's memory in water: fits every CUDA device"));
 }
 
 TEST_F(InfoCommand, WithoutAFileTellsWhatTheMachineHas) {

@@ -3,6 +3,7 @@
 
 #include "program.h"
 #include "robots/file.h"
+#include "robots/origin.h"
 #include "robots/random_voxel.h"
 
 namespace mercury::test {
@@ -56,6 +57,15 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
   std::vector<std::string> best{ranking[0].second + ".json", ranking[1].second + ".json"};
   std::sort(best.begin(), best.end());
   EXPECT_EQ(listing("best"), best);
+}
+
+TEST_F(NewCommand, RobotsSayWhereTheyWereTried) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"}).status, 0);
+  EXPECT_EQ(environment_of(load_robot(path("a.json"))), "land");
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("b.json"), "--best-of", "2", "--seconds", "0"}).status, 0);
+  EXPECT_EQ(environment_of(load_robot(path("b.json"))), "ocean");
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("c.json")}).status, 0);
+  EXPECT_EQ(environment_of(load_robot(path("c.json"))), "");
 }
 
 TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
