@@ -34,7 +34,13 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", one_line(message)); }
+// A message that quotes a long text keeps its two ends: where it was, and what would be accepted.
+std::string in_brief(const std::string& text) {
+  constexpr std::size_t longest = 800, end = 300;
+  return text.size() <= longest ? text : text.substr(0, end) + " ... " + text.substr(text.size() - end);
+}
+
+void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", in_brief(one_line(message))); }
 
 class Program {
  public:
@@ -108,6 +114,7 @@ class Program {
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
                        config_->arguments().end());
     }
+    require_values(*command, arguments);
     try {
       app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::Success& request) {  // --help or --version
@@ -122,6 +129,13 @@ class Program {
     } catch (const CLI::ParseError& error) {
       throw InputError(fmt::format("{}; see {} --help", one_line(error.what()), full_name(*command)));
     }
+  }
+
+  // CLI11 would take the next argument for the value of "--dt=".
+  static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
+    for (const std::string& argument : arguments)
+      if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+        throw InputError(argument.substr(0, argument.size() - 1), "needs a value; see " + full_name(command) + " --help");
   }
 
   static std::string full_name(const CLI::App& command) {
