@@ -47,7 +47,6 @@ class CpuBackend final : public Backend {
       const std::vector<Vec3> at_rest(robots[i]->masses.size());
       set_state(bodies_[i], robots[i]->masses, at_rest);
     });
-    packs_.clear();
     configure(configuration);
   }
 
@@ -55,15 +54,17 @@ class CpuBackend final : public Backend {
     configuration_ = configuration;
     setting_ = setting_of(configuration);
     for_each_body([&](std::size_t i) { update_laws(bodies_[i], configuration_); });
+    packs_.clear();
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
     const auto start = std::chrono::steady_clock::now();
-    if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()));
+    if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
     arena_.execute([&] {
       oneapi::tbb::parallel_for(std::size_t{0}, packs_.size(),
                                 [&](std::size_t i) { advance(kernel_, packs_[i], bodies_, setting_, clock, steps); });
     });
+    if (std::ranges::any_of(packs_, &Pack::broken)) packs_.clear();
     busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -93,7 +94,10 @@ class CpuBackend final : public Backend {
     for (const Body& body : bodies_) all.push_back(body.status);
     return all;
   }
-  void set_status(std::size_t robot, const RobotStatus& status) override { bodies_[robot].status = status; }
+  void set_status(std::size_t robot, const RobotStatus& status) override {
+    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) packs_.clear();
+    bodies_[robot].status = status;
+  }
 
   void write_materials(std::span<const Material> tables) override {
     for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/cpu/lockstep.h"
+
 namespace mercury::cpu {
 
 Body make_body(const Robot& robot, std::size_t lanes) {
@@ -10,6 +12,7 @@ Body make_body(const Robot& robot, std::size_t lanes) {
   body.robot = &robot;
   body.measures = measure(robot);
   body.places = arrange(robot, lanes);
+  body.build_key = build_key(robot);
   body.springs = plan_springs(robot, body.places);
   body.faces = plan_faces(robot, body.places);
   body.near_pairs = NearPairs(robot, body.places);
@@ -37,8 +40,7 @@ void clear(Sums& sums) {
   std::ranges::fill(sums.rows, 0);
 }
 
-void update_laws(Body& body, const Configuration& configuration) {
-  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
+std::array<float, max_materials> hardness_of(const Body& body, const Configuration& configuration) {
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
   std::array<float, max_materials> hardness;
   for (std::size_t id = 0; id < max_materials; ++id) {
@@ -48,6 +50,12 @@ void update_laws(Body& body, const Configuration& configuration) {
                        : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
   }
   hardness[air] = configuration.solver == Solver::force ? 0 : std::numeric_limits<float>::infinity();
+  return hardness;
+}
+
+void update_laws(Body& body, const Configuration& configuration) {
+  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
+  const std::array<float, max_materials> hardness = hardness_of(body, configuration);
   SpringPlan& springs = body.springs;
   for (std::size_t i = 0; i < springs.hardness.size(); ++i) springs.hardness[i] = hardness[springs.material[i]];
 

@@ -39,6 +39,7 @@ void clear(Sums& sums);
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
+  std::uint64_t build_key = 0;       // sim/cpu/lockstep.h
   Places places;
   SpringPlan springs;
   std::vector<std::uint32_t> faces;  // plan_faces()
@@ -68,6 +69,9 @@ struct Body {
 
 // A body for kernels of so many lanes, its state not set yet.
 Body make_body(const Robot& robot, std::size_t lanes);
+
+// Stiffness or compliance of each material under a configuration, in the body's units; so that air gives no force.
+std::array<float, max_materials> hardness_of(const Body& body, const Configuration& configuration);
 
 // What depends on materials and configuration.
 void update_laws(Body& body, const Configuration& configuration);

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "sim/cpu/lockstep.h"
 #include "sim/cpu/muscles.h"
 #include "sim/cpu/step.h"
 
@@ -20,6 +21,9 @@ struct Kernel {
   // Advances a body that has not exploded. Returns how many steps were made; fewer than asked for if it exploded in the
   // step after them.
   std::int64_t (*advance)(Body& body, const StepSetting& setting, const float* factors, std::int64_t steps);
+
+  // Advances a group. False if one of its robots may have exploded on the way: the group's state is worth nothing then.
+  bool (*advance_together)(Lockstep& group, const StepSetting& setting, const float* factors, std::int64_t steps);
 };
 
 // What this machine can run, the best first.

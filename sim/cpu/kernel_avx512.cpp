@@ -8,6 +8,7 @@
 
 namespace mercury::cpu {
 
-const Kernel avx512_kernel{"AVX-512", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance};
+const Kernel avx512_kernel{"AVX-512", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
+                          HWY_NAMESPACE::advance_together};
 
 }  // namespace mercury::cpu

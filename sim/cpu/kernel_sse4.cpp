@@ -8,6 +8,7 @@
 
 namespace mercury::cpu {
 
-const Kernel sse4_kernel{"SSE4", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance};
+const Kernel sse4_kernel{"SSE4", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
+                          HWY_NAMESPACE::advance_together};
 
 }  // namespace mercury::cpu

@@ -30,5 +30,6 @@ HWY_BEFORE_NAMESPACE();
 #include "sim/springs.h"
 HWY_AFTER_NAMESPACE();
 
+#include "sim/cpu/lockstep_stepper.h"
 #include "sim/cpu/muscle_factors.h"
 #include "sim/cpu/stepper.h"

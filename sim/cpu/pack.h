@@ -11,14 +11,17 @@
 namespace mercury::cpu {
 
 struct Pack {
-  std::vector<std::size_t> bodies;  // all of the same materials
+  std::vector<std::size_t> bodies;  // all of the same materials, as are those of the groups
+  std::vector<Lockstep> groups;
+  bool broken = false;              // a group had to be stepped one by one; pack anew
 };
 
-// Every body in one pack; at least a few packs a thread where there are enough bodies.
-std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads);
+// Every body in one pack; at least a few packs a thread where there are enough bodies. With `configuration` as the bodies'
+// laws stand.
+std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const Configuration& configuration);
 
 // Advances the pack's bodies, those that have not exploded.
-void advance(const Kernel& kernel, const Pack& pack, std::span<Body> bodies, const StepSetting& setting, const Clock& clock,
+void advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, const StepSetting& setting, const Clock& clock,
              std::int64_t steps);
 
 }  // namespace mercury::cpu

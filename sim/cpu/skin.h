@@ -7,6 +7,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
 
+// The forces on two faces (a, b, c) and (a, c, d), a third of each, in units.
+struct FaceForces {
+  Lanes3 first, second;
+
+  HWY_INLINE Integers largest_component() const {
+    const auto of = [](Lanes3 f) HWY_ATTR { return larger(magnitude(f.x), larger(magnitude(f.y), magnitude(f.z))); };
+    return larger(of(first), of(second));
+  }
+};
+
+// The ways from a to the other corners, and the sums of each face's three velocities; `scale`: units in a newton, of a
+// third.
+template <class Hooks>
+HWY_INLINE FaceForces face_forces(const Hooks& hooks, Lanes scale, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 v_first,
+                                  Lanes3 v_second) {
+  constexpr float third = 1.0f / 3.0f;
+  return {scale * hooks.on_face(Lanes(0.5f) * cross(to_b, to_c), Lanes(third) * v_first),
+          scale * hooks.on_face(Lanes(0.5f) * cross(to_c, to_d), Lanes(third) * v_second)};
+}
+
 template <class Hooks>
 class Skin {
  public:
@@ -18,8 +38,8 @@ class Skin {
   bool add_forces() const {
     Integers largest_force = no_integers();
     for (const std::uint32_t* corner = corners_; corner != corners_end_; corner += 4 * lane_count) {
-      const Forces f = forces(corner);
-      largest_force = larger(largest_force, larger(largest_component(f.first), largest_component(f.second)));
+      const FaceForces f = forces(corner);
+      largest_force = larger(largest_force, f.largest_component());
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
       add_to_rows(on_both, arrays_.row_sums, corner);
       add_to_rows(on_b, arrays_.row_sums, corner + lane_count);
@@ -33,7 +53,7 @@ class Skin {
   template <class Visit>
   void for_each_bad_corner(const Visit& visit) const {
     for (const std::uint32_t* corner = corners_; corner != corners_end_; corner += 4 * lane_count) {
-      const Forces f = forces(corner);
+      const FaceForces f = forces(corner);
       const std::uint32_t good = bits_of(fits(f.first) & fits(f.second));
       for (std::size_t lane = 0; lane < lane_count; ++lane)
         for (std::size_t k = 0; k < 4 && (good >> lane & 1) == 0; ++k) visit(corner[k * lane_count + lane] / 4);
@@ -41,27 +61,15 @@ class Skin {
   }
 
  private:
-  struct Forces {
-    Lanes3 first, second;  // a third, in units
-  };
-
-  // Of pairs of faces (a, b, c) and (a, c, d), whose corners stand one after the other.
-  HWY_INLINE Forces forces(const std::uint32_t* corner) const {
-    constexpr float third = 1.0f / 3.0f;
+  // Of pairs of faces, whose corners stand one after the other.
+  HWY_INLINE FaceForces forces(const std::uint32_t* corner) const {
     const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count, *const d = c + lane_count;
-    const Rows xa = x(a);
-    const Lanes3 to_b = vectors(x(b) - xa), to_c = vectors(x(c) - xa), to_d = vectors(x(d) - xa);
-    const Rows shared = v(a) + v(c);
-    const Lanes3 v_first = vectors(shared + v(b)), v_second = vectors(shared + v(d));
-    return {Lanes(scale_) * hooks_.on_face(Lanes(0.5f) * cross(to_b, to_c), Lanes(third) * v_first),
-            Lanes(scale_) * hooks_.on_face(Lanes(0.5f) * cross(to_c, to_d), Lanes(third) * v_second)};
+    const Rows xa = x(a), shared = v(a) + v(c);
+    return face_forces(hooks_, Lanes(scale_), vectors(x(b) - xa), vectors(x(c) - xa), vectors(x(d) - xa),
+                       vectors(shared + v(b)), vectors(shared + v(d)));
   }
   HWY_INLINE Rows x(const std::uint32_t* corner) const { return collect(arrays_.x_rows, corner); }
   HWY_INLINE Rows v(const std::uint32_t* corner) const { return collect(arrays_.v_rows, corner); }
-
-  HWY_INLINE static Integers largest_component(Lanes3 a) {
-    return larger(magnitude(a.x), larger(magnitude(a.y), magnitude(a.z)));
-  }
 
   const Arrays arrays_;
   const std::uint32_t *const corners_, *const corners_end_;

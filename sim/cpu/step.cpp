@@ -5,14 +5,10 @@
 namespace mercury::cpu {
 namespace {
 
-// Wraps around.
-void add(std::int32_t& sum, float units) {
-  sum = static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) + static_cast<std::uint32_t>(round_to_int(units)));
-}
 void add(Sums& sums, std::size_t place, Vec3 units) {
-  add(sums.reaction.x[place], units.x);
-  add(sums.reaction.y[place], units.y);
-  add(sums.reaction.z[place], units.z);
+  add_units(sums.reaction.x[place], units.x);
+  add_units(sums.reaction.y[place], units.y);
+  add_units(sums.reaction.z[place], units.z);
 }
 
 }  // namespace
@@ -36,15 +32,8 @@ void add_pulls(Body& body) {
 }
 
 void add_contacts(Body& body, float stiffness) {
-  const float distance = body.measures.contact_distance();
-  for (const auto& [i, j] : body.near_pairs.pairs()) {
-    const Vec3 d = Body::at(body.x, j) - Body::at(body.x, i);
-    const float squared = squared_length(d);
-    if (!(squared < distance * distance)) continue;
-    const Vec3 units = repulsion(squared, distance, stiffness * body.scale.force) * d;
-    add(body.sums, i, units);
-    add(body.sums, j, -units);
-  }
+  for_each_contact(body, stiffness, [&](std::uint32_t place) { return Body::at(body.x, place); },
+                   [&](std::uint32_t place, Vec3 units) { add(body.sums, place, units); });
 }
 
 bool accept_state(Body& body) {

@@ -28,6 +28,23 @@ StepSetting setting_of(const Configuration& configuration);
 // Adds the forces of pulls and of contacts between listed pairs to the sums.
 void add_pulls(Body& body);
 void add_contacts(Body& body, float stiffness);
+// Contacts at positions(place): calls add(place, units) for both masses of a pair that touches.
+template <class Positions, class Add>
+void for_each_contact(const Body& body, float stiffness, const Positions& positions, const Add& add) {
+  const float distance = body.measures.contact_distance();
+  for (const auto& [i, j] : body.near_pairs.pairs()) {
+    const Vec3 d = positions(j) - positions(i);
+    const float squared = squared_length(d);
+    if (!(squared < distance * distance)) continue;
+    const Vec3 units = repulsion(squared, distance, stiffness * body.scale.force) * d;
+    add(i, units);
+    add(j, -units);
+  }
+}
+// Rounds and wraps around.
+inline void add_units(std::int32_t& sum, float units) {
+  sum = static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) + static_cast<std::uint32_t>(round_to_int(units)));
+}
 
 // A state from outside may hold masses that are out of reach already. Notes the lowest and returns false if it does.
 bool accept_state(Body& body);

@@ -171,5 +171,72 @@ TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
   }
 }
 
+// Robots of one build but of other materials, lengths and states.
+class CpuKernelTogether : public CpuKernel {
+ protected:
+  void SetUp() override {
+    std::mt19937_64 random(11);
+    for (std::size_t i = 0; i < GetParam().kernel.lanes + GetParam().kernel.lanes * 3 / 4 + 1; ++i) {
+      robots.push_back(built);
+      for (Spring& spring : robots.back().springs) {
+        spring.material = static_cast<MaterialId>(1 + random() % 253);
+        spring.rest_length *= 1 + 0.05f * static_cast<float>(random() % 8);
+      }
+      starts.push_back(bodies::shaken(built, 0.01f, 0.5f, i));
+      for (Vec3& x : starts.back().positions) x.z += 0.02f * static_cast<float>(i % 5);
+    }
+  }
+
+  // All of them in one batch on one core, calls of 3, 45, 200 and 52 steps.
+  void expect_all_same(std::span<const Pull> pulls = {}) const {
+    const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
+    std::vector<const Robot*> pointers;
+    for (const Robot& robot : robots) pointers.push_back(&robot);
+    backend->load(pointers, configuration());
+    for (std::size_t i = 0; i < robots.size(); ++i) backend->write(i, starts[i].positions, starts[i].velocities);
+    backend->set_pulls(pulls);
+    Clock clock{.dt = configuration().dt};
+    for (const std::int64_t call : {3, 45, 200, 52}) {
+      backend->step(clock, call);
+      clock.step += call;
+    }
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      std::vector<Pull> own;
+      for (const Pull& pull : pulls)
+        if (pull.robot == i) own.push_back(pull);
+      const Result wanted = by_plain_loop(robots[i], starts[i], own, clock.step);
+      State got{std::vector<Vec3>(built.masses.size()), std::vector<Vec3>(built.masses.size())};
+      backend->read(i, got.positions, got.velocities);
+      EXPECT_EQ(backend->status(i).exploded_step, wanted.exploded_step) << i;
+      EXPECT_EQ(backend->status(i).bad_mass, wanted.bad_mass) << i;
+      EXPECT_TRUE(got.positions == wanted.state.positions && got.velocities == wanted.state.velocities) << i;
+    }
+  }
+
+  const Robot built = entangled(bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3));
+  std::vector<Robot> robots;
+  std::vector<State> starts;
+};
+INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(every_case()), name_of_case);
+
+TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoop) { expect_all_same(); }
+
+TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoopAtSpeed) {
+  for (State& start : starts)
+    for (std::size_t i = 0; i < start.velocities.size(); ++i)
+      start.velocities[i] += Vec3{20, 5 * static_cast<float>(i % 3), -10};
+  expect_all_same();
+}
+
+TEST_P(CpuKernelTogether, AnExplosionOrAPullIsItsRobotsOwn) {
+  starts[2].velocities[5] += Vec3{1e10f, 0, 0};
+  starts[3].velocities[7] += Vec3{3e3f, 0, 0};
+  robots[1].materials.assign(materials_of(robots[1]).begin(), materials_of(robots[1]).end());
+  for (Material& material : robots[1].materials) material.stiffness *= 2e4f;  // too stiff for the time step
+  robots[1].materials[air] = {};
+  const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
+  expect_all_same(pulls);
+}
+
 }  // namespace
 }  // namespace mercury

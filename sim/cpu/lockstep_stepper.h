@@ -1,0 +1,189 @@
+// The step of a group of robots in lockstep (lockstep.h), in vector code.
+#pragma once
+
+#include "sim/cpu/lockstep.h"
+#include "sim/cpu/motion.h"
+#include "sim/cpu/skin.h"
+#include "sim/cpu/spring_slots.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mercury::cpu::HWY_NAMESPACE {
+
+template <class Hooks>
+class LockstepStepper {
+ public:
+  LockstepStepper(Lockstep& group, const Hooks& hooks, const StepSetting& setting)
+      : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), joints_(group.build->joints),
+        hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness), force_scale_(load_aligned(group.force_scale.data())),
+        correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
+        per_correction_(inverse(correction_scale_)), squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
+
+  // False if a robot may have exploded.
+  bool step(Solver solver, const float* factors) {
+    if constexpr (Hooks::has_contacts)
+      if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) touch();
+    if (!add_faces()) return false;
+    return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
+  }
+
+ private:
+  // Algorithm 1. A mass ends its step as soon as its own springs are done: those that it is partner in came before.
+  bool step_force(const float* factors) {
+    Box box;
+    good_ = true;
+    const bool sound = add_springs<false>(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+      const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
+      Lanes3 v = accelerated(v0, per_force_ * float_of(sum) + hooks_.on_mass(v0), constants_);
+      Lanes3 x = multiply_add(constants_.dt, v, x0);
+      end_step(x, v, hooks_, constants_);
+      keep(x, v, mass);
+      box.add(x);
+    });
+    group_.compact = within_stretch_limit(box);
+    return sound && good_;
+  }
+
+  // Algorithm 2.
+  bool step_xpbd(const float* factors) {
+    Box box;
+    good_ = true;
+    for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
+      const Lanes3 v0 = at(v_, mass);
+      const Lanes3 v = accelerated(v0, per_force_ * float_of(take(mass)) + hooks_.on_mass(v0), constants_);
+      const Lanes3 x = multiply_add(constants_.dt, v, at(x_, mass));
+      keep(x, v, mass);
+      box.add(x);
+    }
+    group_.compact = within_stretch_limit(box);
+    if (!good_) return false;
+    const bool sound = add_springs<true>(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+      const Lanes3 correction = per_correction_ * float_of(sum);
+      Lanes3 x = at(x_, mass) + correction;
+      Lanes3 v = multiply_add(constants_.inverse_dt, correction, at(v_, mass));
+      end_step(x, v, hooks_, constants_);
+      keep(x, v, mass);
+    });
+    group_.compact = false;
+    return sound && good_;
+  }
+
+  // Adds the forces of contacts, and sees to it that near pairs are listed.
+  void touch() {
+    std::uint32_t lanes = group_.listed ? bits_of(strayed()) : ~0u;
+    group_.listed = true;
+    for (std::size_t lane = 0; lane < lane_count; ++lane)
+      if ((lanes >> lane & 1) != 0) list_near_pairs(group_, lane);
+    add_contacts(group_, contact_stiffness_);
+  }
+
+  // Whether a mass of a lane's robot went farther than lists reach, seen from its first mass.
+  Mask strayed() const {
+    float* const listed = group_.listed_x.data();
+    const Lanes reach = Lanes(list_reach) * load_aligned(group_.contact_distance.data());
+    const Lanes3 common = at(x_, 0) - at(listed, 0);
+    Lanes farthest_squared = 0.0f;
+    for (std::size_t mass = 0; mass < joints_.size(); ++mass)
+      farthest_squared = larger(farthest_squared, squared_length(at(x_, mass) - at(listed, mass) - common));
+    return farthest_squared > reach * reach;
+  }
+
+  // False if a face's force is out of range.
+  bool add_faces() {
+    if constexpr (Hooks::has_faces) {
+      const Lanes scale = Lanes(1.0f / 3.0f) * force_scale_;
+      Integers largest_force = no_integers();
+      for (const auto& [a, b, c, d] : group_.build->faces) {
+        const Lanes3 xa = at(x_, a), shared = at(v_, a) + at(v_, c);
+        const FaceForces f = face_forces(hooks_, scale, at(x_, b) - xa, at(x_, c) - xa, at(x_, d) - xa,
+                                         shared + at(v_, b), shared + at(v_, d));
+        largest_force = larger(largest_force, f.largest_component());
+        const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
+        add_to(a, on_both);
+        add_to(b, on_b);
+        add_to(c, on_both);
+        add_to(d, on_d);
+      }
+      return largest(largest_force) < mercury::bits_of(face_limit_units);
+    }
+    return true;
+  }
+
+  template <bool xpbd, class Finish>
+  bool add_springs(const float* factors, const Finish& finish) {
+    return group_.compact ? add_springs<xpbd, false>(factors, finish) : add_springs<xpbd, true>(factors, finish);
+  }
+
+  // Calls finish(mass, sum of all that acts on it) for each mass. False if a spring is beyond the stretch limit, which
+  // only `checked` finds.
+  template <bool xpbd, bool checked, class Finish>
+  bool add_springs(const float* factors, const Finish& finish) {
+    SlotLaw<xpbd, checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.material.data(), 0.0f};
+    const std::uint32_t* partner = group_.build->partners.data();
+    std::size_t mass = 0;
+    for (const auto& [owned, springs] : joints_) {
+      const Lanes3 own = at(x_, mass);
+      const Lanes splits = xpbd ? per_correction_ * Lanes(static_cast<float>(springs)) : Lanes(0.0f);
+      Integers3 sum{no_integers(), no_integers(), no_integers()};
+      for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
+        const Lanes partner_splits =
+            xpbd ? per_correction_ * Lanes(static_cast<float>(joints_[*partner].springs)) : Lanes(0.0f);
+        const Integers3 f = law(own - at(x_, *partner), splits + partner_splits);
+        sum = sum - f;
+        add_to(*partner, f);
+      }
+      // The sum holds rounding_magic_bits once for each spring that the mass is partner in, less those that it owns.
+      const Integers magic = integers_of(Words((2 * owned - springs) * std::uint32_t{rounding_magic_bits}));
+      finish(mass, take(mass) + sum + Integers3{magic, magic, magic});
+      ++mass;
+    }
+    return !checked || every(law.longest <= squared_stretch_limit_);
+  }
+
+  template <class T>
+  static HWY_INLINE Pointers3<T> lanes_of(T* values, std::size_t mass) {
+    T* const first = values + 3 * lane_count * mass;
+    return {first, first + lane_count, first + 2 * lane_count};
+  }
+  static HWY_INLINE Lanes3 at(float* values, std::size_t mass) { return load_aligned(lanes_of(values, mass), 0); }
+  HWY_INLINE void add_to(std::size_t mass, Integers3 a) const {
+    const Pointers3<std::int32_t> sum = lanes_of(sums_, mass);
+    store_aligned(load_aligned(sum, 0) + a, sum, 0);
+  }
+  HWY_INLINE Integers3 take(std::size_t mass) const {
+    const Pointers3<std::int32_t> from = lanes_of(sums_, mass);
+    const Integers3 sum = load_aligned(from, 0);
+    store_aligned(Integers3{no_integers(), no_integers(), no_integers()}, from, 0);
+    return sum;
+  }
+  HWY_INLINE void keep(Lanes3 x, Lanes3 v, std::size_t mass) {
+    if (HWY_UNLIKELY(!every(within_reach(x)))) good_ = false;
+    store_aligned(x, lanes_of(x_, mass), 0);
+    store_aligned(v, lanes_of(v_, mass), 0);
+  }
+  bool within_stretch_limit(const Box& box) const { return every(squared_length(box.high - box.low) <= squared_stretch_limit_); }
+
+  Lockstep& group_;
+  float *const x_, *const v_;
+  std::int32_t* const sums_;
+  const std::vector<Build::Joint>& joints_;
+  const Hooks hooks_;
+  const StepConstants constants_;
+  const float contact_stiffness_;
+  const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
+  bool good_ = true;  // all masses are within reach
+};
+
+// Kernel::advance_together.
+inline bool advance_together(Lockstep& group, const StepSetting& setting, const float* factors, std::int64_t steps) {
+  return std::visit(
+      [&](const auto& hooks) {
+        LockstepStepper stepper(group, hooks, setting);
+        for (std::int64_t n = 0; n < steps; ++n, factors += max_materials)
+          if (!stepper.step(setting.solver, factors)) return false;
+        return true;
+      },
+      setting.hooks);
+}
+
+}  // namespace mercury::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
