@@ -26,7 +26,7 @@ struct Kernel {
   bool (*advance_together)(Lockstep& group, const StepSetting& setting, const float* factors, std::int64_t steps);
 };
 
-// What this machine can run, the best first.
+// What this machine can run, the best first; the last, portable one runs everywhere.
 std::span<const Kernel> kernels();
 
 }  // namespace mercury::cpu

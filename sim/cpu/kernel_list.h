@@ -5,6 +5,6 @@
 
 namespace mercury::cpu {
 
-extern const Kernel sse4_kernel, avx2_kernel, avx512_kernel;
+extern const Kernel portable_kernel, sse4_kernel, avx2_kernel, avx512_kernel, neon_kernel;
 
 }  // namespace mercury::cpu

@@ -171,6 +171,12 @@ TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
   }
 }
 
+// Every machine has one kernel, and the tests above compare it with the plain loop as all others.
+TEST(CpuKernels, EndWithThePortableOne) {
+  ASSERT_FALSE(cpu::kernels().empty());
+  EXPECT_EQ(cpu::kernels().back().name, "portable");
+}
+
 // Robots of one build but of other materials, lengths and states.
 class CpuKernelTogether : public CpuKernel {
  protected:

@@ -1,0 +1,14 @@
+#include <hwy/detect_targets.h>
+#undef HWY_TARGET
+#define HWY_TARGET HWY_NEON
+
+#include "sim/cpu/kernel_target.h"
+
+#include "sim/cpu/kernel_list.h"
+
+namespace mercury::cpu {
+
+const Kernel neon_kernel{"NEON", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
+                         HWY_NAMESPACE::advance_together};
+
+}  // namespace mercury::cpu
