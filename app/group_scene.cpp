@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <variant>
@@ -51,15 +52,17 @@ Eigen::Vector3f mean_position(const Robot& robot) {
 
 // Materials of the legend: the base materials that the group's springs are of, alone or in pairs, if they are the
 // defaults.
-std::vector<std::pair<render::Color, std::string>> swatches_of(const Simulation& simulation) {
+std::vector<std::pair<render::Color, std::string>> swatches_of(std::span<const Robot* const> robots) {
+  std::array<bool, max_materials> springs_of{};  // by id
+  for (const Robot* robot : robots) {
+    if (!robot->materials.empty()) continue;
+    for (const Spring& spring : robot->springs) springs_of[spring.material] = true;
+  }
   std::vector<bool> used(base_material_count + 1, false);
-  for (std::size_t i = 0; i < simulation.size(); ++i) {
-    const Robot& robot = simulation.robot(i);
-    if (!robot.materials.empty()) continue;
-    for (const Spring& spring : robot.springs) {
-      const BasePair pair = base_materials_of(spring.material);
-      used[pair.first] = used[pair.second] = true;
-    }
+  for (int id = 1; id < default_material_count; ++id) {
+    if (!springs_of[static_cast<std::size_t>(id)]) continue;
+    const BasePair pair = base_materials_of(static_cast<MaterialId>(id));
+    used[pair.first] = used[pair.second] = true;
   }
   const std::vector<render::Color> colors = material_colors(default_materials(), true);
   std::vector<std::pair<render::Color, std::string>> swatches;
@@ -80,39 +83,97 @@ std::string clock_of(double time, double speed) {
 
 }  // namespace
 
-GroupScene::GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
-    : settings_(settings), scale_(settings.color, settings.scale) {
-  for (std::size_t i = 0; i < simulation.size(); ++i) add(simulation.robot(i), offsets.at(i));
-  const std::vector<Telemetry> telemetry = simulation.telemetry();
-  for (const Telemetry& robot : telemetry) start_.push_back(eigen(robot.center_of_mass));
-  path_points_.resize(simulation.size());
-  if (settings.shown.legend && settings.color == ColorBy::material) swatches_ = swatches_of(simulation);
-  const Environment& environment = simulation.configuration().environment;
-  scene_.surroundings = surroundings_of(environment);
-  scene_.flow = eigen(flow_of(environment));
-  scene_.show = {.skin = settings.shown.skin, .springs = settings.shown.springs, .masses = settings.shown.masses};
-  scene_.theme = settings.theme;
-  scene_.cut = settings.cut;
-  scene_.scale_bar = settings.shown.scale_bar;
-  place(telemetry);
+Group group_of(const Simulation& simulation) {
+  Group group{.telemetry = simulation.telemetry(), .environment = simulation.configuration().environment};
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    group.robots.push_back(&simulation.robot(i));
+    group.names.push_back(simulation.robot(i).name);
+    group.materials.push_back(materials_of(simulation.robot(i)));
+  }
+  return group;
+}
+
+GroupScene::GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+    : settings_(settings), scale_(settings.color, settings.scale), names_(group.names),
+      shared_looks_(group.shared_looks), environment_(group.environment), swatches_(swatches_of(group.robots)) {
+  for (std::size_t i = 0; i < group.robots.size(); ++i) add(*group.robots[i], group.materials[i], offsets.at(i));
+  restart(group.telemetry);
+  place(group.telemetry);
+  show_surroundings();
+  place_floor();
+}
+
+void GroupScene::place_floor() {
   scene_.floor = scene_.surroundings == render::Surroundings::land ? 0 : sand_below(bounds_);
 }
 
-void GroupScene::add(const Robot& robot, const Eigen::Vector3f& offset) {
-  const bool defaults = robot.materials.empty();
-  const auto materials = materials_of(robot);
-  // Most robots share the default table, and its looks.
-  const auto shared = std::find_if(tables_.begin(), tables_.end(), [&](const Table& table) {
-    return std::equal(table.materials.begin(), table.materials.end(), materials.begin(), materials.end());
-  });
-  const std::size_t first_look = shared == tables_.end() ? looks_.size() : shared->first_look;
-  if (shared == tables_.end()) {
-    tables_.push_back({first_look, {materials.begin(), materials.end()}});
-    for (const render::Color color : material_colors(materials, defaults)) looks_.push_back({.color = color});
+// What the settings and the environment say, and no moment changes.
+void GroupScene::show_surroundings() {
+  scene_.surroundings = surroundings_of(environment_);
+  scene_.flow = eigen(flow_of(environment_));
+  scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
+  scene_.theme = settings_.theme;
+  scene_.cut = settings_.cut;
+  scene_.scale_bar = settings_.shown.scale_bar;
+}
+
+void GroupScene::set_settings(const ViewSettings& settings) {
+  if (settings.color != settings_.color || settings.scale != settings_.scale) scale_ = {settings.color, settings.scale};
+  settings_ = settings;
+  for (std::size_t i = 0; i < placements_.size(); ++i) placements_[i].smooth = settings.smooth || grown_[i];
+  // What is no longer shown.
+  scene_.clock.clear();
+  scene_.paths = {};
+  scene_.labels = {};
+  scene_.legend.reset();
+  show_surroundings();
+}
+
+void GroupScene::set_environment(const Environment& environment) {
+  const bool moved = environment_.index() != environment.index();
+  environment_ = environment;
+  show_surroundings();
+  if (moved) place_floor();
+}
+
+void GroupScene::set_offsets(std::span<const Eigen::Vector3f> offsets) {
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    bounds_[i] = bounds_[i].empty() ? bounds_[i] : bounds_[i].moved(offsets[i] - placements_[i].offset);
+    placements_[i].offset = offsets[i];
   }
-  names_.push_back(robot.name);
-  shapes_.emplace_back(robot, static_cast<std::uint32_t>(first_look));
-  placements_.push_back({.offset = offset, .smooth = settings_.smooth || kind_of(robot) == "nn"});
+  place_floor();
+}
+
+void GroupScene::set_materials(std::size_t robot, std::span<const Material> materials) {
+  Table& table = tables_[table_of_[robot]];
+  std::copy_n(materials.begin(), std::min(materials.size(), table.materials.size()), table.materials.begin());
+}
+
+void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
+  placements_[robot].selected = selected;
+  placements_[robot].hidden = hidden;
+}
+
+void GroupScene::restart(std::span<const Telemetry> telemetry) {
+  trails_.clear();
+  for (const Telemetry& robot : telemetry) trails_.push_back({.start = eigen(robot.center_of_mass)});
+}
+
+void GroupScene::add(const Robot& robot, std::span<const Material> materials, const Eigen::Vector3f& offset) {
+  const bool defaults = robot.materials.empty();
+  // Most robots share the default table, and its looks.
+  auto shared = std::find_if(tables_.begin(), tables_.end(), [&](const Table& table) {
+    return shared_looks_ && std::equal(table.materials.begin(), table.materials.end(), materials.begin(), materials.end());
+  });
+  if (shared == tables_.end()) {
+    tables_.push_back({looks_.size(), {materials.begin(), materials.end()}});
+    shared = tables_.end() - 1;
+    for (const render::Color color : material_colors(materials_of(robot), defaults)) looks_.push_back({.color = color});
+  }
+  table_of_.push_back(static_cast<std::size_t>(shared - tables_.begin()));
+  shapes_.emplace_back(robot, static_cast<std::uint32_t>(shared->first_look));
+  grown_.push_back(kind_of(robot) == "nn");
+  placements_.push_back({.offset = offset, .smooth = settings_.smooth || grown_.back()});
   render::Bounds rest = rest_bounds(robot).moved(-mean_position(robot));
   rest.low *= room_to_deform;
   rest.high *= room_to_deform;
@@ -154,8 +215,8 @@ void GroupScene::place(std::span<const Telemetry> telemetry) {
 void GroupScene::lengthen_paths(std::span<const Telemetry> telemetry) {
   constexpr std::size_t most_points = 2000;
   paths_.clear();
-  for (std::size_t i = 0; i < path_points_.size(); ++i) {
-    std::vector<float>& points = path_points_[i];
+  for (std::size_t i = 0; i < trails_.size(); ++i) {
+    std::vector<float>& points = trails_[i].points;
     const Vec3 now = telemetry[i].center_of_mass;
     if (!telemetry[i].exploded) points.insert(points.end(), {now.x, now.y, now.z});
     if (points.size() > 3 * most_points) points.erase(points.begin(), points.begin() + 3);
@@ -166,12 +227,12 @@ void GroupScene::lengthen_paths(std::span<const Telemetry> telemetry) {
 
 void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   std::vector<float> distances;
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    distances.push_back(telemetry[i].exploded ? -1 : (eigen(telemetry[i].center_of_mass) - start_[i]).norm());
+  for (std::size_t i = 0; i < trails_.size(); ++i)
+    distances.push_back(telemetry[i].exploded ? -1 : (eigen(telemetry[i].center_of_mass) - trails_[i].start).norm());
   // Nobody leads before somebody has moved.
-  const bool ranked = start_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
+  const bool ranked = trails_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
   labels_.clear();
-  for (std::size_t i = 0; i < start_.size(); ++i) {
+  for (std::size_t i = 0; i < trails_.size(); ++i) {
     const auto rank = 1 + std::count_if(distances.begin(), distances.end(), [&](float d) { return d > distances[i]; });
     std::string text = names_[i];
     if (telemetry[i].exploded)

@@ -16,11 +16,42 @@
 
 namespace mercury {
 
+// The robots of a group when its scene is made; referred to only until then.
+struct Group {
+  std::vector<const Robot*> robots;
+  std::vector<std::string> names;                    // one a robot
+  std::vector<std::span<const Material>> materials;  // one table a robot, as they are now
+  std::vector<Telemetry> telemetry;                  // one a robot
+  Environment environment;
+  bool shared_looks = true;  // robots of the same materials share them; else each has its own, which may change
+};
+Group group_of(const Simulation& simulation);
+
+// The way that a robot's centre of mass went.
+struct Trail {
+  Eigen::Vector3f start{0, 0, 0};  // [m]
+  std::vector<float> points;       // 3 each
+};
+
 // Keeps what Scene's spans refer to. Knows no OpenGL.
 class GroupScene {
  public:
   // `offsets`: one a robot, added to its coordinates.
-  GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
+  GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
+  GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+      : GroupScene(group_of(simulation), std::move(offsets), settings) {}
+
+  // Changes that need no new bodies; from the next update() on.
+  void set_settings(const ViewSettings& settings);
+  void set_environment(const Environment& environment);
+  void set_offsets(std::span<const Eigen::Vector3f> offsets);
+  void set_materials(std::size_t robot, std::span<const Material> materials);
+  void set_name(std::size_t robot, const std::string& name) { names_[robot] = name; }
+  void mark(std::size_t robot, bool selected, bool hidden);
+  // Trails begin anew.
+  void restart(std::span<const Telemetry> telemetry);
+  const std::vector<Trail>& trails() const { return trails_; }
+  void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
 
   // Gives the robots to a renderer; once, and again when the robots change.
   void set_bodies(render::Renderer& renderer) const;
@@ -39,7 +70,9 @@ class GroupScene {
     std::size_t first_look;
     std::vector<Material> materials;
   };
-  void add(const Robot& robot, const Eigen::Vector3f& offset);
+  void add(const Robot& robot, std::span<const Material> materials, const Eigen::Vector3f& offset);
+  void show_surroundings();
+  void place_floor();
   void place(std::span<const Telemetry> telemetry);
   void lengthen_paths(std::span<const Telemetry> telemetry);
   void write_labels(std::span<const Telemetry> telemetry);
@@ -54,11 +87,14 @@ class GroupScene {
   std::vector<render::Placement> placements_;
   std::vector<render::Bounds> rest_;  // about the centre of mass at rest
   std::vector<render::Bounds> bounds_;
-  std::vector<Eigen::Vector3f> start_;      // centres of mass when the scene was made
-  std::vector<std::vector<float>> path_points_;
+  std::vector<std::size_t> table_of_;  // one a robot
+  std::vector<bool> grown_;            // robots drawn smooth whatever the settings
+  bool shared_looks_;
+  Environment environment_;
+  std::vector<Trail> trails_;
   std::vector<render::Path> paths_;
   std::vector<render::Label> labels_;
-  std::vector<std::pair<render::Color, std::string>> swatches_;
+  std::vector<std::pair<render::Color, std::string>> swatches_;  // of the legend of materials
   SceneDetails details_;
   render::Scene scene_;
 };

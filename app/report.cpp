@@ -14,13 +14,6 @@ namespace {
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return quoted + "\"";
-}
-
 std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 nlohmann::ordered_json json_of(const RobotResult& robot) {
@@ -57,6 +50,13 @@ std::size_t RunReport::springs() const {
 
 double RunReport::springs_per_second() const {
   return wall_seconds > 0 ? static_cast<double>(springs()) * static_cast<double>(steps) / wall_seconds : 0;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + "\"";
 }
 
 std::string table_of(const RunReport& report) {

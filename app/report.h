@@ -36,6 +36,9 @@ struct RunReport {
   double springs_per_second() const;
 };
 
+// A field of a CSV line, quoted where it must be (RFC 4180).
+std::string csv_field(const std::string& text);
+
 std::string table_of(const RunReport& report);
 // One line a robot under a line of names; fields with commas or quotes are quoted (RFC 4180).
 std::string csv_of(const RunReport& report);

@@ -19,9 +19,9 @@ constexpr std::size_t most_robots = 1'000'000;
 
 void RobotOptions::add_to(CLI::App& command) {
   command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
-  command.add_option("--random", random_, "So many random robots; may be given several times")
+  command.add_option("--random", random_, "So many random robots, of --seed or one of their own, from the first or another; may be given several times")
       ->allow_extra_args(false)
-      ->type_name("voxel:N|nn:N")
+      ->type_name("voxel:N[:SEED[:FIRST]]|nn:...")
       ->group("Robots");
   add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
   voxel_.add_to(command);
@@ -50,23 +50,28 @@ std::vector<Robot> RobotOptions::load() const {
 }
 
 std::vector<Robot> RobotOptions::random_robots(const std::string& request) const {
-  const std::size_t colon = request.find(':');
-  const std::string kind = request.substr(0, colon);
-  std::size_t count = 1;
-  if (colon != std::string::npos) count = number_from<std::uint64_t>("--random", request.substr(colon + 1));
+  const std::vector<std::string_view> parts = split(request, ':');
+  const std::string_view kind = parts.front();
+  const auto number = [&](std::size_t place, std::uint64_t otherwise) {
+    return place < parts.size() ? number_from<std::uint64_t>("--random", parts[place]) : otherwise;
+  };
+  const std::size_t count = number(1, 1);
+  const std::uint64_t seed = number(2, seed_), first = number(3, 0);
   if (count < 1 || count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
-  if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed_, count);
-  if (kind == "nn") return random_network_robots(count);
-  throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
+  if (parts.size() > 4 || (kind != "voxel" && kind != "nn"))
+    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N, and a seed and the first "
+                                             "one's number as in voxel:N:SEED:FIRST if need be", request));
+  if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed, count, first);
+  return random_network_robots(count, seed, first);
 }
 
-std::vector<Robot> RobotOptions::random_network_robots(std::size_t count) const {
+std::vector<Robot> RobotOptions::random_network_robots(std::size_t count, std::uint64_t seed, std::uint64_t first) const {
   std::vector<FailedRobot> failed;
-  std::vector<Robot> robots = random_nn_robots(nn_.chosen(), seed_, count, 0, &failed);
+  std::vector<Robot> robots = random_nn_robots(nn_.chosen(), seed, count, first, &failed);
   if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
   for (const FailedRobot& robot : failed)
-    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", seed_, robot.index, robot.reason);
+    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", seed, robot.index, robot.reason);
   return robots;
 }
 

@@ -34,7 +34,7 @@ class RobotOptions {
 
  private:
   std::vector<Robot> random_robots(const std::string& request) const;
-  std::vector<Robot> random_network_robots(std::size_t count) const;
+  std::vector<Robot> random_network_robots(std::size_t count, std::uint64_t seed, std::uint64_t first) const;
 
   std::vector<std::string> paths_;   // files and folders
   std::vector<std::string> random_;  // "voxel:12", "nn:4"

@@ -25,6 +25,8 @@ class DetailObserver {
   // Throws InputError when the environment has no such quantity.
   DetailObserver(const Simulation& simulation, const ViewSettings& settings);
   SceneDetails observe(std::span<const Telemetry> telemetry);
+  // What the values are values of.
+  ColorBy color() const { return coloring_ ? coloring_->by() : ColorBy::material; }
 
  private:
   const Simulation& simulation_;

@@ -107,6 +107,13 @@ struct Simulation::Parts {
     backend->set_status(robot, {});
   }
 
+  void restore(const Snapshot& snapshot) {
+    for (std::size_t i = 0; i < snapshot.states.size(); ++i) {
+      backend->write(i, snapshot.states[i].positions, snapshot.states[i].velocities);
+      backend->set_status(i, snapshot.statuses[i]);
+    }
+  }
+
   void load() {
     std::vector<const Robot*> pointers;
     pointers.reserve(size());
@@ -156,13 +163,40 @@ std::size_t Simulation::add(std::span<const Robot> robots) {
   }
   parts_->load();
   parts_->backend->write_materials(parts_->materials);
-  for (std::size_t i = 0; i < first; ++i) {
-    parts_->backend->write(i, before.states[i].positions, before.states[i].velocities);
-    parts_->backend->set_status(i, before.statuses[i]);
-  }
+  parts_->restore(before);
   if (std::holds_alternative<Land>(parts_->configuration.environment))
     for (std::size_t i = first; i < size(); ++i) parts_->put_at_rest(i);
   return first;
+}
+
+void Simulation::keep(std::span<const std::size_t> robots) {
+  std::vector<bool> kept(size());
+  for (const std::size_t i : robots) {
+    parts_->require(i);
+    if (kept[i]) throw std::invalid_argument("a robot can be kept only once");
+    kept[i] = true;
+  }
+  parts_->backend->set_pulls({});
+  if (robots.size() == size() && std::ranges::is_sorted(robots)) return;
+  Snapshot after;
+  std::vector<std::unique_ptr<Robot>> bodies;
+  std::vector<Material> materials;
+  std::vector<std::size_t> offsets{0};
+  for (const std::size_t i : robots) {
+    after.states.push_back(state(i));
+    after.statuses.push_back(parts_->backend->status(i));
+    const auto table = parts_->table(i);
+    materials.insert(materials.end(), table.begin(), table.end());
+    offsets.push_back(offsets.back() + parts_->masses(i));
+    bodies.push_back(std::move(parts_->robots[i]));
+  }
+  // The robots that leave live on until the backend has let them go.
+  std::swap(parts_->robots, bodies);
+  parts_->materials = std::move(materials);
+  parts_->offsets = std::move(offsets);
+  parts_->load();
+  parts_->backend->write_materials(parts_->materials);
+  parts_->restore(after);
 }
 
 std::size_t Simulation::size() const { return parts_->size(); }

@@ -50,6 +50,10 @@ class Simulation {
   std::size_t add(std::span<const Robot> robots);
   std::size_t add(const Robot& robot) { return add(std::span(&robot, 1)); }
 
+  // Keeps these robots, in this order, with their state, materials and explosions; the others leave, pulls let go, and
+  // time stays. Throws std::out_of_range for one that is not there, std::invalid_argument for one named twice.
+  void keep(std::span<const std::size_t> robots);
+
   std::size_t size() const;                       // robots
   const Robot& robot(std::size_t index) const;    // as it was added
   const Configuration& configuration() const;

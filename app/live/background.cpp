@@ -1,0 +1,115 @@
+#include "app/live/background.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace mercury {
+
+struct Background::Parts {
+  struct Task {
+    std::uint64_t id;
+    std::string name;
+    std::int64_t total;
+    Piece piece;
+    std::shared_ptr<WorkControl> control = std::make_shared<WorkControl>();
+  };
+
+  explicit Parts(Messages& all) : messages(all) {}
+
+  Messages& messages;
+  std::mutex mutex;
+  std::condition_variable begun, ended;
+  std::deque<Task> waiting;
+  std::optional<Task> present;
+  std::vector<Finish> finished;
+  std::uint64_t last_id = 0;
+  bool quit = false;
+  std::thread thread;
+
+  void run() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      begun.wait(lock, [&] { return quit || !waiting.empty(); });
+      if (quit) return;
+      present = std::move(waiting.front());
+      waiting.pop_front();
+      lock.unlock();
+      Finish finish = done(*present);
+      lock.lock();
+      if (finish && !present->control->cancelled()) finished.push_back(std::move(finish));
+      present.reset();
+      ended.notify_all();
+    }
+  }
+
+  Finish done(Task& task) {
+    try {
+      if (!task.control->cancelled()) return task.piece(*task.control);
+    } catch (const std::bad_alloc&) {
+      messages.add(Severity::error, task.name + ": not enough memory");
+    } catch (const std::exception& error) {
+      messages.add(Severity::error, error.what());
+    }
+    return {};
+  }
+};
+
+Background::Background(Messages& messages) : parts_(std::make_unique<Parts>(messages)) {
+  parts_->thread = std::thread([parts = parts_.get()] { parts->run(); });
+}
+
+Background::~Background() {
+  {
+    const std::lock_guard lock(parts_->mutex);
+    parts_->quit = true;
+    if (parts_->present) parts_->present->control->cancel();
+    parts_->begun.notify_all();
+  }
+  parts_->thread.join();
+}
+
+std::uint64_t Background::begin(std::string name, std::int64_t total, Piece piece) {
+  const std::lock_guard lock(parts_->mutex);
+  parts_->waiting.push_back({++parts_->last_id, std::move(name), total, std::move(piece)});
+  parts_->begun.notify_all();
+  return parts_->last_id;
+}
+
+void Background::cancel(std::uint64_t id) {
+  const std::lock_guard lock(parts_->mutex);
+  if (parts_->present && parts_->present->id == id) parts_->present->control->cancel();
+  std::erase_if(parts_->waiting, [&](const Parts::Task& task) { return task.id == id; });
+  parts_->ended.notify_all();
+}
+
+std::vector<Work> Background::work() const {
+  const std::lock_guard lock(parts_->mutex);
+  std::vector<Work> all;
+  const auto add = [&](const Parts::Task& task) { all.push_back({task.id, task.name, task.control->done(), task.total}); };
+  if (parts_->present) add(*parts_->present);
+  for (const Parts::Task& task : parts_->waiting) add(task);
+  return all;
+}
+
+bool Background::finish_done() {
+  std::vector<Finish> finished;
+  {
+    const std::lock_guard lock(parts_->mutex);
+    finished.swap(parts_->finished);
+  }
+  for (const Finish& finish : finished) finish();
+  return !finished.empty();
+}
+
+void Background::wait() {
+  std::unique_lock lock(parts_->mutex);
+  parts_->ended.wait(lock, [&] { return !parts_->present && parts_->waiting.empty(); });
+}
+
+}  // namespace mercury

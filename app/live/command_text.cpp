@@ -1,0 +1,258 @@
+#include "app/live/command_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <map>
+#include <type_traits>
+
+namespace mercury {
+namespace {
+
+// Appends an option unless it has its default.
+class Options {
+ public:
+  template <class Value>
+  void number(const char* name, Value value, Value usual) {
+    if (value != usual) values_.emplace_back(name, fmt::format("{}", value));
+  }
+  void vector(const char* name, Vec3 value, Vec3 usual) {
+    if (value != usual) values_.emplace_back(name, fmt::format("{},{},{}", value.x, value.y, value.z));
+  }
+  void text(const char* name, const std::string& value, std::string_view usual) {
+    if (value != usual) values_.emplace_back(name, value);
+  }
+  void flag(const char* name, bool given) {
+    if (given) values_.emplace_back(name, "");
+  }
+  OptionValues take() { return std::move(values_); }
+
+ private:
+  OptionValues values_;
+};
+
+void add(Options& options, const Ocean& e) {
+  const Ocean usual;
+  options.number("--density", e.density, usual.density);
+  options.number("--drag-coefficient", e.drag_coefficient, usual.drag_coefficient);
+  options.number("--lift-coefficient", e.lift_coefficient, usual.lift_coefficient);
+  options.vector("--flow", e.flow, usual.flow);
+}
+
+void add(Options& options, const OceanSimple& e) {
+  options.number("--point-drag", e.point_drag, OceanSimple{}.point_drag);
+  options.vector("--flow", e.flow, OceanSimple{}.flow);
+}
+
+void add(Options& options, const Land& e) {
+  const Land usual;
+  options.number("--friction", e.friction, usual.friction);
+  options.number("--contact-stiffness", e.contact_stiffness, usual.contact_stiffness);
+  options.flag("--no-self-collision", !e.self_collision);
+}
+
+std::string size_text(const std::array<int, 3>& size) { return fmt::format("{}x{}x{}", size[0], size[1], size[2]); }
+
+constexpr const char* mirror_names[] = {"none", "x", "y", "z"};
+
+std::string shown_text(const Shown& shown) {
+  const std::pair<const char*, bool> items[] = {
+      {"skin", shown.skin},          {"springs", shown.springs},     {"masses", shown.masses},
+      {"drag", shown.arrows.drag},   {"lift", shown.arrows.lift},    {"velocity", shown.arrows.velocity},
+      {"gravity", shown.arrows.gravity}, {"path", shown.path},       {"labels", shown.labels},
+      {"legend", shown.legend},      {"clock", shown.clock},         {"scale", shown.scale_bar}};
+  std::vector<std::string> words;
+  for (const auto& [name, on] : items)
+    if (on) words.push_back(name);
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+std::string cut_text(const render::CutPlane& cut) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(cut.normal[axis]) > 0.99f)
+      return fmt::format("{}{}:{}", cut.normal[axis] < 0 ? "-" : "", "xyz"[axis], cut.normal[axis] * cut.offset);
+  return "x";
+}
+
+// Degrees that give these radians again.
+float degrees(float radians) { return radians * 180 / std::numbers::pi_v<float>; }
+
+std::string camera_text(const CameraPlan& camera) {
+  std::string text(name_of(camera.mode));
+  if (camera.mode == CameraMode::follow && !camera.robot.empty()) text.append(":").append(camera.robot);
+  return text;
+}
+
+void append(std::string& line, const OptionValues& options) {
+  for (const auto& [name, value] : options) {
+    line.append(" ").append(name);
+    // Joined, so that a value with a dash in front is not taken for an option.
+    if (!value.empty()) line.append("=").append(shell_quoted(value));
+  }
+}
+
+// Robots of one generation that stand for `--random KIND:COUNT:SEED:FIRST`.
+struct Run {
+  std::shared_ptr<const Generation> generation;
+  std::uint64_t first, count;
+};
+
+std::vector<Run> runs_of(const SceneDocument& document) {
+  std::vector<Run> runs;
+  for (const DocumentRobot& robot : document.robots) {
+    const auto& [file, generation, index] = robot.source;
+    if (!file.empty() || !generation) continue;
+    if (!runs.empty() && runs.back().generation == generation && runs.back().first + runs.back().count == index)
+      ++runs.back().count;
+    else
+      runs.push_back({generation, index, 1});
+  }
+  return runs;
+}
+
+OptionValues options_of(const Generation& generation) {
+  return generation.kind == Generation::Kind::voxel ? options_of(generation.voxel) : options_of(generation.network);
+}
+
+std::string toml_value(const std::string& text) {
+  char* end = nullptr;
+  (void)std::strtod(text.c_str(), &end);
+  const bool number = !text.empty() && *end == 0 && text != "inf" && text != "nan";
+  return number ? text : fmt::format("\"{}\"", text);
+}
+
+}  // namespace
+
+OptionValues options_of(const Configuration& configuration) {
+  Options options;
+  const Configuration usual;
+  options.text("--device", name_of(configuration.device), "auto");
+  options.number("--threads", configuration.device.threads, 0);
+  // Always told: without it the robots would choose.
+  options.text("--environment", std::string(name_of(configuration.environment)), "");
+  options.text("--solver", std::string(name_of(configuration.solver)), name_of(usual.solver));
+  options.number("--dt", configuration.dt, usual.dt);
+  options.number("--damping", configuration.damping, usual.damping);
+  std::visit(
+      [&]<class Kind>(const Kind& kind) {
+        add(options, kind);
+        options.vector("--gravity", kind.gravity, Kind{}.gravity);
+        options.number("--stiffness-scale", kind.stiffness_scale, Kind{}.stiffness_scale);
+      },
+      configuration.environment);
+  return options.take();
+}
+
+OptionValues options_of(const ViewSettings& settings) {
+  Options options;
+  const ViewSettings usual;
+  const bool race = settings.layout == Layout::race;
+  options.text("--color", std::string(name_of(settings.color)), "material");
+  if (settings.scale) options.text("--scale", fmt::format("{},{}", settings.scale->first, settings.scale->second), "");
+  Shown shown;
+  shown.legend = settings.color != ColorBy::material;
+  shown.labels = shown.path = race;
+  const std::string text = shown_text(settings.shown);
+  if (!text.empty()) options.text("--show", text, shown_text(shown));
+  options.text("--theme", settings.theme == render::Theme::light ? "light" : "dark", "dark");
+  options.flag("--smooth", settings.smooth);
+  if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
+  options.text("--layout", race ? "race" : "grid", "grid");
+  if (settings.grid && !race) options.text("--grid", fmt::format("{}x{}", settings.grid->columns, settings.grid->rows), "");
+  options.text("--camera", camera_text(settings.camera), "group");
+  if (settings.camera.azimuth) options.number("--azimuth", degrees(*settings.camera.azimuth), NAN);
+  if (settings.camera.elevation) options.number("--elevation", degrees(*settings.camera.elevation), NAN);
+  options.number("--zoom", settings.camera.zoom, 1.0f);
+  return options.take();
+}
+
+OptionValues options_of(const RandomVoxelOptions& voxel) {
+  Options options;
+  const RandomVoxelOptions usual;
+  if (voxel.smallest != usual.smallest || voxel.largest != usual.largest)
+    options.text("--voxels", size_text(voxel.smallest) + ".." + size_text(voxel.largest), "");
+  options.number("--edge", voxel.edge, usual.edge);
+  options.number("--air", voxel.air, usual.air);
+  options.text("--symmetry", mirror_names[static_cast<std::size_t>(voxel.mirror)],
+               mirror_names[static_cast<std::size_t>(usual.mirror)]);
+  options.number("--patch", voxel.patch, usual.patch);
+  options.number("--muscle", voxel.muscle, usual.muscle);
+  options.number("--tissue", voxel.tissue, usual.tissue);
+  options.number("--bone", voxel.bone, usual.bone);
+  options.number("--frequencies", voxel.frequencies, usual.frequencies);
+  return options.take();
+}
+
+OptionValues options_of(const NnOptions& network) {
+  Options options;
+  const NnOptions usual;
+  options.number("--points", network.points, usual.points);
+  if (network.hidden != usual.hidden) options.text("--hidden", fmt::format("{}", fmt::join(network.hidden, ",")), "");
+  options.number("--alpha", network.alpha, usual.alpha);
+  options.number("--mirrored", network.mirrored, usual.mirrored);
+  return options.take();
+}
+
+CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand) {
+  CommandText command{.text = fmt::format("mercury {}", subcommand)};
+  for (const DocumentRobot& robot : document.robots) {
+    const std::string& name = robot.body.name;
+    if (robot.source.file.empty() && !robot.source.generation)
+      command.notes.push_back(name + " is in no file; save it first");
+    else if (robot.body.materials)
+      command.notes.push_back(name + ": the changed materials are not in the command; save it first");
+    if (robot.source.file.empty()) continue;
+    const std::string& file = robot.source.file;
+    command.text.append(" ").append(shell_quoted(file.starts_with('-') ? fmt::format("./{}", file) : file));
+  }
+  OptionValues options;
+  std::map<Generation::Kind, OptionValues> shapes;
+  for (const Run& run : runs_of(document)) {
+    const Generation& generation = *run.generation;
+    const bool voxel = generation.kind == Generation::Kind::voxel;
+    command.text += fmt::format(" --random {}:{}:{}", voxel ? "voxel" : "nn", run.count, generation.seed);
+    if (run.first > 0) command.text += fmt::format(":{}", run.first);
+    const OptionValues shape = options_of(generation);
+    const auto [first, is_new] = shapes.emplace(generation.kind, shape);
+    if (is_new) options.insert(options.end(), shape.begin(), shape.end());
+    else if (first->second != shape)
+      command.notes.push_back("random robots of one kind share the first one's options in the command; save the others");
+  }
+  append(command.text, options);
+  append(command.text, options_of(document.configuration));
+  append(command.text, options_of(settings));
+  if (subcommand == "render") command.text += " -o scene.mp4";
+  std::ranges::sort(command.notes);
+  command.notes.erase(std::unique(command.notes.begin(), command.notes.end()), command.notes.end());
+  return command;
+}
+
+std::string shell_quoted(const std::string& word) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char letter : word) {
+    if (letter == '\'') quoted += "'\\''";
+    else quoted += letter;
+  }
+  return quoted + "'";
+}
+
+std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment) {
+  std::string text = "# ";
+  for (const char letter : comment) {
+    text += letter;
+    if (letter == '\n') text += "# ";
+  }
+  text += "\n";
+  for (const auto& [name, value] : options_of(configuration))
+    text += fmt::format("{} = {}\n", name.substr(2), value.empty() ? "true" : toml_value(value));
+  return text + fmt::format("seconds = {}\n", seconds);
+}
+
+}  // namespace mercury

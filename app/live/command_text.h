@@ -1,0 +1,35 @@
+// A scene as a line for the shell.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/live/scene_document.h"
+#include "app/view_settings.h"
+
+namespace mercury {
+
+struct CommandText {
+  std::string text;                // "mercury view eel.json --random voxel:12 --seed 4"
+  std::vector<std::string> notes;  // what the line cannot say, as unsaved robots
+};
+
+using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt", "0.002"; a switch has no value
+
+// The options that differ from the defaults.
+OptionValues options_of(const Configuration& configuration);
+OptionValues options_of(const ViewSettings& settings);
+OptionValues options_of(const RandomVoxelOptions& options);
+OptionValues options_of(const NnOptions& options);
+
+// `subcommand` "view" or "render"; the latter writes scene.mp4.
+CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand);
+
+// A word as the shell takes it, in quotes where it needs them.
+std::string shell_quoted(const std::string& word);
+
+// A configuration, and how long to simulate, as a file for --config.
+std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment);
+
+}  // namespace mercury

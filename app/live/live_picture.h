@@ -1,0 +1,43 @@
+// The newest moment as a scene to draw: where the robots stand, what they look like.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "app/group_scene.h"
+#include "app/live/moment.h"
+
+namespace mercury {
+
+// Knows no OpenGL but for handing bodies to a renderer.
+class LivePicture {
+ public:
+  LivePicture();
+  ~LivePicture();
+
+  // Brings the scene to a moment, which is kept until the next one.
+  void update(std::shared_ptr<const Moment> moment, const ViewSettings& settings, float aspect,
+              const std::set<RobotId>& selected, const std::set<RobotId>& hidden);
+  // Robots stand anew in rows that suit the picture and the settings' camera angles.
+  void lay_out(float aspect);
+
+  // Grows when the renderer must be given the bodies anew: call set_bodies() before drawing then.
+  std::uint64_t bodies_revision() const;
+  void set_bodies(render::Renderer& renderer) const;
+  // Positions included. The caller may change caption, clock, labels and the like until the next update.
+  render::Scene& scene();
+  // One a robot of the moment, in the picture; those of exploded robots are empty, unless all have exploded.
+  std::span<const render::Bounds> bounds() const;
+  // Added to the robots' own coordinates [m].
+  std::span<const Eigen::Vector3f> offsets() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury

@@ -1,0 +1,245 @@
+// Time, selection, hands and measures of the window's scene.
+#include "app/live/live_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/eigen_vec3.h"
+#include "app/live/live_scene_parts.h"
+#include "app/report.h"
+
+namespace mercury {
+namespace {
+
+constexpr double slowest = 1e-3, fastest = 100;
+
+constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0,
+                            unlimited_speed};
+
+// So stiff that the robot follows the hand, and not so stiff that the mass is torn out or the step too long for it.
+float suitable_stiffness(const LiveRobot& robot, const Configuration& configuration) {
+  float stiffest = 1;
+  for (const Spring& spring : robot.robot->springs)
+    stiffest = std::max(stiffest, materials_of(robot)[spring.material].stiffness);
+  const float per_mass = length(gravity_of(configuration.environment)) > 0 ? 60.0f : 4.0f;
+  const float of_body = per_mass * static_cast<float>(robot.robot->masses.size());
+  const float of_springs = 6 * stiffest * stiffness_scale_of(configuration.environment);
+  const auto of_step = static_cast<float>(0.05 / (configuration.dt * configuration.dt));
+  return std::max(1e-3f, std::min({of_body, of_springs, of_step}));
+}
+
+}  // namespace
+
+LiveScene::LiveScene(const LiveSceneOptions& options) : parts_(std::make_unique<Parts>(options)) {
+  parts_->document.configuration = options.configuration;
+  parts_->physics.set_view(options.view);
+  frame();
+}
+
+LiveScene::~LiveScene() = default;
+
+void LiveScene::frame(float aspect) {
+  Parts& parts = *parts_;
+  if (std::isfinite(aspect) && aspect > 0) parts.aspect = aspect;
+  parts.background.finish_done();
+  parts.moment = parts.physics.newest();
+  if (parts.moment->stops != parts.stops) {
+    parts.stops = parts.moment->stops;
+    parts.playing = false;
+  }
+  std::erase_if(parts.selected, [&](RobotId id) { return !parts.document.find(id); });
+  if (parts.pull && !parts.document.find(parts.pull->robot)) end_pull();
+  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()}, parts.hidden);
+}
+
+const Moment& LiveScene::moment() const { return *parts_->moment; }
+std::shared_ptr<const Moment> LiveScene::hold_moment() const { return parts_->moment; }
+LivePicture& LiveScene::picture() { return parts_->picture; }
+std::vector<Message> LiveScene::take_messages() { return parts_->messages.take(); }
+std::string LiveScene::device_name() const { return parts_->physics.device_name(); }
+
+void LiveScene::play() {
+  parts_->playing = true;
+  parts_->physics.play();
+}
+void LiveScene::pause() {
+  parts_->playing = false;
+  parts_->physics.pause();
+}
+void LiveScene::toggle() { parts_->playing ? pause() : play(); }
+bool LiveScene::playing() const { return parts_->playing; }
+void LiveScene::step(std::int64_t count) {
+  parts_->playing = false;
+  parts_->physics.step(count);
+}
+void LiveScene::reset() { parts_->physics.reset(); }
+
+void LiveScene::set_speed(double speed) {
+  if (std::isnan(speed)) return;
+  parts_->speed = speed == unlimited_speed ? speed : std::clamp(speed, slowest, fastest);
+  parts_->physics.set_speed(parts_->speed);
+}
+double LiveScene::speed() const { return parts_->speed; }
+
+void LiveScene::change_speed(int notches) {
+  for (; notches > 0; --notches) {
+    const auto next = std::upper_bound(speeds.begin(), speeds.end(), parts_->speed * (1 + 1e-9));
+    if (next != speeds.end()) set_speed(*next);
+  }
+  for (; notches < 0; ++notches) {
+    const auto next = std::lower_bound(speeds.begin(), speeds.end(), parts_->speed * (1 - 1e-9));
+    if (next != speeds.begin()) set_speed(*(next - 1));
+  }
+}
+
+std::vector<RobotEntry> LiveScene::entries() const {
+  const Parts& parts = *parts_;
+  std::vector<RobotEntry> entries;
+  for (const DocumentRobot& robot : parts.document.robots) {
+    const Robot& body = *robot.body.robot;
+    RobotEntry entry{.id = robot.body.id,
+                     .name = robot.body.name,
+                     .masses = body.masses.size(),
+                     .springs = body.springs.size(),
+                     .faces = body.faces.size(),
+                     .file = parts.file_of(robot.body.id),
+                     .unsaved = !parts.is_saved(robot),
+                     .selected = is_selected(robot.body.id),
+                     .hidden = parts.hidden.contains(robot.body.id),
+                     .tuned = robot.body.materials != nullptr};
+    if (const auto index = parts.moment->robots->index_of(robot.body.id)) {
+      const Telemetry& telemetry = parts.moment->telemetry[*index];
+      entry.exploded = telemetry.exploded;
+      entry.exploded_at = telemetry.exploded_at;
+      entry.first_bad_spring = telemetry.first_bad_spring;
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+const SceneDocument& LiveScene::document() const { return parts_->document; }
+
+void LiveScene::select(RobotId robot, bool alone) {
+  if (!parts_->document.find(robot)) return;
+  if (alone) parts_->selected.clear();
+  std::erase(parts_->selected, robot);
+  parts_->selected.push_back(robot);
+}
+void LiveScene::toggle_selected(RobotId robot) {
+  if (is_selected(robot))
+    std::erase(parts_->selected, robot);
+  else
+    select(robot, false);
+}
+void LiveScene::select_all() {
+  for (const DocumentRobot& robot : parts_->document.robots)
+    if (!is_selected(robot.body.id)) parts_->selected.push_back(robot.body.id);
+}
+void LiveScene::clear_selection() { parts_->selected.clear(); }
+bool LiveScene::is_selected(RobotId robot) const { return std::ranges::find(parts_->selected, robot) != parts_->selected.end(); }
+
+std::vector<RobotId> LiveScene::selection() const {
+  std::vector<RobotId> ordered;
+  const std::set<RobotId> selected(parts_->selected.begin(), parts_->selected.end());
+  for (const DocumentRobot& robot : parts_->document.robots)
+    if (selected.contains(robot.body.id)) ordered.push_back(robot.body.id);
+  return ordered;
+}
+std::optional<RobotId> LiveScene::current() const {
+  for (auto id = parts_->selected.rbegin(); id != parts_->selected.rend(); ++id)
+    if (parts_->document.find(*id)) return *id;
+  return std::nullopt;
+}
+void LiveScene::set_hidden(RobotId robot, bool hidden) {
+  if (hidden)
+    parts_->hidden.insert(robot);
+  else
+    parts_->hidden.erase(robot);
+}
+
+std::vector<Work> LiveScene::work() const { return parts_->background.work(); }
+void LiveScene::cancel_work(std::uint64_t work) { parts_->background.cancel(work); }
+void LiveScene::wait_for_work() {
+  parts_->background.wait();
+  parts_->background.finish_done();
+}
+void LiveScene::wait_until_done() {
+  wait_for_work();
+  parts_->physics.wait_until_done();
+  frame(parts_->aspect);
+}
+
+std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
+  const Shown& shown = parts_->view.shown;
+  const Moment& moment = *parts_->moment;
+  const auto hidden = std::make_unique<bool[]>(moment.robots->size());
+  for (std::size_t i = 0; i < moment.robots->size(); ++i) hidden[i] = parts_->hidden.contains(moment.robots->robots[i].id);
+  return mercury::pick(moment, parts_->picture.offsets(), ray,
+                       {.skin = shown.skin,
+                        .springs = shown.springs,
+                        .masses = shown.masses,
+                        .cut = parts_->view.cut,
+                        .hidden = {hidden.get(), moment.robots->size()}});
+}
+
+HitFigures LiveScene::describe(const Hit& hit) const { return mercury::describe(*parts_->moment, hit); }
+
+void LiveScene::begin_pull(const Hit& hit, float stiffness) {
+  const auto index = parts_->moment->robots->index_of(hit.robot);
+  if (!index || hit.mass >= parts_->moment->positions_of(*index).size()) return;
+  const LiveRobot& robot = parts_->moment->robots->robots[*index];
+  const float suitable = suitable_stiffness(robot, parts_->document.configuration);
+  const bool usable = std::isfinite(stiffness) && stiffness > 0;
+  parts_->pull = LivePull{.robot = hit.robot,
+                          .mass = hit.mass,
+                          .target = parts_->moment->positions_of(*index)[hit.mass],
+                          .stiffness = usable ? stiffness : suitable};
+  parts_->send_pull();
+}
+
+void LiveScene::move_pull(const Eigen::Vector3f& target) {
+  if (!parts_->pull || !target.allFinite()) return;
+  const auto index = parts_->moment->robots->index_of(parts_->pull->robot);
+  if (!index || *index >= parts_->picture.offsets().size()) return;
+  const Eigen::Vector3f own = target - parts_->picture.offsets()[*index];
+  parts_->pull->target = {own.x(), own.y(), own.z()};
+  parts_->send_pull();
+}
+
+void LiveScene::set_pull_stiffness(float stiffness) {
+  if (!parts_->pull || !std::isfinite(stiffness) || !(stiffness > 0)) return;
+  parts_->pull->stiffness = stiffness;
+  parts_->send_pull();
+}
+
+void LiveScene::end_pull() {
+  parts_->pull.reset();
+  parts_->send_pull();
+}
+
+std::optional<PullFigures> LiveScene::pull() const {
+  if (!parts_->pull) return std::nullopt;
+  const LivePull& pull = *parts_->pull;
+  const auto index = parts_->moment->robots->index_of(pull.robot);
+  if (!index || *index >= parts_->picture.offsets().size()) return std::nullopt;
+  const Eigen::Vector3f offset = parts_->picture.offsets()[*index];
+  const Vec3 mass = parts_->moment->positions_of(*index)[pull.mass];
+  return PullFigures{.robot = pull.robot,
+                     .mass = pull.mass,
+                     .at = eigen(mass) + offset,
+                     .target = eigen(pull.target) + offset,
+                     .stiffness = pull.stiffness,
+                     .force = pull.stiffness * length(pull.target - mass)};
+}
+
+Series LiveScene::series(RobotId robot) const { return parts_->physics.measurements().series(robot); }
+std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
+
+std::vector<Explosion> LiveScene::take_explosions() { return parts_->physics.take_explosions(); }
+void LiveScene::pause_on_explosion(bool pause) { parts_->physics.pause_on_explosion(pause); }
+
+}  // namespace mercury

@@ -1,0 +1,181 @@
+// Edits of the window's scene: robots, parameters, materials, and taking them back.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/live/live_scene_parts.h"
+#include "sim/error.h"
+
+namespace mercury {
+
+std::string LiveScene::Parts::free_name(const std::string& wanted) const {
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::any_of(document.robots, [&](const DocumentRobot& robot) { return robot.body.name == name; });
+  };
+  if (!taken(wanted)) return wanted;
+  for (int number = 2;; ++number)
+    if (std::string name = fmt::format("{}-{}", wanted, number); !taken(name)) return name;
+}
+
+bool LiveScene::Parts::change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
+                                        const std::function<bool(DocumentRobot&)>& change) {
+  SceneDocument after = document;
+  bool any = false;
+  for (const RobotId id : robots)
+    for (DocumentRobot& robot : after.robots)
+      if (robot.body.id == id) any = change(robot) || any;
+  if (!any) return true;
+  edit(name, key);
+  document = std::move(after);
+  told();
+  return true;
+}
+
+void LiveScene::remove(const std::vector<RobotId>& robots) {
+  const std::set<RobotId> going(robots.begin(), robots.end());
+  const auto goes = [&](const DocumentRobot& robot) { return going.contains(robot.body.id); };
+  const auto count = std::ranges::count_if(parts_->document.robots, goes);
+  if (count == 0) return;
+  parts_->edit("remove " + robots_counted(static_cast<std::size_t>(count)));
+  std::erase_if(parts_->document.robots, goes);
+  parts_->told();
+}
+
+void LiveScene::clear() {
+  std::vector<RobotId> all;
+  for (const DocumentRobot& robot : parts_->document.robots) all.push_back(robot.body.id);
+  remove(all);
+}
+
+void LiveScene::duplicate(const std::vector<RobotId>& robots) {
+  std::vector<DocumentRobot> originals;
+  for (const RobotId id : robots)
+    if (const DocumentRobot* robot = parts_->document.find(id)) originals.push_back(*robot);
+  if (originals.empty()) return;
+  parts_->edit("duplicate " + robots_counted(originals.size()));
+  for (DocumentRobot& copy : originals) {
+    copy.body.id = ++parts_->last_id;
+    copy.body.name = parts_->free_name(copy.body.name);
+    parts_->document.robots.push_back(std::move(copy));
+  }
+  parts_->told();
+}
+
+void LiveScene::rename(RobotId robot, const std::string& name) {
+  DocumentRobot* found = parts_->find(robot);
+  if (!found || name.empty() || found->body.name == name) return;
+  parts_->edit("rename " + found->body.name);
+  found->body.name = name;
+  parts_->told();
+}
+
+bool LiveScene::can_undo() const { return parts_->history.can_undo(); }
+bool LiveScene::can_redo() const { return parts_->history.can_redo(); }
+std::string LiveScene::undo_name() const { return parts_->history.undo_name(); }
+std::string LiveScene::redo_name() const { return parts_->history.redo_name(); }
+void LiveScene::end_edit() { parts_->history.end_edit(); }
+
+void LiveScene::undo() {
+  if (!can_undo()) return;
+  parts_->history.undo(parts_->document);
+  parts_->told();
+}
+void LiveScene::redo() {
+  if (!can_redo()) return;
+  parts_->history.redo(parts_->document);
+  parts_->told();
+}
+
+const Configuration& LiveScene::configuration() const { return parts_->document.configuration; }
+
+bool LiveScene::set_configuration(const Configuration& configuration) {
+  Configuration wanted = configuration;
+  wanted.device = parts_->document.configuration.device;
+  if (wanted == parts_->document.configuration) return true;
+  try {
+    validate(wanted);
+  } catch (const InputError& error) {
+    parts_->say(Severity::warning, error.what());
+    return false;
+  }
+  parts_->edit("change parameters", "parameters");
+  parts_->document.configuration = wanted;
+  parts_->told();
+  return true;
+}
+
+void LiveScene::reset_configuration() {
+  end_edit();
+  Configuration usual;
+  usual.environment = environment_named(name_of(configuration().environment));
+  set_configuration(usual);
+  end_edit();
+}
+
+std::span<const Material> LiveScene::materials(RobotId robot) const {
+  const DocumentRobot* found = parts_->document.find(robot);
+  return found ? materials_of(found->body) : std::span<const Material>{};
+}
+
+bool LiveScene::set_material(const std::vector<RobotId>& robots, MaterialId id, const Material& material) {
+  try {
+    validate(material, "material " + std::to_string(id));
+  } catch (const InputError& error) {
+    parts_->say(Severity::warning, error.what());
+    return false;
+  }
+  return parts_->change_materials(robots, "change a material", fmt::format("material {}", id), [&](DocumentRobot& robot) {
+    const auto now = materials_of(robot.body);
+    if (id == air || id >= now.size() || now[id] == material) return false;
+    auto table = std::make_shared<std::vector<Material>>(now.begin(), now.end());
+    (*table)[id] = material;
+    robot.body.materials = std::move(table);
+    return true;
+  });
+}
+
+bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale) {
+  if (!std::isfinite(scale.stiffness) || scale.stiffness < 0 || !std::isfinite(scale.amplitude) ||
+      !std::isfinite(scale.frequency) || !std::isfinite(scale.phase)) {
+    parts_->say(Severity::warning, "materials: give finite factors, that of the stiffness at least 0");
+    return false;
+  }
+  return parts_->change_materials(robots, "tune materials", "materials", [&](DocumentRobot& robot) {
+    const auto own = materials_of(*robot.body.robot);
+    auto table = std::make_shared<std::vector<Material>>(own.begin(), own.end());
+    for (std::size_t id = 1; id < table->size(); ++id) {
+      Material& material = (*table)[id];
+      material.stiffness = std::min(material.stiffness * scale.stiffness, 1e30f);
+      material.amplitude = std::clamp(material.amplitude * scale.amplitude, -0.99f, 0.99f);
+      material.frequency *= scale.frequency;
+      if (material.amplitude != 0) material.phase += scale.phase;
+    }
+    if (!std::ranges::all_of(*table, [](const Material& material) { return is_valid(material); })) return false;
+    if (std::ranges::equal(*table, materials_of(robot.body))) return false;
+    robot.body.materials = std::ranges::equal(*table, own) ? nullptr : std::move(table);
+    return true;
+  });
+}
+
+void LiveScene::reset_materials(const std::vector<RobotId>& robots) {
+  end_edit();
+  parts_->change_materials(robots, "reset materials", {}, [](DocumentRobot& robot) {
+    const bool tuned = robot.body.materials != nullptr;
+    robot.body.materials.reset();
+    return tuned;
+  });
+}
+
+const ViewSettings& LiveScene::view() const { return parts_->view; }
+void LiveScene::set_view(const ViewSettings& settings) {
+  const bool other_details = settings.color != parts_->view.color ||
+                             settings.shown.arrows.drag != parts_->view.shown.arrows.drag ||
+                             settings.shown.arrows.lift != parts_->view.shown.arrows.lift ||
+                             settings.shown.arrows.velocity != parts_->view.shown.arrows.velocity ||
+                             settings.shown.arrows.gravity != parts_->view.shown.arrows.gravity;
+  parts_->view = settings;
+  if (other_details) parts_->physics.set_view(settings);
+}
+
+}  // namespace mercury

@@ -1,0 +1,151 @@
+// What the window's scene writes: robots, commands, tables, what is needed to see an explosion again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <map>
+
+#include "app/live/live_scene_parts.h"
+#include "app/report.h"
+#include "robots/file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+}  // namespace
+
+SaveResult LiveScene::save(RobotId robot, const fs::path& path, bool overwrite) {
+  const DocumentRobot* found = parts_->document.find(robot);
+  if (!found) return failed("the robot is no longer there");
+  try {
+    const SaveResult result =
+        save_files({{path, serialize_robot(whole_robot(*found), robot_format_of(path))}}, overwrite);
+    if (result.ok()) parts_->saved[robot] = {path.string(), found->body};
+    return result;
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::path& folder, RobotFormat format,
+                               bool overwrite) {
+  std::vector<FileToSave> files;
+  std::vector<const DocumentRobot*> savers;
+  std::set<std::string> taken;
+  try {
+    for (const RobotId id : robots) {
+      const DocumentRobot* robot = parts_->document.find(id);
+      if (!robot) continue;
+      const std::string base = file_name_of(robot->body.name);
+      std::string name = base;
+      for (int count = 2; !taken.insert(name).second; ++count) name = fmt::format("{}-{}", base, count);
+      const fs::path path = folder / (name + (format == RobotFormat::json ? ".json" : ".cbor"));
+      files.push_back({path, serialize_robot(whole_robot(*robot), format)});
+      savers.push_back(robot);
+    }
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+  if (files.empty()) return failed("there is no robot to save");
+  const SaveResult result = save_files(files, overwrite);
+  for (std::size_t i = 0; i < savers.size() && result.ok(); ++i)
+    parts_->saved[savers[i]->body.id] = {files[i].path.string(), savers[i]->body};
+  return result;
+}
+
+CommandText LiveScene::command(const std::string& subcommand) const {
+  SceneDocument told = parts_->document;
+  for (DocumentRobot& robot : told.robots) {
+    const auto saved = parts_->saved.find(robot.body.id);
+    if (saved == parts_->saved.end()) continue;
+    robot.source.file = saved->second.file;
+    // What its file holds need not be told.
+    if (saved->second.body.robot == robot.body.robot && saved->second.body.materials == robot.body.materials)
+      robot.body.materials.reset();
+  }
+  return command_text(told, parts_->view, subcommand);
+}
+
+std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
+  std::string header = "time [s]";
+  std::map<double, std::size_t> rows;  // time -> row
+  std::vector<Series> all;
+  for (const RobotId id : robots) {
+    const DocumentRobot* robot = parts_->document.find(id);
+    if (!robot) continue;
+    for (const QuantityName& quantity : quantities())
+      header.append(",").append(csv_field(fmt::format("{} {} [{}]", robot->body.name, quantity.name, quantity.unit)));
+    all.push_back(series(id));
+    for (const double time : all.back().times) rows.emplace(time, 0);
+  }
+  std::vector<std::string> lines;
+  for (auto& [time, row] : rows) {
+    row = lines.size();
+    lines.push_back(number(time));
+  }
+  for (const Series& one : all) {
+    std::vector<bool> told(lines.size());
+    for (std::size_t i = 0; i < one.times.size(); ++i) {
+      const std::size_t row = rows.at(one.times[i]);
+      told[row] = true;
+      for (const QuantityName& quantity : quantities())
+        lines[row] += fmt::format(",{}", one.samples[i].of(quantity.quantity));
+    }
+    for (std::size_t row = 0; row < lines.size(); ++row)
+      if (!told[row]) lines[row].append(quantities().size(), ',');
+  }
+  std::string text = header + "\n";
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+std::string LiveScene::ranking_csv() const {
+  std::string text =
+      "name,distance [m],mean speed [m/s],speed [m/s],kinetic energy [J],elastic energy [J],largest strain,exploded at [s]\n";
+  std::vector<RankingRow> rows = ranking();
+  std::ranges::stable_sort(rows, std::greater<>(), &RankingRow::distance);
+  for (const RankingRow& row : rows) {
+    const DocumentRobot* robot = parts_->document.find(row.robot);
+    if (!robot) continue;
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(robot->body.name), row.distance, row.mean_speed, row.speed,
+                        row.kinetic_energy, row.elastic_energy, row.largest_strain,
+                        row.exploded ? number(row.exploded_at) : "");
+  }
+  return text;
+}
+
+SaveResult LiveScene::save_text(const fs::path& path, const std::string& text, bool overwrite) {
+  return save_files({{path, text}}, overwrite);
+}
+
+SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool overwrite) {
+  const DocumentRobot* found = parts_->document.find(robot);
+  if (!found) return failed("the robot is no longer there");
+  const Moment& moment = *parts_->moment;
+  const auto index = moment.robots->index_of(robot);
+  const Telemetry telemetry = index ? moment.telemetry[*index] : Telemetry{};
+  const double dt = parts_->document.configuration.dt;
+  const double seconds = (telemetry.exploded ? telemetry.exploded_at : moment.time) + 10 * dt;
+  const std::string name = file_name_of(found->body.name);
+  std::string comment = fmt::format("mercury run {}.json --config {}.toml", name, name);
+  if (telemetry.exploded) comment += fmt::format("\n{} exploded at {} s", name, telemetry.exploded_at);
+  if (telemetry.exploded && telemetry.first_bad_spring != no_spring)
+    comment += fmt::format("; first bad spring: {}", telemetry.first_bad_spring);
+  comment += "\nPulls by hand, and changes of parameters or materials on the way, are not part of it.";
+  try {
+    return save_files({{folder / (name + ".json"), serialize_robot(whole_robot(*found), RobotFormat::json)},
+                       {folder / (name + ".toml"), configuration_toml(parts_->document.configuration, seconds, comment)}},
+                      overwrite);
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+}  // namespace mercury

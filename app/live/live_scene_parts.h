@@ -1,0 +1,82 @@
+// What LiveScene holds.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/live/live_scene.h"
+
+namespace mercury {
+
+// What a file holds of a robot, as long as both are the same.
+struct SavedRobot {
+  std::string file;
+  LiveRobot body;
+};
+
+struct LiveScene::Parts {
+  explicit Parts(const LiveSceneOptions& options)
+      : physics(options.configuration, messages), view(options.view), background(messages) {}
+
+  Messages messages;
+  Physics physics;
+  SceneDocument document;
+  EditHistory history;
+  ViewSettings view;
+  std::map<RobotId, SavedRobot> saved;
+  RobotId last_id = 0;
+
+  std::shared_ptr<const Moment> moment;
+  LivePicture picture;
+  float aspect = 16.0f / 9;
+  std::vector<RobotId> selected;  // in the order of selection
+  std::set<RobotId> hidden;
+  bool playing = false;
+  std::uint64_t stops = 0;
+  double speed = 1;
+  std::optional<LivePull> pull;
+
+  Background background;  // last: its pieces end before the rest does
+
+  void told() {
+    std::vector<LiveRobot> bodies;
+    for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
+    physics.set_scene(std::move(bodies), document.configuration);
+  }
+  // Names what is to change, before it does.
+  void edit(std::string name, std::string key = {}) { history.before_change(document, std::move(name), std::move(key)); }
+  void say(Severity severity, std::string text) { messages.add(severity, std::move(text)); }
+  DocumentRobot* find(RobotId id) {
+    for (DocumentRobot& robot : document.robots)
+      if (robot.body.id == id) return &robot;
+    return nullptr;
+  }
+  bool is_saved(const DocumentRobot& robot) const {
+    const auto found = saved.find(robot.body.id);
+    return found != saved.end() && found->second.body.robot == robot.body.robot &&
+           found->second.body.materials == robot.body.materials && found->second.body.name == robot.body.name;
+  }
+  std::string file_of(RobotId id) const {
+    const auto found = saved.find(id);
+    return found == saved.end() ? "" : found->second.file;
+  }
+  // `change` says whether it changed anything.
+  bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
+                        const std::function<bool(DocumentRobot&)>& change);
+  RobotId append(Robot robot, RobotSource source);
+  void put_child(RobotId parent, Robot child, bool replace);
+  std::string free_name(const std::string& wanted) const;
+  void send_pull() {
+    physics.set_pulls(pull ? std::vector<LivePull>{*pull} : std::vector<LivePull>{});
+  }
+};
+
+// "1 robot", "2 robots".
+inline std::string robots_counted(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " robot" : " robots");
+}
+
+}  // namespace mercury

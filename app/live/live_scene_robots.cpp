@@ -1,0 +1,233 @@
+// Robots that come into the window's scene: read, made at random, children of others.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+#include "app/live/live_scene_parts.h"
+#include "app/robot_output.h"
+#include "app/trajectory_layout.h"
+#include "robots/file.h"
+#include "robots/origin.h"
+#include "robots/random.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OpenedRobot {
+  std::string file;
+  Robot robot;
+};
+
+// Files, and those in folders by name; what is no robot's file is told when it is read.
+std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& messages) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<fs::path> inside;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+      const fs::path extension = entry->path().extension();
+      std::error_code ignored;
+      if ((extension == ".json" || extension == ".cbor") && !entry->is_directory(ignored)) inside.push_back(entry->path());
+    }
+    if (error) messages.add(Severity::error, path.string() + ": " + error.message());
+    else if (inside.empty()) messages.add(Severity::warning, path.string() + ": the folder holds no robot, neither *.json nor *.cbor");
+    std::ranges::sort(inside);
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  return files;
+}
+
+std::vector<OpenedRobot> read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
+  std::vector<OpenedRobot> opened;
+  for (const fs::path& file : files) {
+    if (control.cancelled()) break;
+    try {
+      if (is_trajectory_name(file.string()))
+        throw InputError(file.string(), "is a recording; mercury render plays it, here open robots");
+      opened.push_back({file.string(), load_robot(file)});
+    } catch (const InputError& error) {
+      messages.add(Severity::error, error.what());
+    }
+    control.progress(static_cast<std::int64_t>(opened.size()));
+  }
+  return opened;
+}
+
+struct GrownRobot {
+  std::uint64_t index;
+  Robot robot;
+};
+
+std::vector<GrownRobot> grow_robots(const Generation& generation, WorkControl& control, Messages& messages) {
+  const MakeRobot make = [&](std::uint64_t seed, std::uint64_t index) {
+    return generation.kind == Generation::Kind::voxel ? random_voxel_robot(generation.voxel, seed, index)
+                                                      : random_nn_robot(generation.network, seed, index);
+  };
+  generation.kind == Generation::Kind::voxel ? validate(generation.voxel) : validate(generation.network);
+  constexpr std::size_t portion = 8;
+  std::vector<GrownRobot> grown;
+  for (std::size_t done = 0; done < generation.count && !control.cancelled();) {
+    const std::size_t count = std::min(portion, generation.count - done);
+    std::vector<MadeRobot> made = make_robots(make, generation.seed, generation.first + done, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (made[i].robot)
+        grown.push_back({generation.first + done + i, std::move(*made[i].robot)});
+      else
+        messages.add(Severity::warning, "a robot was left out: " + made[i].failure);
+    }
+    done += count;
+    control.progress(static_cast<std::int64_t>(done));
+  }
+  return grown;
+}
+
+// The axis along which a grid's halves mirror each other, y first, as in random robots.
+Mirror mirror_of(const VoxelGrid& grid) {
+  const auto mirrored = [&](Mirror mirror) {
+    for (int z = 0; z < grid.nz; ++z)
+      for (int y = 0; y < grid.ny; ++y)
+        for (int x = 0; x < grid.nx; ++x) {
+          const MaterialId other = mirror == Mirror::x   ? grid.at(grid.nx - 1 - x, y, z)
+                                   : mirror == Mirror::y ? grid.at(x, grid.ny - 1 - y, z)
+                                                         : grid.at(x, y, grid.nz - 1 - z);
+          if (grid.at(x, y, z) != other) return false;
+        }
+    return true;
+  };
+  for (const Mirror mirror : {Mirror::y, Mirror::x, Mirror::z})
+    if (mirrored(mirror)) return mirror;
+  return Mirror::none;
+}
+
+Robot child_of(const Robot& parent, const Mutation& mutation, std::uint64_t seed) {
+  const std::string kind = kind_of(parent);
+  const std::string name = parent.name + "-child";
+  if (kind == "voxel") {
+    VoxelMutation voxel = mutation.voxel;
+    if (voxel.mirror == Mirror::none) voxel.mirror = mirror_of(voxel_grid_of(parent).value());
+    return mutate_voxel_robot(parent, voxel, seed, name);
+  }
+  if (const auto genome = kind == "nn" ? nn_genome_of(parent) : std::nullopt)
+    return grow(mutate(*genome, mutation.network_rate, mutation.network_size, seed), name);
+  throw InputError(parent.name, "cannot be mutated; only voxel and network robots know what they were made of");
+}
+
+}  // namespace
+
+RobotId LiveScene::Parts::append(Robot robot, RobotSource source) {
+  const RobotId id = ++last_id;
+  LiveRobot body{.id = id, .name = robot.name.empty() ? "robot" : robot.name};
+  body.robot = std::make_shared<const Robot>(std::move(robot));
+  if (!source.file.empty()) saved[id] = {source.file, body};
+  document.robots.push_back({std::move(body), std::move(source)});
+  return id;
+}
+
+void LiveScene::add(std::vector<Robot> robots) {
+  std::erase_if(robots, [&](const Robot& robot) {
+    try {
+      validate(robot);
+      return false;
+    } catch (const InputError& error) {
+      parts_->say(Severity::error, (robot.name.empty() ? "robot" : robot.name) + ": " + error.what());
+      return true;
+    }
+  });
+  if (robots.empty()) return;
+  parts_->edit("add " + robots_counted(robots.size()));
+  for (Robot& robot : robots) parts_->append(std::move(robot), {});
+  parts_->told();
+}
+
+void LiveScene::open(const std::vector<fs::path>& paths) {
+  if (paths.empty()) return;
+  Parts& parts = *parts_;
+  const std::string name = paths.size() == 1 ? "opening " + paths.front().filename().string()
+                                             : fmt::format("opening {} files", paths.size());
+  parts.background.begin(name, 0, [&parts, paths](WorkControl& control) -> Background::Finish {
+    auto opened = std::make_shared<std::vector<OpenedRobot>>(
+        read_robots(files_of(paths, parts.messages), control, parts.messages));
+    return [&parts, opened] {
+      if (opened->empty()) return;
+      parts.edit("open " + robots_counted(opened->size()));
+      for (OpenedRobot& robot : *opened) parts.append(std::move(robot.robot), {.file = robot.file});
+      parts.told();
+    };
+  });
+}
+
+void LiveScene::generate(const Generation& generation, bool replace) {
+  if (generation.count == 0) return;
+  Parts& parts = *parts_;
+  const auto order = std::make_shared<const Generation>(generation);
+  parts.background.begin(
+      "making " + robots_counted(generation.count), static_cast<std::int64_t>(generation.count),
+      [&parts, order, replace](WorkControl& control) -> Background::Finish {
+        auto grown = std::make_shared<std::vector<GrownRobot>>(grow_robots(*order, control, parts.messages));
+        return [&parts, order, replace, grown] {
+          if (grown->empty()) return;
+          parts.edit("make " + robots_counted(grown->size()));
+          if (replace) parts.document.robots.clear();
+          for (GrownRobot& robot : *grown)
+            parts.append(std::move(robot.robot), {.generation = order, .index = robot.index});
+          parts.told();
+        };
+      });
+}
+
+bool LiveScene::can_mutate(RobotId robot) const {
+  const DocumentRobot* found = parts_->document.find(robot);
+  if (!found) return false;
+  const std::string kind = kind_of(*found->body.robot);
+  return kind == "voxel" || kind == "nn";
+}
+
+void LiveScene::mutate(const std::vector<RobotId>& robots, const Mutation& mutation, bool replace) {
+  Parts& parts = *parts_;
+  auto parents = std::make_shared<std::vector<DocumentRobot>>();
+  for (const RobotId id : robots)
+    if (const DocumentRobot* robot = parts.document.find(id)) parents->push_back(*robot);
+  if (parents->empty()) return;
+  const auto count = static_cast<std::int64_t>(parents->size());
+  parts.background.begin(
+      "mutating " + robots_counted(parents->size()), count,
+      [&parts, parents, mutation, replace](WorkControl& control) -> Background::Finish {
+        auto children = std::make_shared<std::vector<std::pair<RobotId, Robot>>>();
+        for (std::size_t i = 0; i < parents->size() && !control.cancelled(); ++i) {
+          try {
+            const std::uint64_t seed = seed_of(mutation.seed, i);
+            children->emplace_back((*parents)[i].body.id, child_of(whole_robot((*parents)[i]), mutation, seed));
+          } catch (const InputError& error) {
+            parts.messages.add(Severity::warning, error.what());
+          }
+          control.progress(static_cast<std::int64_t>(i + 1));
+        }
+        return [&parts, children, replace] {
+          if (children->empty()) return;
+          parts.edit("mutate " + robots_counted(children->size()));
+          for (auto& [parent, child] : *children) parts.put_child(parent, std::move(child), replace);
+          parts.told();
+        };
+      });
+}
+
+void LiveScene::Parts::put_child(RobotId parent, Robot child, bool replace) {
+  child.name = free_name(child.name);
+  append(std::move(child), {});
+  if (!replace) return;
+  const auto place = std::ranges::find_if(document.robots, [&](const DocumentRobot& robot) { return robot.body.id == parent; });
+  if (place == document.robots.end()) return;
+  *place = std::move(document.robots.back());
+  document.robots.pop_back();
+}
+
+}  // namespace mercury

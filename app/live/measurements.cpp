@@ -1,0 +1,146 @@
+#include "app/live/measurements.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mercury {
+namespace {
+
+constexpr double sample_period = 0.02;  // to begin with [s]
+
+constexpr std::array<QuantityName, 5> names{{
+    {Quantity::speed, "speed", "m/s"},
+    {Quantity::distance, "distance", "m"},
+    {Quantity::kinetic_energy, "kinetic energy", "J"},
+    {Quantity::elastic_energy, "elastic energy", "J"},
+    {Quantity::strain, "largest strain", "1"},
+}};
+
+Sample sample_of(const RankingRow& row, const Telemetry& telemetry) {
+  return {.speed = static_cast<float>(row.speed),
+          .distance = static_cast<float>(row.distance),
+          .kinetic_energy = static_cast<float>(row.kinetic_energy),
+          .elastic_energy = static_cast<float>(row.elastic_energy),
+          .strain = telemetry.largest_strain};
+}
+
+template <class T>
+void keep_every_second(std::vector<T>& values, std::size_t first) {
+  std::size_t kept = 0;
+  for (std::size_t i = first; i < values.size(); i += 2) values[kept++] = values[i];
+  values.resize(kept);
+}
+
+}  // namespace
+
+std::span<const QuantityName> quantities() { return names; }
+
+float Sample::of(Quantity quantity) const {
+  switch (quantity) {
+    case Quantity::speed: return speed;
+    case Quantity::distance: return distance;
+    case Quantity::kinetic_energy: return kinetic_energy;
+    case Quantity::elastic_energy: return elastic_energy;
+    case Quantity::strain: break;
+  }
+  return strain;
+}
+
+Measurements::Measurements(std::size_t capacity) : capacity_(std::max<std::size_t>(4, capacity + capacity % 2)) {}
+
+void Measurements::restart(const LiveRobots& robots, double time, std::int64_t step, double dt,
+                           std::span<const Telemetry> telemetry) {
+  const std::lock_guard lock(mutex_);
+  order_.clear();
+  tracks_.clear();
+  times_.clear();
+  interval_ = std::max<std::int64_t>(1, std::llround(sample_period / dt));
+  next_ = step;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    order_.push_back(robots.robots[i].id);
+    Track& track = tracks_[order_.back()];
+    track = {.start = telemetry[i].center_of_mass, .start_time = time};
+    track.row.robot = order_.back();
+    note(track, telemetry[i], time);
+  }
+}
+
+void Measurements::set_robots(const LiveRobots& robots, double time, std::span<const Telemetry> telemetry) {
+  const std::lock_guard lock(mutex_);
+  order_.clear();
+  std::map<RobotId, Track> tracks;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const RobotId id = robots.robots[i].id;
+    order_.push_back(id);
+    const auto old = tracks_.find(id);
+    Track& track = tracks[id];
+    if (old != tracks_.end()) {
+      track = std::move(old->second);
+    } else {
+      track = {.start = telemetry[i].center_of_mass, .start_time = time, .missing = times_.size()};
+      track.row.robot = id;
+    }
+    note(track, telemetry[i], time);
+  }
+  tracks_ = std::move(tracks);
+}
+
+std::int64_t Measurements::next_step() const {
+  const std::lock_guard lock(mutex_);
+  return next_;
+}
+
+void Measurements::note(Track& track, const Telemetry& telemetry, double time) const {
+  RankingRow& row = track.row;
+  const auto finite = [](double value) { return std::isfinite(value) ? value : 0; };
+  track.largest_strain = std::max(track.largest_strain, finite(telemetry.largest_strain));
+  row.largest_strain = track.largest_strain;
+  row.exploded = telemetry.exploded;
+  row.exploded_at = telemetry.exploded_at;
+  row.distance = finite(length(telemetry.center_of_mass - track.start));
+  row.mean_speed = time > track.start_time ? row.distance / (time - track.start_time) : 0;
+  row.speed = telemetry.exploded ? 0 : finite(length(telemetry.velocity));
+  row.kinetic_energy = telemetry.exploded ? 0 : finite(telemetry.kinetic_energy);
+  row.elastic_energy = telemetry.exploded ? 0 : finite(telemetry.elastic_energy);
+}
+
+void Measurements::observe(double time, std::int64_t step, std::span<const Telemetry> telemetry) {
+  const std::lock_guard lock(mutex_);
+  const bool due = step >= next_;
+  if (due) times_.push_back(time);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    Track& track = tracks_[order_[i]];
+    note(track, telemetry[i], time);
+    if (due) track.samples.push_back(sample_of(track.row, telemetry[i]));
+  }
+  if (!due) return;
+  next_ = step + interval_;
+  if (times_.size() >= capacity_) thin();
+}
+
+void Measurements::thin() {
+  keep_every_second(times_, 0);
+  for (auto& [id, track] : tracks_) {
+    // Samples at even places stay; the track's first one stands at the place `missing`.
+    keep_every_second(track.samples, track.missing % 2);
+    track.missing = (track.missing + 1) / 2;
+  }
+  interval_ *= 2;
+}
+
+Series Measurements::series(RobotId robot) const {
+  const std::lock_guard lock(mutex_);
+  const auto track = tracks_.find(robot);
+  if (track == tracks_.end()) return {};
+  return {{times_.begin() + static_cast<std::ptrdiff_t>(track->second.missing), times_.end()}, track->second.samples};
+}
+
+std::vector<RankingRow> Measurements::ranking() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<RankingRow> rows;
+  for (const RobotId id : order_) rows.push_back(tracks_.at(id).row);
+  return rows;
+}
+
+}  // namespace mercury

@@ -1,0 +1,27 @@
+#include "app/live/moment.h"
+
+#include <algorithm>
+
+namespace mercury {
+namespace {
+
+std::span<const Vec3> part(const std::vector<Vec3>& all, const LiveRobots& robots, std::size_t robot) {
+  const std::size_t first = robots.mass_offsets[robot];
+  return std::span(all).subspan(first, robots.mass_offsets[robot + 1] - first);
+}
+
+}  // namespace
+
+std::span<const Material> materials_of(const LiveRobot& robot) {
+  return robot.materials ? std::span<const Material>(*robot.materials) : materials_of(*robot.robot);
+}
+
+std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
+  const auto found = std::ranges::find(robots, id, &LiveRobot::id);
+  return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
+}
+
+std::span<const Vec3> Moment::positions_of(std::size_t robot) const { return part(positions, *robots, robot); }
+std::span<const Vec3> Moment::velocities_of(std::size_t robot) const { return part(velocities, *robots, robot); }
+
+}  // namespace mercury

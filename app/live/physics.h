@@ -1,0 +1,61 @@
+// The simulation of the window, on a thread of its own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/live/measurements.h"
+#include "app/live/messages.h"
+#include "app/live/moment.h"
+#include "app/view_settings.h"
+
+namespace mercury {
+
+struct Explosion {
+  RobotId robot = 0;
+  double time = 0;                             // [s]
+  std::uint32_t first_bad_spring = no_spring;  // index in Robot::springs
+};
+
+// Steps a simulation in slices of a few milliseconds and tells of it whenever somebody looks. All members are for one
+// other thread, and none but wait_until_done() waits for physics: what is asked for is noted, the last wish of a kind
+// counts, and is carried out between slices in this order: scene, view, reset, steps.
+// The results depend on the steps alone, not on how they fall into slices.
+class Physics {
+ public:
+  // Throws InputError for a configuration that cannot be used, DeviceError when the device is not there.
+  explicit Physics(const Configuration& configuration, Messages& messages);
+  ~Physics();
+  Physics(const Physics&) = delete;
+  Physics& operator=(const Physics&) = delete;
+
+  // Simulates these robots, each valid, under this configuration, whose device must be the first one's. Robots that are
+  // there already keep their state; new ones start at rest at the present time; one that was there before goes on from
+  // where it left, unless time began anew since.
+  void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
+  void set_view(const ViewSettings& settings);  // what moments hold details of
+  void set_pulls(std::vector<LivePull> pulls);  // those on masses that are not there are left out
+  void play();
+  void pause();
+  void set_speed(double speed);  // above 0; unlimited_speed = as fast as it goes
+  void step(std::int64_t count); // pauses, then so many steps; several calls add up
+  void reset();                  // time 0, all at rest; steps asked for before are forgotten
+  void pause_on_explosion(bool pause);
+
+  // The newest moment told; asks for a newer one. Never nothing.
+  std::shared_ptr<const Moment> newest();
+  // Those since the last call.
+  std::vector<Explosion> take_explosions();
+  const Measurements& measurements() const;
+  std::string device_name() const;
+
+  // Waits until all that was asked for is carried out, steps as well, and newest() tells of it.
+  void wait_until_done();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury

@@ -1,0 +1,209 @@
+#include "app/live/picking.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "app/eigen_vec3.h"
+
+namespace mercury {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+// Where the ray meets a triangle, from either side; infinity if it does not (Moeller and Trumbore 1997).
+float distance_to_triangle(const render::Ray& ray, const Vector3f& a, const Vector3f& b, const Vector3f& c) {
+  const Vector3f ab = b - a, ac = c - a, across = ray.direction.cross(ac);
+  const float determinant = ab.dot(across);
+  if (determinant == 0 || !std::isfinite(determinant)) return far_away;
+  const Vector3f from_a = ray.origin - a;
+  const float u = from_a.dot(across) / determinant;
+  if (!(u >= 0 && u <= 1)) return far_away;
+  const Vector3f up = from_a.cross(ab);
+  const float v = ray.direction.dot(up) / determinant;
+  if (!(v >= 0 && u + v <= 1)) return far_away;
+  const float t = ac.dot(up) / determinant;
+  return t > 0 ? t : far_away;
+}
+
+struct Nearest {
+  float along = far_away;  // the ray [m]
+  float apart = far_away;  // between ray and thing there [m]
+};
+
+Nearest nearest_to_point(const render::Ray& ray, const Vector3f& point) {
+  const float along = (point - ray.origin).dot(ray.direction);
+  if (!(along > 0)) return {};
+  return {along, (ray.origin + along * ray.direction - point).norm()};
+}
+
+// The ray and the line from a to b, where they come nearest.
+Nearest nearest_to_segment(const render::Ray& ray, const Vector3f& a, const Vector3f& b) {
+  const Vector3f d = b - a, w = a - ray.origin;
+  const float dd = d.squaredNorm(), rd = ray.direction.dot(d), rw = ray.direction.dot(w), dw = d.dot(w);
+  const float determinant = dd - rd * rd;
+  // Where the lines are parallel any place will do.
+  const float s = determinant > 1e-12f * dd ? std::clamp((rd * rw - dw) / determinant, 0.0f, 1.0f) : 0.0f;
+  return nearest_to_point(ray, a + s * d);
+}
+
+bool cut_away(const std::optional<render::CutPlane>& cut, const Vector3f& point) {
+  return cut && cut->normal.dot(point) > cut->offset;
+}
+
+bool misses(const render::Ray& ray, const render::Bounds& box) {
+  if (box.empty()) return true;
+  float enter = 0, leave = far_away;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float inverse = 1 / ray.direction[axis];
+    float a = (box.low[axis] - ray.origin[axis]) * inverse, b = (box.high[axis] - ray.origin[axis]) * inverse;
+    if (std::isnan(a) || std::isnan(b)) continue;  // in the plane of a side
+    if (a > b) std::swap(a, b);
+    enter = std::max(enter, a);
+    leave = std::min(leave, b);
+  }
+  // Flat boxes are met by rounding's grace.
+  return enter > leave + 1e-4f * (1 + std::abs(leave));
+}
+
+// One robot under the ray.
+class Target {
+ public:
+  Target(const Robot& robot, std::span<const Vec3> positions, const Vector3f& offset) : robot_(robot) {
+    places_.reserve(positions.size());
+    for (const Vec3 p : positions) {
+      places_.push_back(eigen(p) + offset);
+      if (places_.back().allFinite()) box_.extend(places_.back());
+    }
+  }
+
+  float radius(float wanted) const {
+    if (wanted > 0) return wanted;
+    float longest = 0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(robot_.springs.size(), 64); ++i)
+      longest = std::max(longest, robot_.springs[i].rest_length);
+    return longest > 0 ? 0.12f * longest : 0.05f;
+  }
+  bool missed_by(const render::Ray& ray, float room) const {
+    render::Bounds roomy = box_;
+    roomy.low.array() -= room;
+    roomy.high.array() += room;
+    return box_.empty() || misses(ray, roomy);
+  }
+
+  void meet_skin(const render::Ray& ray, const PickOptions& options, Hit& best) const {
+    for (std::uint32_t i = 0; i < robot_.faces.size(); ++i) {
+      const Face& face = robot_.faces[i];
+      const float t = distance_to_triangle(ray, places_[face.a], places_[face.b], places_[face.c]);
+      if (!(t < best.distance) || cut_away(options.cut, ray.origin + t * ray.direction)) continue;
+      best = {.face = i, .point = ray.origin + t * ray.direction, .distance = t};
+      best.mass = nearest_of({face.a, face.b, face.c}, best.point);
+    }
+  }
+  void meet_springs(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
+    for (std::uint32_t i = 0; i < robot_.springs.size(); ++i) {
+      const Spring& spring = robot_.springs[i];
+      const Nearest near = nearest_to_segment(ray, places_[spring.a], places_[spring.b]);
+      if (!(near.apart <= room && near.along < best.distance)) continue;
+      const Vector3f point = ray.origin + near.along * ray.direction;
+      if (cut_away(options.cut, point)) continue;
+      best = {.spring = i, .point = point, .distance = near.along};
+      best.mass = nearest_of({spring.a, spring.b}, point);
+    }
+  }
+  void meet_masses(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Nearest near = nearest_to_point(ray, places_[i]);
+      if (!(near.apart <= room && near.along < best.distance) || cut_away(options.cut, places_[i])) continue;
+      best = {.mass = static_cast<std::uint16_t>(i), .point = places_[i], .distance = near.along};
+    }
+  }
+
+  // The spring along the edge of a face that is nearest to a place on it.
+  std::optional<std::uint32_t> spring_at(std::uint32_t face_index, const Vector3f& point) const {
+    const Face& face = robot_.faces[face_index];
+    std::optional<std::uint32_t> found;
+    float nearest = far_away;
+    for (std::uint32_t i = 0; i < robot_.springs.size(); ++i) {
+      const Spring& spring = robot_.springs[i];
+      const auto on_face = [&](std::uint16_t mass) { return mass == face.a || mass == face.b || mass == face.c; };
+      if (!on_face(spring.a) || !on_face(spring.b)) continue;
+      const float apart = distance_to_segment(point, places_[spring.a], places_[spring.b]);
+      if (apart >= nearest) continue;
+      nearest = apart;
+      found = i;
+    }
+    return found;
+  }
+
+ private:
+  static float distance_to_segment(const Vector3f& point, const Vector3f& a, const Vector3f& b) {
+    const Vector3f d = b - a;
+    const float s = d.squaredNorm() > 0 ? std::clamp((point - a).dot(d) / d.squaredNorm(), 0.0f, 1.0f) : 0.0f;
+    return (a + s * d - point).norm();
+  }
+  std::uint16_t nearest_of(std::initializer_list<std::uint16_t> masses, const Vector3f& point) const {
+    return std::ranges::min(masses, {}, [&](std::uint16_t mass) { return (places_[mass] - point).squaredNorm(); });
+  }
+
+  const Robot& robot_;
+  std::vector<Vector3f> places_;
+  render::Bounds box_;
+};
+
+}  // namespace
+
+std::optional<Hit> pick(const Moment& moment, std::span<const Vector3f> offsets, const render::Ray& ray,
+                        const PickOptions& options) {
+  std::optional<Hit> nearest;
+  for (std::size_t i = 0; i < std::min(moment.robots->size(), offsets.size()); ++i) {
+    if (!options.hidden.empty() && options.hidden[i]) continue;
+    const Robot& robot = *moment.robots->robots[i].robot;
+    const Target target(robot, moment.positions_of(i), offsets[i]);
+    const float room = target.radius(options.radius);
+    if (target.missed_by(ray, room)) continue;
+    Hit best{.distance = nearest ? nearest->distance : far_away};
+    const bool skin = options.skin && !robot.faces.empty();
+    if (skin) target.meet_skin(ray, options, best);
+    if (options.springs || (!skin && !robot.springs.empty())) target.meet_springs(ray, options, room, best);
+    if (options.masses || (!skin && robot.springs.empty())) target.meet_masses(ray, options, room, best);
+    if (nearest ? best.distance >= nearest->distance : best.distance == far_away) continue;
+    if (best.face) best.spring = target.spring_at(*best.face, best.point);
+    best.robot = moment.robots->robots[i].id;
+    best.index = i;
+    nearest = best;
+  }
+  return nearest;
+}
+
+HitFigures describe(const Moment& moment, const Hit& hit) {
+  HitFigures figures;
+  const auto index = moment.robots->index_of(hit.robot);
+  if (!index) return figures;
+  const LiveRobot& live = moment.robots->robots[*index];
+  const Robot& robot = *live.robot;
+  figures.robot = live.name;
+  if (hit.mass >= robot.masses.size()) return figures;
+  const auto positions = moment.positions_of(*index);
+  figures.mass = {.position = positions[hit.mass], .speed = length(moment.velocities_of(*index)[hit.mass])};
+  for (const Spring& spring : robot.springs) figures.mass.springs += spring.a == hit.mass || spring.b == hit.mass;
+  if (!hit.spring || *hit.spring >= robot.springs.size()) return figures;
+  const Spring& spring = robot.springs[*hit.spring];
+  const Material& material = materials_of(live)[spring.material];
+  const double angle = static_cast<double>(material.frequency) * moment.time + static_cast<double>(material.phase);
+  const float rest_now =
+      spring.rest_length * (1 + material.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI))));
+  HitFigures::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
+  of.length = length(positions[spring.b] - positions[spring.a]);
+  of.strain = of.length / spring.rest_length - 1;
+  of.force = material.stiffness * stiffness_scale_of(moment.configuration.environment) * (of.length - rest_now);
+  if (!robot.material_names.empty()) of.material_name = robot.material_names[spring.material];
+  else of.material_name = robot.materials.empty() ? default_material_name(spring.material) : "material " + std::to_string(spring.material);
+  figures.spring = of;
+  return figures;
+}
+
+}  // namespace mercury

@@ -1,0 +1,92 @@
+#include "app/live/population.h"
+
+#include <algorithm>
+
+namespace mercury {
+namespace {
+
+// Two entries are the same body.
+bool same_body(const LiveRobot& a, const LiveRobot& b) { return a.id == b.id && a.robot == b.robot; }
+
+std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, std::uint64_t revision) {
+  auto list = std::make_shared<LiveRobots>(LiveRobots{.revision = revision, .robots = robots, .mass_offsets = {0}});
+  for (const LiveRobot& robot : robots) {
+    list->mass_offsets.push_back(list->mass_offsets.back() + robot.robot->masses.size());
+    list->springs += robot.robot->springs.size();
+  }
+  return list;
+}
+
+}  // namespace
+
+bool Population::follow(const std::vector<LiveRobot>& wanted) {
+  const bool changed = !std::ranges::equal(robots_->robots, wanted, same_body);
+  if (changed) {
+    keep_states(wanted);
+    arrange(wanted);
+  }
+  follow_materials(wanted, changed);
+  robots_ = listed(wanted, robots_->revision + (changed ? 1 : 0));
+  return changed;
+}
+
+void Population::keep_states(const std::vector<LiveRobot>& wanted) {
+  for (std::size_t i = 0; i < robots_->size(); ++i) {
+    const LiveRobot& old = robots_->robots[i];
+    const bool stays = std::ranges::any_of(wanted, [&](const LiveRobot& robot) { return same_body(robot, old); });
+    if (!stays) departed_[old.id] = {old.robot, simulation_.state(i)};
+  }
+}
+
+// Those that stay in their order of before, then the new ones, then all in the order wanted.
+void Population::arrange(const std::vector<LiveRobot>& wanted) {
+  std::vector<std::size_t> staying, places(wanted.size()), fresh;
+  std::vector<Robot> robots;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto old = std::ranges::find_if(robots_->robots, [&](const LiveRobot& robot) { return same_body(robot, wanted[i]); });
+    if (old != robots_->robots.end()) {
+      places[i] = staying.size();
+      staying.push_back(static_cast<std::size_t>(old - robots_->robots.begin()));
+    } else {
+      fresh.push_back(i);
+      robots.push_back(*wanted[i].robot);
+    }
+  }
+  simulation_.keep(staying);
+  if (fresh.empty()) return;
+  const std::size_t first = simulation_.add(robots);
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    places[fresh[k]] = first + k;
+    const auto before = departed_.find(wanted[fresh[k]].id);
+    if (before == departed_.end()) continue;
+    if (before->second.robot == wanted[fresh[k]].robot)
+      simulation_.set_state(first + k, before->second.state.positions, before->second.state.velocities);
+    departed_.erase(before);
+  }
+  if (!std::ranges::is_sorted(places)) simulation_.keep(places);
+}
+
+void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arranged) {
+  std::vector<Material> tables;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const bool known = !arranged && robots_->robots[i].materials == wanted[i].materials;
+    if (known) continue;
+    if (tables.empty()) tables = simulation_.materials();
+    const auto table = std::span(tables).subspan(i * max_materials, max_materials);
+    const auto materials = materials_of(wanted[i]);
+    std::ranges::copy(materials.first(std::min(materials.size(), table.size())), table.begin());
+  }
+  if (!tables.empty()) simulation_.set_materials(tables);
+}
+
+std::vector<Pull> Population::pulls_of(std::span<const LivePull> pulls) const {
+  std::vector<Pull> known;
+  for (const LivePull& pull : pulls) {
+    const auto index = robots_->index_of(pull.robot);
+    if (index && pull.mass < robots_->robots[*index].robot->masses.size())
+      known.push_back({*index, pull.mass, pull.target, pull.stiffness});
+  }
+  return known;
+}
+
+}  // namespace mercury

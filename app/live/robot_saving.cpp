@@ -1,0 +1,54 @@
+#include "app/live/robot_saving.h"
+
+#include <exception>
+#include <system_error>
+
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
+
+}  // namespace
+
+SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
+  SaveResult result;
+  try {
+    for (const FileToSave& file : files) {
+      if (file.path.filename().empty()) return failed("give a file's name");
+      if (fs::is_directory(file.path)) return failed(file.path.string() + " is a folder");
+      if (!overwrite && fs::exists(fs::symlink_status(file.path))) result.files.push_back(file.path);
+    }
+    if (!result.files.empty()) {
+      result.outcome = SaveResult::Outcome::exists;
+      return result;
+    }
+    for (const FileToSave& file : files) {
+      if (file.path.has_parent_path()) fs::create_directories(file.path.parent_path());
+      write_whole_file(file.path, file.content);
+      result.files.push_back(file.path);
+    }
+  } catch (const fs::filesystem_error& error) {
+    return failed(error.path1().string() + ": " + error.code().message());
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+  return result;
+}
+
+std::string file_name_of(std::string_view name) {
+  std::string text;
+  for (const char letter : name) {
+    const auto code = static_cast<unsigned char>(letter);
+    text += code < 0x20 || code == 0x7f || std::string_view("/\\:*?\"<>|").find(letter) != std::string_view::npos ? '_' : letter;
+  }
+  // A leading dot would hide the file, a leading dash look like an option.
+  while (!text.empty() && (text.front() == '.' || text.front() == '-')) text.erase(0, 1);
+  if (text.size() > 120) text.resize(120);
+  return text.empty() ? "robot" : text;
+}
+
+}  // namespace mercury

@@ -1,0 +1,51 @@
+#include "app/live/scene_document.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace mercury {
+
+const DocumentRobot* SceneDocument::find(RobotId id) const {
+  const auto found = std::ranges::find_if(robots, [&](const DocumentRobot& robot) { return robot.body.id == id; });
+  return found == robots.end() ? nullptr : &*found;
+}
+
+Robot whole_robot(const DocumentRobot& robot) {
+  Robot whole = *robot.body.robot;
+  whole.name = robot.body.name;
+  const auto now = materials_of(robot.body), before = materials_of(*robot.body.robot);
+  if (std::ranges::equal(now, before)) return whole;
+  if (whole.materials.empty())
+    for (std::size_t id = 0; id < now.size(); ++id)
+      whole.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
+  whole.materials.assign(now.begin(), now.end());
+  return whole;
+}
+
+void EditHistory::before_change(const SceneDocument& document, std::string name, std::string key) {
+  future_.clear();
+  if (!key.empty() && key == open_key_) return;
+  past_.push_back({std::move(name), document});
+  if (past_.size() > most) past_.erase(past_.begin());
+  open_key_ = std::move(key);
+}
+
+void EditHistory::undo(SceneDocument& document) {
+  if (past_.empty()) return;
+  Edit edit = std::move(past_.back());
+  past_.pop_back();
+  std::swap(edit.document, document);
+  future_.push_back(std::move(edit));
+  open_key_.clear();
+}
+
+void EditHistory::redo(SceneDocument& document) {
+  if (future_.empty()) return;
+  Edit edit = std::move(future_.back());
+  future_.pop_back();
+  std::swap(edit.document, document);
+  past_.push_back(std::move(edit));
+  open_key_.clear();
+}
+
+}  // namespace mercury

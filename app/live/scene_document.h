@@ -1,0 +1,87 @@
+// The scene as a document: what can be edited, undone and told as a command.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/live/moment.h"
+#include "robots/nn_robot.h"
+#include "robots/random_voxel.h"
+#include "robots/voxel_evolution.h"
+
+namespace mercury {
+
+// Random robots to be made: `count` robots of `seed`, from index `first` on.
+struct Generation {
+  enum class Kind { voxel, network } kind = Kind::voxel;
+  std::size_t count = 1;
+  std::uint64_t seed = 1;
+  std::uint64_t first = 0;
+  RandomVoxelOptions voxel;  // if voxel
+  NnOptions network;         // if network
+};
+
+// How children differ from their parents.
+struct Mutation {
+  std::uint64_t seed = 1;
+  VoxelMutation voxel;        // without a mirror, the parent's own symmetry is kept
+  double network_rate = 0.1;  // share of the weights that change
+  double network_size = 0.3;  // how much [1]
+};
+
+// Factors on a robot's own materials; the phase is added [rad].
+struct MaterialScale {
+  float stiffness = 1, amplitude = 1, frequency = 1, phase = 0;
+  friend bool operator==(const MaterialScale&, const MaterialScale&) = default;
+};
+
+// Where a robot came from.
+struct RobotSource {
+  std::string file;                                   // read from there; or empty
+  std::shared_ptr<const Generation> generation;       // made at random so; or nothing
+  std::uint64_t index = 0;                            // of the generation
+};
+
+struct DocumentRobot {
+  LiveRobot body;
+  RobotSource source;
+};
+
+struct SceneDocument {
+  std::vector<DocumentRobot> robots;
+  Configuration configuration;
+
+  const DocumentRobot* find(RobotId id) const;  // nullptr if it is not there
+};
+
+// The robot with its present name and materials, as it is saved.
+Robot whole_robot(const DocumentRobot& robot);
+
+// What was before and after, and the names of the changes.
+class EditHistory {
+ public:
+  // Before `document` changes. An edit named and keyed as the one before goes on with it, until end_edit(); an empty key
+  // never does.
+  void before_change(const SceneDocument& document, std::string name, std::string key = {});
+  void end_edit() { open_key_.clear(); }
+  bool can_undo() const { return !past_.empty(); }
+  bool can_redo() const { return !future_.empty(); }
+  std::string undo_name() const { return past_.empty() ? "" : past_.back().name; }
+  std::string redo_name() const { return future_.empty() ? "" : future_.back().name; }
+  void undo(SceneDocument& document);
+  void redo(SceneDocument& document);
+
+ private:
+  struct Edit {
+    std::string name;
+    SceneDocument document;  // before it, or after it in the future
+  };
+  static constexpr std::size_t most = 200;
+  std::vector<Edit> past_, future_;
+  std::string open_key_;
+};
+
+}  // namespace mercury
