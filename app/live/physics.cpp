@@ -101,7 +101,7 @@ void Physics::Parts::run() {
     bool wanted;
     {
       const std::lock_guard lock(mutex);
-      wanted = looked_at;
+      wanted = looked_at || ticket > tickets_done;
     }
     if (!dirty || !wanted) continue;
     dirty = false;  // also when it fails: not again before something else changes
@@ -115,7 +115,7 @@ bool Physics::Parts::take_orders(Orders& taken) {
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
           playing && std::isfinite(speed) ? std::min(pace.next_due(), now() + 1) : 0)));
   std::unique_lock lock(mutex);
-  const auto ready = [&] { return orders.any() || (dirty && looked_at); };
+  const auto ready = [&] { return orders.any() || (dirty && (looked_at || ticket > tickets_done)); };
   if (steps_left == 0 && !ready()) {
     tickets_done = ticket;
     done.notify_all();
