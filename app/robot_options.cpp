@@ -59,9 +59,10 @@ std::vector<Robot> RobotOptions::random_robots(const std::string& request) const
   const std::uint64_t seed = number(2, seed_), first = number(3, 0);
   if (count < 1 || count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
-  if (parts.size() > 4 || (kind != "voxel" && kind != "nn"))
-    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N, and a seed and the first "
-                                             "one's number as in voxel:N:SEED:FIRST if need be", request));
+  if (kind != "voxel" && kind != "nn")
+    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", request));
+  if (parts.size() > 4)
+    throw InputError("--random", fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
   if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed, count, first);
   return random_network_robots(count, seed, first);
 }
