@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
 
 #include "backend.h"
 #include "bodies.h"
@@ -129,6 +132,102 @@ TEST_P(Reproducibility, AStateReadAndSetAgainContinuesBitForBit) {
   whole.step(100);
   continued.step(100);
   EXPECT_EQ(continued.hash(0), whole.hash(0));
+}
+
+// A run with all that may change on the way: robots of the second half come later; solver, environment and time step
+// change, materials of all and of one, a robot is pulled and let go, two explode, all is reset.
+class Story {
+ public:
+  // `which` robots of `all` take part, the first half of `all` from the start.
+  Story(const Configuration& configuration, std::span<const Robot> all, const std::vector<std::size_t>& which)
+      : configuration_(configuration), all_(all), simulation_(configuration) {
+    for (const std::size_t robot : which) (robot < all.size() / 2 ? first_ : later_).push_back(robot);
+    add(first_);
+  }
+
+  // Hashes by robot, one a chapter.
+  std::map<std::size_t, std::vector<std::uint64_t>> tell() {
+    run(60);
+    configuration_.dt = 5e-4;
+    configuration_.damping = 0.3;
+    configuration_.solver = configuration_.solver == Solver::force ? Solver::xpbd : Solver::force;
+    simulation_.configure(configuration_);
+    run(50);
+    add(later_);
+    run(40);
+    configuration_.environment = Land{};
+    simulation_.configure(configuration_);
+    run(40);
+    configuration_.environment = Ocean{.density = 800, .flow = {0.1f, 0, 0}};
+    simulation_.configure(configuration_);
+    std::vector<Material> tables = simulation_.materials();
+    for (Material& material : tables)
+      if (material.stiffness > 0) material = {material.stiffness + 5, 0.1f, material.frequency + 0.5f, 0.3f};
+    simulation_.set_materials(tables);
+    run(40);
+    if (const auto at = place(2)) simulation_.set_material(*at, 7, {90, 0.05f, 3, 0});
+    run(40);
+    if (const auto at = place(3)) {
+      const Pull pull{*at, 4, {0.3f, 0.2f, 0.1f}, 60};
+      simulation_.set_pulls({&pull, 1});
+    }
+    run(40);
+    simulation_.set_pulls({});
+    for (const std::size_t victim : {4u, 21u})
+      if (const auto at = place(victim)) {
+        State state = simulation_.state(*at);
+        state.velocities[1] += Vec3{0, 2e7f, 0};
+        simulation_.set_state(*at, state.positions, state.velocities);
+      }
+    run(40);
+    run(3);
+    simulation_.reset();
+    run(40);
+    return hashes_;
+  }
+
+ private:
+  void add(const std::vector<std::size_t>& robots) {
+    for (const std::size_t robot : robots) {
+      order_.push_back(robot);
+      simulation_.add(all_[robot]);
+    }
+  }
+  std::optional<std::size_t> place(std::size_t robot) const {
+    const auto found = std::ranges::find(order_, robot);
+    return found == order_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - order_.begin()));
+  }
+  void run(std::int64_t steps) {
+    simulation_.step(steps);
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      hashes_[order_[i]].push_back(simulation_.hash(i));
+      hashes_[order_[i]].push_back(simulation_.telemetry(i).exploded);
+    }
+  }
+
+  Configuration configuration_;
+  std::span<const Robot> all_;
+  Simulation simulation_;
+  std::vector<std::size_t> first_, later_, order_;
+  std::map<std::size_t, std::vector<std::uint64_t>> hashes_;
+};
+
+// Most robots are built alike, which a backend may make use of.
+TEST_P(Reproducibility, WhateverChangesWhileRunningARobotAloneMovesAsInTheBatch) {
+  std::vector<Robot> robots;
+  for (std::uint64_t i = 0; i < 44; ++i) robots.push_back(bodies::random_voxels({.x = 2, .y = i % 11 == 10 ? 3 : 2, .z = 1}, i));
+  std::vector<std::size_t> which(robots.size());
+  std::iota(which.begin(), which.end(), std::size_t{0});
+  Configuration setting = configuration();
+  setting.device.threads = 1;
+  const auto told = Story(setting, robots, which).tell();
+  EXPECT_TRUE(std::ranges::count(told.at(4), 1u) == 2 && std::ranges::count(told.at(21), 1u) == 2) << "two chapters exploded";
+  EXPECT_EQ(std::ranges::count(told.at(5), 1u), 0);
+  setting.device.threads = 3;
+  std::ranges::reverse(which);
+  EXPECT_EQ(Story(setting, robots, which).tell(), told);
+  for (const std::size_t robot : {0u, 2u, 3u, 4u, 5u, 10u, 21u, 22u, 32u, 43u})
+    EXPECT_EQ(Story(setting, robots, {robot}).tell().at(robot), told.at(robot)) << robot;
 }
 
 // 8,000 masses do not fit on a chip; whatever path they take keeps the promises.

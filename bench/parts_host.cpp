@@ -1,0 +1,111 @@
+// What happens on the host before and between steps: plans, muscles' factors, lists of near masses, files, growing.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "bench/cpu_lattice.h"
+#include "robots/file.h"
+#include "robots/nn_robot.h"
+#include "robots/random_voxel.h"
+#include "sim/cpu/kernel.h"
+#include "sim/error.h"
+#include "sim/face_pairs.h"
+
+namespace mercury::bench {
+namespace {
+
+using State = benchmark::State;
+
+// By voxels a side.
+Robot lattice_of(const State& state) { return lattice(static_cast<int>(state.range(0))); }
+
+void plan_of_springs(State& state) {
+  const Robot robot = lattice_of(state);
+  const cpu::Places places = cpu::arrange(robot, cpu::kernels().front().lanes);
+  for (auto _ : state) benchmark::DoNotOptimize(cpu::plan_springs(robot, places));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.springs.size()));
+}
+BENCHMARK(plan_of_springs)->Name("plan of springs")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+void pairs_of_faces(State& state) {
+  const Robot robot = lattice_of(state);
+  for (auto _ : state) benchmark::DoNotOptimize(pair_faces(robot));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.faces.size()));
+}
+BENCHMARK(pairs_of_faces)->Name("pairs of faces")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+void make_body(State& state) {
+  const Robot robot = lattice_of(state);
+  for (auto _ : state) benchmark::DoNotOptimize(cpu::make_body(robot, cpu::kernels().front().lanes));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.springs.size()));
+}
+BENCHMARK(make_body)->Name("robot made ready for the CPU")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+void near_pairs(State& state) {
+  const Robot robot = lattice_of(state);
+  cpu::Body body = cpu::make_body(robot, cpu::kernels().front().lanes);
+  cpu::set_state(body, robot.masses, std::vector<Vec3>(robot.masses.size()));
+  for (auto _ : state) body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.masses.size()));
+}
+BENCHMARK(near_pairs)->Name("list of near masses")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+// Of all 256 materials of a table.
+void muscle_factors(State& state) {
+  constexpr std::int64_t steps = 32;
+  std::vector<Material> materials(max_materials);
+  std::ranges::copy(default_materials(), materials.begin());
+  cpu::Muscles muscles = cpu::muscles_of(materials, {});
+  cpu::Aligned<float> factors(max_materials * steps);
+  for (auto _ : state) {
+    cpu::kernels().front().fill_factors(muscles, factors.data(), steps);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * steps * static_cast<std::int64_t>(max_materials));
+}
+BENCHMARK(muscle_factors)->Name("muscles of 32 steps")->Unit(benchmark::kMicrosecond);
+
+void phases(State& state) {
+  std::vector<Material> materials(max_materials);
+  std::ranges::copy(default_materials(), materials.begin());
+  for (auto _ : state) benchmark::DoNotOptimize(cpu::muscles_of(materials, {.step = 123456789}));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(max_materials));
+}
+BENCHMARK(phases)->Name("table of phases")->Unit(benchmark::kMicrosecond);
+
+template <RobotFormat format>
+void read(State& state) {
+  const std::string document = serialize_robot(lattice_of(state), format);
+  for (auto _ : state) benchmark::DoNotOptimize(parse_robot(document, format));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(document.size()));
+}
+BENCHMARK(read<RobotFormat::json>)->Name("read JSON")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(read<RobotFormat::cbor>)->Name("read CBOR")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+
+template <RobotFormat format>
+void write(State& state) {
+  const Robot robot = lattice_of(state);
+  for (auto _ : state) benchmark::DoNotOptimize(serialize_robot(robot, format));
+}
+BENCHMARK(write<RobotFormat::json>)->Name("write JSON")->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(write<RobotFormat::cbor>)->Name("write CBOR")->Arg(10)->Unit(benchmark::kMicrosecond);
+
+void draw_voxels(State& state) {
+  std::uint64_t index = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(random_voxel_robot({}, 1, index++));
+}
+BENCHMARK(draw_voxels)->Name("draw a voxel robot")->Unit(benchmark::kMicrosecond);
+
+// Network, alpha shape, springs and skin; by points of the cloud.
+void grow_robot(State& state) {
+  const NnGenome genome = random_nn_genome({.points = static_cast<std::size_t>(state.range(0))}, 1);
+  try {
+    for (auto _ : state) benchmark::DoNotOptimize(grow(genome));
+  } catch (const InputError& error) {
+    state.SkipWithError(error.what());
+  }
+}
+BENCHMARK(grow_robot)->Name("grow a network robot")->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace mercury::bench
