@@ -24,6 +24,15 @@ class BoundedQueue {
     return true;
   }
 
+  // Waits for nothing. False if there is no room or the queue was closed: the value stays the caller's.
+  bool try_push(T& value) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || values_.size() >= capacity_) return false;
+    values_.push_back(std::move(value));
+    filled_.notify_one();
+    return true;
+  }
+
   // Waits for a value. Empty once the queue is closed and drained.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);

@@ -43,7 +43,8 @@ class FirstError {
 
 class Production {
  public:
-  Production(const FilmSet& set, const FilmTiming& timing, bool quiet) : set_(set), timing_(timing), quiet_(quiet) {}
+  Production(const FilmSet& set, const FilmTiming& timing, bool quiet, FilmControl& control)
+      : set_(set), timing_(timing), quiet_(quiet), control_(control) {}
 
   FilmResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -79,7 +80,7 @@ class Production {
     const std::int64_t first = set_.simulation.steps();
     const double dt = set_.simulation.configuration().dt;
     for (std::int64_t frame = 0; frame < timing_.frames; ++frame) {
-      if (!stepper.advance_to(first + step_of_frame(frame, timing_, dt))) {
+      if (control_.stop || !stepper.advance_to(first + step_of_frame(frame, timing_, dt))) {
         interrupted_ = true;
         break;
       }
@@ -119,7 +120,7 @@ class Production {
     Progress progress("rendering", "frames", timing_.frames, quiet_);
     while (auto picture = pictures_.pop()) {
       set_.writer.write(*picture);
-      progress.update(++result_.frames);
+      progress.update(control_.frames = ++result_.frames);
       spare_.push(std::move(*picture));
     }
   }
@@ -127,6 +128,7 @@ class Production {
   const FilmSet& set_;
   const FilmTiming& timing_;
   const bool quiet_;
+  FilmControl& control_;
   BoundedQueue<Moment> moments_{waiting_moments};
   BoundedQueue<render::Image> pictures_{waiting_pictures};
   BoundedQueue<render::Image> spare_{waiting_pictures + 2};  // pictures whose memory is free to be used again
@@ -141,6 +143,9 @@ std::int64_t step_of_frame(std::int64_t frame, const FilmTiming& timing, double 
   return std::llround((timing.start + static_cast<double>(frame) * timing.interval) / dt);
 }
 
-FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet) { return Production(set, timing, quiet).run(); }
+FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet, FilmControl* control) {
+  FilmControl unwatched;
+  return Production(set, timing, quiet, control ? *control : unwatched).run();
+}
 
 }  // namespace mercury

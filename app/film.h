@@ -1,6 +1,7 @@
 // From a simulation to pictures: simulating, drawing and encoding, each on a thread of its own.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "app/cameraman.h"
@@ -12,6 +13,12 @@
 #include "sim/simulation.h"
 
 namespace mercury {
+
+// A film that is made in the background, as others see and stop it.
+struct FilmControl {
+  std::atomic<std::int64_t> frames = 0;  // written so far
+  std::atomic<bool> stop = false;        // end before the last frame, as when the user interrupts
+};
 
 // Which moments are filmed: frame k shows the time start + k interval, the simulation's time at the beginning being 0.
 struct FilmTiming {
@@ -46,6 +53,7 @@ struct FilmSet {
 // Runs the simulation and writes a frame for each moment; the writer is left to be finished by the caller. Draws on the
 // calling thread, whose GL context must be the renderer's. When the user interrupts, the frames so far are written.
 // Throws what any of the three stages threw first. A quiet film shows no progress.
-FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet);
+// `control` outlives the call.
+FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet, FilmControl* control = nullptr);
 
 }  // namespace mercury

@@ -60,8 +60,10 @@ Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings
   bridge_ = choose_bridge(simulation_, stage.renderer, settings.interop);
 }
 
-FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet) {
-  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels}, timing, quiet);
+FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet,
+                        FilmControl* control) {
+  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels}, timing,
+                       quiet, control);
 }
 
 }  // namespace mercury

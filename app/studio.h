@@ -33,7 +33,8 @@ class Studio {
   bool positions_on_card() const { return bridge_.on_card; }
   const std::string& bridge_note() const { return bridge_.note; }
   // See film().
-  FilmResult film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet);
+  FilmResult film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet,
+                  FilmControl* control = nullptr);
 
  private:
   Stage& stage_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <map>
@@ -119,11 +118,21 @@ OptionValues options_of(const Generation& generation) {
   return generation.kind == Generation::Kind::voxel ? options_of(generation.voxel) : options_of(generation.network);
 }
 
+// Numbers as they are, everything else as text in quotes.
 std::string toml_value(const std::string& text) {
-  char* end = nullptr;
-  (void)std::strtod(text.c_str(), &end);
-  const bool number = !text.empty() && *end == 0 && text != "inf" && text != "nan";
-  return number ? text : fmt::format("\"{}\"", text);
+  const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+  const bool decimal = text.find_first_not_of("0123456789.-") == std::string::npos && text.find('.') > 0 &&
+                       text.find('.') + 1 < text.size() && std::count(text.begin(), text.end(), '.') == 1 &&
+                       text.find_last_of('-') == (text.starts_with('-') ? 0 : std::string::npos);
+  if (!text.empty() && ((digits && (text == "0" || text.front() != '0') && text.size() < 19) || decimal)) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    if (code < 0x20 || code == 0x7f) quoted += fmt::format("\\u{:04x}", code);
+    else quoted += letter;
+  }
+  return quoted + "\"";
 }
 
 }  // namespace
@@ -243,16 +252,22 @@ std::string shell_quoted(const std::string& word) {
   return quoted + "'";
 }
 
-std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment) {
+std::string toml_of(const OptionValues& options, const std::string& comment) {
   std::string text = "# ";
   for (const char letter : comment) {
     text += letter;
     if (letter == '\n') text += "# ";
   }
   text += "\n";
-  for (const auto& [name, value] : options_of(configuration))
+  for (const auto& [name, value] : options)
     text += fmt::format("{} = {}\n", name.substr(2), value.empty() ? "true" : toml_value(value));
-  return text + fmt::format("seconds = {}\n", seconds);
+  return text;
+}
+
+std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment) {
+  OptionValues options = options_of(configuration);
+  options.emplace_back("--seconds", fmt::format("{}", seconds));
+  return toml_of(options, comment);
 }
 
 }  // namespace mercury

@@ -11,6 +11,7 @@
 
 #include "app/live/background.h"
 #include "app/live/command_text.h"
+#include "app/live/group_film.h"
 #include "app/live/live_picture.h"
 #include "app/live/picking.h"
 #include "app/live/physics.h"
@@ -147,6 +148,9 @@ class LiveScene {
   std::string csv(const std::vector<RobotId>& robots) const;  // time series, one column a robot and quantity
   std::string ranking_csv() const;
   SaveResult save_text(const std::filesystem::path& path, const std::string& text, bool overwrite = false);
+
+  // A film of the robots that are not hidden, from time 0, in the background.
+  std::unique_ptr<GroupFilm> film(const GroupFilmOptions& options) const;
 
   // Explosions.
   std::vector<Explosion> take_explosions();

@@ -51,4 +51,12 @@ std::string file_name_of(std::string_view name) {
   return text.empty() ? "robot" : text;
 }
 
+fs::path unused_name(const fs::path& wanted) {
+  std::error_code ignored;
+  fs::path name = wanted;
+  for (int number = 2; fs::exists(name, ignored); ++number)
+    name = wanted.parent_path() / (wanted.stem().string() + "-" + std::to_string(number) + wanted.extension().string());
+  return name;
+}
+
 }  // namespace mercury

@@ -27,4 +27,7 @@ SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite);
 // A name for a file, without what no file's name may have; "robot" if nothing is left.
 std::string file_name_of(std::string_view name);
 
+// `wanted`, or the first of wanted-2, wanted-3, ... that does not exist.
+std::filesystem::path unused_name(const std::filesystem::path& wanted);
+
 }  // namespace mercury

@@ -1,0 +1,117 @@
+#include "app/live/group_film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "app/studio.h"
+#include "sim/error.h"
+
+namespace mercury {
+namespace {
+
+FilmTiming timing_of(const GroupFilmOptions& options) {
+  const double interval = options.speed / options.frames_per_second;
+  if (!(std::isfinite(options.seconds) && options.seconds > 0))
+    throw InputError("seconds", "give a finite number above 0");
+  if (!(std::isfinite(interval) && interval > 0)) throw InputError("speed", "give a finite number above 0");
+  const double frames = std::round(options.seconds / interval);
+  if (frames > 1e7) throw InputError("seconds", "that would be too many frames");
+  return {.frames = std::max<std::int64_t>(1, static_cast<std::int64_t>(frames)),
+          .interval = interval,
+          .pace = 1 / options.frames_per_second};
+}
+
+Simulation simulation_of(const std::vector<LiveRobot>& live, const Configuration& configuration) {
+  std::vector<Robot> robots;
+  for (const LiveRobot& robot : live) {
+    robots.push_back(*robot.robot);
+    robots.back().name = robot.name;
+  }
+  Simulation simulation(configuration, robots);
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    if (!live[i].materials) continue;
+    for (std::size_t id = 1; id < live[i].materials->size(); ++id)
+      simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
+  }
+  return simulation;
+}
+
+}  // namespace
+
+struct GroupFilm::Parts {
+  std::vector<LiveRobot> robots;
+  Configuration configuration;
+  ViewSettings view;
+  GroupFilmOptions options;
+  FilmControl control;
+  mutable std::mutex mutex;
+  FilmStatus told;
+  std::thread thread;
+
+  void tell(FilmStatus::State state, const std::string& error = {}) {
+    const std::lock_guard lock(mutex);
+    told.state = state;
+    told.error = error;
+  }
+
+  void make() {
+    try {
+      const VideoKind kind = video_kind_of(options.output);
+      const PictureSize size = encoded_size(kind, options.size);
+      const FilmTiming timing = timing_of(options);
+      {
+        const std::lock_guard lock(mutex);
+        told.total = timing.frames;
+      }
+      if (robots.empty()) throw InputError("there is no robot to film");
+      const auto writer = open_frame_writer(options.output, {.size = size,
+                                                             .frames_per_second = options.frames_per_second,
+                                                             .expected_frames = timing.frames});
+      view.speed = options.speed;
+      Simulation simulation = simulation_of(robots, configuration);
+      Stage stage = make_stage(options.context, size, options.quality);
+      Studio studio(stage, std::move(simulation), view);
+      const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
+      if (control.stop || result.interrupted) return tell(FilmStatus::State::cancelled);
+      tell(FilmStatus::State::finishing);
+      writer->finish();
+      tell(FilmStatus::State::done);
+    } catch (const std::exception& error) {
+      tell(FilmStatus::State::failed, error.what());
+    }
+  }
+};
+
+GroupFilm::GroupFilm(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
+                     const GroupFilmOptions& options)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->robots = std::move(robots);
+  parts_->configuration = configuration;
+  parts_->view = view;
+  parts_->options = options;
+  parts_->told.file = options.output;
+  parts_->thread = std::thread([parts = parts_.get()] { parts->make(); });
+}
+
+GroupFilm::~GroupFilm() {
+  cancel();
+  wait();
+}
+
+FilmStatus GroupFilm::status() const {
+  const std::lock_guard lock(parts_->mutex);
+  FilmStatus status = parts_->told;
+  status.frames = parts_->control.frames;
+  return status;
+}
+
+void GroupFilm::cancel() { parts_->control.stop = true; }
+
+void GroupFilm::wait() {
+  if (parts_->thread.joinable()) parts_->thread.join();
+}
+
+}  // namespace mercury

@@ -1,0 +1,100 @@
+#include "app/live/remembered.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <system_error>
+
+#include "app/config_file.h"
+#include "app/live/command_text.h"
+#include "app/live/robot_saving.h"
+#include "app/nn_options.h"
+#include "app/option_values.h"
+#include "app/view_options.h"
+#include "app/voxel_options.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The file's options, read as those of the command line are.
+class RememberedOptions {
+ public:
+  RememberedOptions() {
+    CLI::App& scene = *program_.add_subcommand("scene");
+    view_.add_to(scene);
+    voxel_.add_to(scene);
+    network_.add_to(scene);
+    add_choice(scene, "--kind", kind_, {"voxel", "nn"}, "");
+    add_number(scene, "--count", count_, "", "N");
+    add_number(scene, "--seed", seed_, "", "N");
+    scene.add_flag("--pause-on-explosion", pause_);
+    add_text(scene, "--folder", folder_, "", "PATH");
+  }
+
+  Remembered read(const fs::path& path) {
+    const ConfigFile file(path.string(), program_, *program_.get_subcommand("scene"), {});
+    std::vector<std::string> arguments{"scene"};
+    arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
+    program_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    Remembered remembered{.view = view_.settings(), .pause_on_explosion = pause_, .folder = folder_};
+    remembered.generation.kind = kind_ == "nn" ? Generation::Kind::network : Generation::Kind::voxel;
+    remembered.generation.count = std::clamp<std::uint64_t>(count_, 1, 100'000);
+    remembered.generation.seed = seed_;
+    remembered.generation.voxel = voxel_.chosen();
+    remembered.generation.network = network_.chosen();
+    return remembered;
+  }
+
+ private:
+  CLI::App program_{"", "mercury"};
+  ViewOptions view_;
+  VoxelOptions voxel_;
+  NnRobotOptions network_;
+  std::string kind_ = "voxel", folder_;
+  std::uint64_t count_ = Generation{}.count, seed_ = Generation{}.seed;
+  bool pause_ = false;
+};
+
+}  // namespace
+
+fs::path remembered_path() {
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder == '/') return fs::path(folder) / "mercury/scene.toml";
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".config/mercury/scene.toml";
+  return {};
+}
+
+Remembered load_remembered(const fs::path& path, Messages& messages) {
+  std::error_code error;
+  if (path.empty() || !fs::exists(path, error)) return {};
+  try {
+    return RememberedOptions().read(path);
+  } catch (const std::exception& problem) {
+    const fs::path aside = unused_name(path.string() + ".broken");
+    fs::rename(path, aside, error);
+    messages.add(Severity::warning, fmt::format("the settings were not understood and are put aside as {}: {}",
+                                                error ? path.string() : aside.string(), problem.what()));
+    return {};
+  }
+}
+
+void save_remembered(const fs::path& path, const Remembered& remembered, Messages& messages) {
+  if (path.empty()) return;
+  OptionValues options = options_of(remembered.view);
+  for (const auto& more : {options_of(remembered.generation.voxel), options_of(remembered.generation.network)})
+    options.insert(options.end(), more.begin(), more.end());
+  const Generation& generation = remembered.generation;
+  options.emplace_back("--kind", generation.kind == Generation::Kind::voxel ? "voxel" : "nn");
+  options.emplace_back("--count", fmt::to_string(generation.count));
+  options.emplace_back("--seed", fmt::to_string(generation.seed));
+  if (remembered.pause_on_explosion) options.emplace_back("--pause-on-explosion", "");
+  if (!remembered.folder.empty()) options.emplace_back("--folder", remembered.folder);
+  const SaveResult result = save_files({{path, toml_of(options, "What mercury view remembers.")}}, true);
+  if (!result.ok()) messages.add(Severity::warning, "settings: " + result.message);
+}
+
+}  // namespace mercury
