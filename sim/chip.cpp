@@ -27,7 +27,7 @@ std::size_t chip_bytes(const Robot& robot, const Configuration& configuration) {
   Shape shape;
   shape.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
   shape.contact_buckets = contact_buckets(configuration.environment, groups_of(robot));
-  return block_layout(shape, groups_of(robot), working_rows(configuration.solver)).total;
+  return block_layout(shape, groups_of(robot), working_rows(configuration.solver, false)).total;
 }
 
 }  // namespace mercury

@@ -9,7 +9,7 @@
 namespace mercury {
 
 // Shared memory of a block that steps this one robot, with no room spent on speed [bytes]: 36 a mass (paper, table II),
-// XPBD 40, the table of materials, rest lengths, and on land the grid that finds contacts. A device whose blocks may have
+// the table of materials, rest lengths, and on land the grid that finds contacts. A device whose blocks may have
 // so much steps the robot on the chip, the contacts too.
 std::size_t chip_bytes(const Robot& robot, const Configuration& configuration);
 

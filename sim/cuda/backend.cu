@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/chip.h"
 #include "sim/cuda/batch.h"
@@ -47,14 +48,14 @@ class CudaBackend final : public Backend {
   double busy_seconds() const override { return busy_seconds_; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
-    use_device();
+    begin_change();
     batch_ = Batch();
     batch_ = Batch(robots);
     configure(configuration);
   }
 
   void configure(const Configuration& configuration) override {
-    use_device();
+    begin_change();
     configuration_ = configuration;
     batch_.configure(configuration);
     hooks_ = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
@@ -78,6 +79,9 @@ class CudaBackend final : public Backend {
       launch_steps(configuration_.solver, hooks_, arguments, nullptr);
     }
     end.record();
+    // Who asked for a report after the last call will ask again: it is on its way before the host has heard of the end.
+    report_started_ = std::exchange(report_expected_, false);
+    if (report_started_) start_report({clock.dt, clock.base_time, clock.base_step, clock.step + steps});
     busy_seconds_ += end.seconds_since(start);
   }
 
@@ -90,7 +94,7 @@ class CudaBackend final : public Backend {
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    use_device();
+    begin_change();
     std::vector<float> groups(std::size_t{batch_.groups()} * state_rows * lanes);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       put_vector(groups, i, 0, positions[i]);
@@ -119,17 +123,17 @@ class CudaBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    use_device();
+    begin_change();
     batch_.set_status(robot, {status.exploded_step, status.bad_mass});
   }
 
   void write_materials(std::span<const Material> tables) override {
-    use_device();
+    begin_change();
     batch_.set_materials(0, tables, configuration_);
     choose();
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
-    use_device();
+    begin_change();
     batch_.set_materials(robot, table, configuration_);
     choose();
   }
@@ -143,9 +147,8 @@ class CudaBackend final : public Backend {
     std::vector<RobotReport> all(batch_.size());
     if (all.empty()) return all;
     use_device();
-    batch_.update_phases(clock);
-    if (sums_.size() != all.size()) sums_ = MappedArray<DeviceTelemetry>(all.size());
-    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment), batch_.rows_placed(), sums_.on_device());
+    if (!std::exchange(report_started_, false)) start_report(clock);
+    report_expected_ = true;
     check(cudaDeviceSynchronize(), "reading telemetry");
     for (std::size_t i = 0; i < all.size(); ++i) {
       const DeviceTelemetry& sums = sums_[i];
@@ -169,9 +172,10 @@ class CudaBackend final : public Backend {
   void choose() {
     if (batch_.size() == 0) return;
     shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.view(), batch_.same_laws());
-    batch_.place_records(shape_.on_chip ? working_rows(configuration_.solver) : 0);
+    const std::uint32_t rows = working_rows(configuration_.solver, shape_.splits_on_chip);
+    batch_.place_records(shape_.on_chip ? rows : 0);
     std::size_t workspace = 0;
-    if (!shape_.on_chip) workspace += std::size_t{batch_.groups()} * working_rows(configuration_.solver) * row_bytes;
+    if (!shape_.on_chip) workspace += std::size_t{batch_.groups()} * rows * row_bytes;
     if (!shape_.contacts_on_chip) workspace += contact_bytes(shape_.contact_buckets, batch_.groups());
     batch_.reserve_workspace(workspace);
   }
@@ -196,10 +200,23 @@ class CudaBackend final : public Backend {
     at[2 * lanes] = value.z;
   }
 
+  // What the caller changes makes a report that was begun before void.
+  void begin_change() {
+    use_device();
+    report_started_ = false;
+  }
+
+  void start_report(const Clock& clock) const {
+    batch_.update_phases(clock);
+    if (sums_.size() != batch_.size()) sums_ = MappedArray<DeviceTelemetry>(batch_.size());
+    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment), batch_.rows_placed(), sums_.on_device());
+  }
+
   int device_;
   std::string name_;
   mutable Batch batch_;  // its phases follow the clock when somebody asks
   mutable MappedArray<DeviceTelemetry> sums_;
+  mutable bool report_expected_ = false, report_started_ = false;
   mutable DeviceArray<float> packed_;  // what is read of all masses
   Configuration configuration_;
   AnyHooks hooks_ = OceanHooks(Ocean{});

@@ -22,10 +22,6 @@ inline std::uint32_t groups_of(const Robot& robot) {
 // The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
 std::vector<float> lengths_of(const Robot& robot);
 
-inline std::uint32_t working_rows(Solver solver) {
-  return solver == Solver::force ? working_rows_force : working_rows_xpbd;
-}
-
 // What a block has and does.
 struct Shape {
   std::uint32_t robots_per_block = 1;
@@ -33,6 +29,7 @@ struct Shape {
   std::uint32_t table_copy_bits = 0;  // 2^this many copies of the material table, at most 16
   bool shared_table = false;        // all robots of the batch have the same materials
   bool on_chip = true;              // masses in shared memory, else in the workspace
+  bool splits_on_chip = true;       // and beside them the number of springs at each, which XPBD needs
   std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
   std::uint32_t record_words = 2;   // of the batch
   bool contacts_on_chip = true;       // else behind the working memory in the workspace

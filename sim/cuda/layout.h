@@ -6,7 +6,9 @@
 
 #include <cstdint>
 
+#include "sim/configuration.h"
 #include "sim/cuda/schedule.h"
+#include "sim/host_device.h"
 #include "sim/material.h"
 #include "sim/muscle.h"
 #include "sim/vec3.h"
@@ -20,8 +22,14 @@ inline constexpr std::uint32_t state_rows = 6;
 
 // Rows of a group while it is stepped: positions, velocities, sums, and for XPBD the number of springs at a mass.
 enum Row : std::uint32_t { row_x = 0, row_v = 3, row_sum = 6, row_splits = 9 };
-inline constexpr std::uint32_t working_rows_force = 9;
-inline constexpr std::uint32_t working_rows_xpbd = 10;
+MERCURY_HOST_DEVICE constexpr std::uint32_t working_rows(Solver solver, bool keeps_splits) {
+  return solver == Solver::xpbd && keeps_splits ? 10 : 9;
+}
+
+// The mass whose working memory begins so many words behind the first one's; with 0 rows, places are masses.
+MERCURY_HOST_DEVICE constexpr std::uint32_t mass_at(std::uint32_t place, std::uint32_t rows) {
+  return rows == 0 ? place : place / (rows * lanes) * lanes + place % lanes;
+}
 
 // A scheduled spring. `key` = partner << 16 | length << 8 | material. The partner is a mass index or, on the chip, the
 // mass's offset in the working memory, in words. Robots that have at most 256 different rest lengths name theirs by

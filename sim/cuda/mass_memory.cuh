@@ -1,4 +1,4 @@
-// Where masses stand while they are stepped: on the chip, or in device memory if they are too many. Both look alike to
+// Where masses stand while they are stepped: on the chip, or in device memory if they are too many. All look alike to
 // the step kernel: an address, and rows at constant distances from it.
 #pragma once
 
@@ -11,6 +11,8 @@ namespace mercury::cuda {
 class OnChip {
  public:
   using Address = std::uint32_t;
+  static constexpr bool on_chip = true;
+  static constexpr bool keeps_splits = true;  // XPBD's number of springs at a mass stands beside the mass
 
   __device__ static float load(Address at, std::uint32_t offset) {
     float value;
@@ -25,9 +27,17 @@ class OnChip {
   }
 };
 
+// For robots that are too large by this one row: the numbers of springs are read from device memory.
+class OnChipWithoutSplits : public OnChip {
+ public:
+  static constexpr bool keeps_splits = false;
+};
+
 class OffChip {
  public:
   using Address = char*;
+  static constexpr bool on_chip = false;
+  static constexpr bool keeps_splits = true;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     return *reinterpret_cast<volatile float*>(at + offset);

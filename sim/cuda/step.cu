@@ -19,7 +19,6 @@ template <Solver solver, class Hooks, class Memory, int record_words>
 __global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Hooks hooks) {
   using Stepper = RobotStepper<solver, Hooks, Memory, record_words>;
-  constexpr bool on_chip = std::is_same_v<Memory, OnChip>;
   const Shape& shape = arguments.shape;
   const BatchView& batch = arguments.batch;
   const std::uint32_t lane = threadIdx.x % lanes, block_warp = threadIdx.x / lanes;
@@ -32,13 +31,13 @@ __global__ void __maxnreg__(72)
   auto* const failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + seat;
   char* const workspace = batch.workspace + std::size_t{robot} * batch.workspace_stride;
   typename Memory::Address masses;
-  if constexpr (on_chip)
+  if constexpr (Memory::on_chip)
     masses = shared_address(shared_memory) + layout.contacts + seat * working_bytes;
   else
     masses = workspace;
   char* const contacts = shape.contacts_on_chip
                              ? shared_memory + layout.lengths + seat * contact_bytes(shape.contact_buckets, batch.group_stride)
-                             : workspace + (on_chip ? 0 : working_bytes);
+                             : workspace + (Memory::on_chip ? 0 : working_bytes);
 
   const std::uint32_t table_copies = 1u << shape.table_copy_bits;
   SpringLaw* const table = reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : seat * table_copies * max_materials);
@@ -81,11 +80,16 @@ __global__ void __maxnreg__(72)
   if (seated) stepper.store_state();
 }
 
+template <Solver solver, class Hooks, int record_words>
+auto kernel_for(const Shape& shape) {
+  if constexpr (solver == Solver::xpbd)
+    if (shape.on_chip && !shape.splits_on_chip) return step_kernel<solver, Hooks, OnChipWithoutSplits, record_words>;
+  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, record_words> : step_kernel<solver, Hooks, OffChip, record_words>;
+}
+
 template <Solver solver, class Hooks>
 auto kernel_for(const Shape& shape) {
-  if (shape.record_words == 1)
-    return shape.on_chip ? step_kernel<solver, Hooks, OnChip, 1> : step_kernel<solver, Hooks, OffChip, 1>;
-  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, 2> : step_kernel<solver, Hooks, OffChip, 2>;
+  return shape.record_words == 1 ? kernel_for<solver, Hooks, 1>(shape) : kernel_for<solver, Hooks, 2>(shape);
 }
 
 template <class Kernel>
@@ -172,18 +176,22 @@ std::size_t most_shared_bytes() { return device_limits().shared_per_block; }
 Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws) {
   const Limits limits = device_limits();
   const std::uint32_t groups = batch.group_stride, robots = batch.robot_count;
-  const std::uint32_t rows = working_rows(solver);
   Shape shape;
   shape.shared_table = same_laws;
   shape.record_words = batch.record_words;
   shape.contact_buckets = contact_buckets(environment, groups);
   // Fewer robots than multiprocessors: each gets one to itself.
-  if (robots > limits.multiprocessors && fit_several(shape, groups, rows, limits, robots)) return shape;
-  if (fit_one(shape, groups, rows, limits)) return shape;
-  shape.contacts_on_chip = false;
-  if (fit_one(shape, groups, rows, limits)) return shape;
+  const std::uint32_t all_rows = working_rows(solver, true);
+  if (robots > limits.multiprocessors && fit_several(shape, groups, all_rows, limits, robots)) return shape;
+  for (const bool contacts_on_chip : {true, false})
+    for (const bool splits_on_chip : {true, false}) {
+      shape.contacts_on_chip = contacts_on_chip;
+      shape.splits_on_chip = splits_on_chip;
+      if (fit_one(shape, groups, working_rows(solver, splits_on_chip), limits)) return shape;
+    }
   shape.on_chip = false;
-  fit_one(shape, groups, rows, limits);
+  shape.splits_on_chip = true;
+  fit_one(shape, groups, all_rows, limits);
   return shape;
 }
 

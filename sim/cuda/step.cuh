@@ -17,7 +17,7 @@ namespace mercury::cuda {
 template <Solver solver, class Hooks, class Memory, int record_words>
 class RobotStepper {
  public:
-  static constexpr std::uint32_t rows = solver == Solver::force ? working_rows_force : working_rows_xpbd;
+  static constexpr std::uint32_t rows = working_rows(solver, Memory::keeps_splits);
   static constexpr std::uint32_t group_bytes = rows * row_bytes;
   using Address = typename Memory::Address;
 
@@ -40,8 +40,7 @@ class RobotStepper {
       const float* from = state(g);
       for (std::uint32_t row = 0; row < state_rows; ++row) mass.set_value(row, from[row * lanes]);
       mass.set_sum(solver == Solver::force ? springs_bias(g) : 0);
-      if constexpr (solver == Solver::xpbd)
-        mass.set_value(row_splits, arguments_.batch.splits[mass_index(g)] / record_.correction_scale);
+      if constexpr (solver == Solver::xpbd && Memory::keeps_splits) mass.set_value(row_splits, splits_of(g * lanes + lane_));
     }
   }
 
@@ -162,7 +161,7 @@ class RobotStepper {
     return reinterpret_cast<const Record*>(arguments_.batch.springs) + std::size_t{robot_} * arguments_.batch.row_stride * lanes;
   }
   __device__ Mass<Memory> partner_of(const Record& record) const {
-    if constexpr (std::is_same_v<Memory, OnChip>)
+    if constexpr (Memory::on_chip)
       return {masses_ + (record.x >> 16) * 4};
     else
       return at(record.x >> 16);
@@ -172,6 +171,26 @@ class RobotStepper {
       return OnChip::load(lengths_ + (record.x >> 8 & 0xff) * 4, 0);
     else
       return __uint_as_float(record.y);
+  }
+
+  // The number of springs at a mass, in units of corrections.
+  __device__ float splits_of(std::uint32_t mass) const {
+    const float* splits = arguments_.batch.splits + std::size_t{robot_} * arguments_.batch.group_stride * lanes;
+    return __ldg(splits + mass) / record_.correction_scale;
+  }
+  __device__ float own_splits(std::uint32_t group, const Mass<Memory>& mass) const {
+    if constexpr (solver == Solver::force)
+      return 0;
+    else if constexpr (Memory::keeps_splits)
+      return mass.value(row_splits);
+    else
+      return splits_of(group * lanes + lane_);
+  }
+  __device__ float partner_splits(const Record& record, const Mass<Memory>& partner) const {
+    if constexpr (Memory::keeps_splits)
+      return partner.value(row_splits);
+    else
+      return splits_of(mass_at(record.x >> 16, rows));
   }
 
   // What every spring that ends at a mass adds to its sum besides its force: the bits of the rounding constant.
@@ -229,7 +248,7 @@ class RobotStepper {
       rest_length[i] = rest_length_of(records[i]);
       d[i] = owner.x - partner[i].vector(row_x);
       law[i] = load_pair(table_ + (records[i].x & 0xff) * law_bytes());
-      if constexpr (solver == Solver::xpbd) splits[i] = owner.splits + partner[i].value(row_splits);
+      if constexpr (solver == Solver::xpbd) splits[i] = owner.splits + partner_splits(records[i], partner[i]);
     }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
@@ -282,7 +301,7 @@ class RobotStepper {
       const Mass<Memory> mass = own(g);
       const std::uint32_t last = start[g + 1];
       const int bias = static_cast<int>(last - row) * rounding_magic_bits;
-      Owner owner{mass.vector(row_x), solver == Solver::xpbd ? mass.value(row_splits) : 0.0f, bias, bias, bias};
+      Owner owner{mass.vector(row_x), own_splits(g, mass), bias, bias, bias};
       for (; row < last; row += rows_at_once) {
         Record present[rows_at_once];
 #pragma unroll
@@ -384,7 +403,7 @@ class RobotStepper {
 
   // Whether mass i owns a spring to mass j.
   __device__ bool owns(std::uint32_t i, std::uint32_t j) const {
-    const std::uint32_t wanted = std::is_same_v<Memory, OnChip> ? offset_of(j) / 4 : j, group = i / lanes;
+    const std::uint32_t wanted = Memory::on_chip ? offset_of(j) / 4 : j, group = i / lanes;
     const Record* spring = springs() + i % lanes;
     for (std::uint32_t row = row_start()[group]; row < row_start()[group + 1]; ++row) {
       const std::uint32_t key = spring[std::size_t{row} * lanes].x;

@@ -25,10 +25,12 @@ __device__ void add_masses(const float* state, std::uint32_t masses, Share& shar
   }
 }
 
-// What the springs of a robot are measured with, in shared memory: each mass and material is looked at many times.
+// What the springs of a robot are measured with, in shared memory. Every lane of a quarter-warp has its own copy of the
+// laws, for lanes look up different materials at once.
 struct SharedTables {
-  float factor[max_materials], stiffness[max_materials];
-  float lengths[max_lengths];
+  static constexpr std::uint32_t copies = 8;
+  float2 laws[max_materials * copies];  // L / L0, and half the stiffness
+  float2 lengths[max_lengths];          // L0 and 1 / L0
 };
 
 __device__ void fill(SharedTables& tables, const BatchView& batch, std::uint32_t robot, std::int64_t steps_since_base,
@@ -36,12 +38,15 @@ __device__ void fill(SharedTables& tables, const BatchView& batch, std::uint32_t
   for (std::uint32_t id = threadIdx.x; id < max_materials; id += threads) {
     const std::size_t place = std::size_t{robot} * max_materials + id;
     const Material material = batch.materials[place];
-    tables.factor[id] = muscle_factor(material.amplitude, phase_at(batch.phases[place], steps_since_base));
-    tables.stiffness[id] = stiffness_scale * material.stiffness;
+    const float factor = muscle_factor(material.amplitude, phase_at(batch.phases[place], steps_since_base));
+    const float2 law{factor, id == air ? 0.0f : 0.5f * stiffness_scale * material.stiffness};
+    for (std::uint32_t copy = 0; copy < SharedTables::copies; ++copy) tables.laws[id * SharedTables::copies + copy] = law;
   }
   if (batch.record_words == 1)
-    for (std::uint32_t i = threadIdx.x; i < max_lengths; i += threads)
-      tables.lengths[i] = batch.lengths[std::size_t{robot} * max_lengths + i];
+    for (std::uint32_t i = threadIdx.x; i < max_lengths; i += threads) {
+      const float length = batch.lengths[std::size_t{robot} * max_lengths + i];
+      tables.lengths[i] = {length, 1 / length};
+    }
 }
 
 // Positions as they stand in memory, [group][rows][32], or copied to shared memory with three rows.
@@ -54,33 +59,56 @@ struct Positions {
   }
 };
 
+template <int record_words>
 struct Springs {
-  const std::uint32_t* records;
+  using Record = std::conditional_t<record_words == 1, uint1, uint2>;
+  const Record* records;
   const std::uint32_t* row_start;
-  std::uint32_t record_words, groups, rows_placed;
-
-  __device__ std::uint32_t partner(std::uint32_t key) const {
-    const std::uint32_t place = key >> 16;
-    return rows_placed == 0 ? place : place / (rows_placed * lanes) * lanes + place % lanes;
-  }
+  std::uint32_t groups;
 };
 
-__device__ void add_springs(const Positions& positions, const Springs& springs, const SharedTables& tables, Share& share) {
+// `count` rows at once, so that their loads are under way together.
+template <int rows, int record_words, int count>
+__device__ void add_rows(const Positions& positions, const typename Springs<record_words>::Record (&records)[count], Vec3 own,
+                         const SharedTables& tables, Share& share) {
+  const std::uint32_t copy = threadIdx.x % SharedTables::copies;
+  float energy = 0;
+#pragma unroll
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t key = records[i].x, id = key & 0xff;
+    float2 length;
+    if constexpr (record_words == 1) {
+      length = tables.lengths[key >> 8 & 0xff];
+    } else {
+      length.x = __uint_as_float(records[i].y);
+      length.y = 1 / length.x;
+    }
+    const float2 law = tables.laws[id * SharedTables::copies + copy];
+    const Vec3 d = positions[mass_at(key >> 16, rows)] - own;
+    const float distance = sqrtf(dot(d, d));
+    const float stretch = distance - length.x * law.x;
+    energy += law.y * stretch * stretch;
+    if (id != air) share.strain = fmaxf(share.strain, fabsf(distance - length.x) * length.y);
+  }
+  share.sums[7] += static_cast<double>(energy);
+}
+
+template <int rows, int record_words>
+__device__ void add_springs(const Positions& positions, const Springs<record_words>& springs, const SharedTables& tables,
+                            Share& share) {
+  using Record = typename Springs<record_words>::Record;
   const std::uint32_t lane = threadIdx.x % lanes;
   for (std::uint32_t group = threadIdx.x / lanes; group < springs.groups; group += threads / lanes) {
     const Vec3 own = positions[group * lanes + lane];
     const std::uint32_t last = springs.row_start[group + 1];
-#pragma unroll 4
-    for (std::uint32_t row = springs.row_start[group]; row < last; ++row) {
-      const std::uint32_t* record = springs.records + (std::size_t{row} * lanes + lane) * springs.record_words;
-      const std::uint32_t key = *record, id = key & 0xff;
-      if (id == air) continue;
-      const float rest_length = springs.record_words == 1 ? tables.lengths[key >> 8 & 0xff] : __uint_as_float(record[1]);
-      const Vec3 d = positions[springs.partner(key)] - own;
-      const float distance = sqrtf(dot(d, d));
-      const auto stretch = static_cast<double>(distance - rest_length * tables.factor[id]);
-      share.sums[7] += 0.5 * static_cast<double>(tables.stiffness[id]) * stretch * stretch;
-      share.strain = fmaxf(share.strain, fabsf(distance - rest_length) / rest_length);
+    for (std::uint32_t row = springs.row_start[group]; row < last; row += rows_at_once) {
+      Record records[rows_at_once];
+#pragma unroll
+      for (std::uint32_t i = 0; i < rows_at_once; ++i) {
+        records[i] = springs.records[std::size_t{row + i} * lanes + lane];
+        if (row + i >= last) records[i].x &= ~0xffu;  // air: a row of the next group
+      }
+      add_rows<rows, record_words>(positions, records, own, tables, share);
     }
   }
 }
@@ -103,8 +131,9 @@ __device__ void reduce(Share (&shares)[threads / lanes], Share share, DeviceTele
 }
 
 // `on_chip`: the robots' positions fit into shared memory.
-__global__ void telemetry_kernel(BatchView batch, Clock clock, float stiffness_scale, std::uint32_t rows_placed, bool on_chip,
-                                 DeviceTelemetry* out) {
+template <int rows, int record_words>
+__global__ void __launch_bounds__(threads)
+    telemetry_kernel(BatchView batch, Clock clock, float stiffness_scale, bool on_chip, DeviceTelemetry* out) {
   extern __shared__ float copied[];
   __shared__ SharedTables tables;
   __shared__ Share shares[threads / lanes];
@@ -118,14 +147,22 @@ __global__ void telemetry_kernel(BatchView batch, Clock clock, float stiffness_s
   Share share{};
   add_masses(state, record.masses, share);
   __syncthreads();
-  const Springs springs{batch.springs + std::size_t{robot} * batch.row_stride * lanes * batch.record_words,
-                        batch.row_start + std::size_t{robot} * (batch.group_stride + 1), batch.record_words, record.groups,
-                        rows_placed};
+  using Record = typename Springs<record_words>::Record;
+  const Springs<record_words> springs{
+      reinterpret_cast<const Record*>(batch.springs) + std::size_t{robot} * batch.row_stride * lanes,
+      batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups};
   if (on_chip)
-    add_springs({copied, 3}, springs, tables, share);
+    add_springs<rows>({copied, 3}, springs, tables, share);
   else
-    add_springs({state, state_rows}, springs, tables, share);
+    add_springs<rows>({state, state_rows}, springs, tables, share);
   reduce(shares, share, out[robot], batch.statuses[robot]);
+}
+
+template <int record_words>
+auto kernel_for(std::uint32_t rows) {
+  if (rows == 0) return telemetry_kernel<0, record_words>;
+  constexpr int with_splits = working_rows(Solver::xpbd, true), without = working_rows(Solver::force, true);
+  return rows == with_splits ? telemetry_kernel<with_splits, record_words> : telemetry_kernel<without, record_words>;
 }
 
 }  // namespace
@@ -133,9 +170,10 @@ __global__ void telemetry_kernel(BatchView batch, Clock clock, float stiffness_s
 void launch_telemetry(const BatchView& batch, const Clock& clock, float stiffness_scale, std::uint32_t rows,
                       DeviceTelemetry* out) {
   const std::size_t bytes = std::size_t{batch.group_stride} * 3 * row_bytes;
-  constexpr std::size_t most_bytes = 40960;  // beside the tables, within what every device grants without being asked
+  constexpr std::size_t most_bytes = 28672;  // beside the tables, within what every device grants without being asked
   const bool on_chip = bytes <= most_bytes;
-  telemetry_kernel<<<batch.robot_count, threads, on_chip ? bytes : 0>>>(batch, clock, stiffness_scale, rows, on_chip, out);
+  const auto kernel = batch.record_words == 1 ? kernel_for<1>(rows) : kernel_for<2>(rows);
+  kernel<<<batch.robot_count, threads, on_chip ? bytes : 0>>>(batch, clock, stiffness_scale, on_chip, out);
   check(cudaGetLastError(), "starting the telemetry kernel");
 }
 

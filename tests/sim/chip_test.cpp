@@ -28,9 +28,9 @@ TEST(Chip, AMassTakesThe36BytesOfThePaper) {
   EXPECT_LE(bytes(1248), 48 * 1024u);
 }
 
-TEST(Chip, XpbdTakesFourBytesAMassMore) {
+TEST(Chip, XpbdDoesWithAsMuch) {
   const Robot robot = chain(640);
-  EXPECT_EQ(chip_bytes(robot, {.solver = Solver::xpbd}) - chip_bytes(robot, {}), 640u * 4);
+  EXPECT_EQ(chip_bytes(robot, {.solver = Solver::xpbd}), chip_bytes(robot, {}));
 }
 
 TEST(Chip, OnlyContactsTakeRoomOnLand) {

@@ -1,0 +1,66 @@
+// What telemetry of a whole batch adds to a call of 100 steps. Both are timed in turn, so that a clock that changes
+// meets both: bench_telemetry [device] [robots] [turns]
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "robots/random_voxel.h"
+#include "sim/simulation.h"
+
+namespace mercury {
+namespace {
+
+double seconds_of(const auto& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+void measure(const Configuration& configuration, const std::vector<Robot>& robots, int turns) {
+  Simulation simulation(configuration, robots);
+  constexpr int steps = 100;
+  simulation.step(steps);
+  std::vector<double> alone, together;
+  for (int turn = 0; turn < turns; ++turn) {
+    alone.push_back(seconds_of([&] {
+      for (int call = 0; call < 4; ++call) simulation.step(steps);
+    }));
+    simulation.step(steps);
+    (void)simulation.telemetry();
+    together.push_back(seconds_of([&] {
+      for (int call = 0; call < 4; ++call) {
+        simulation.step(steps);
+        (void)simulation.telemetry();
+      }
+    }));
+  }
+  std::printf("%-28s %5zu robots  %8.1f us a call of %d steps, %6.1f us with telemetry: +%.2f %%\n",
+              simulation.device_name().c_str(), simulation.size(), 1e6 * median(alone) / 4, steps, 1e6 * median(together) / 4,
+              100 * (median(together) / median(alone) - 1));
+}
+
+}  // namespace
+}  // namespace mercury
+
+int main(int argc, char** argv) {
+  using namespace mercury;
+  Configuration configuration;
+  configuration.device = device_named(argc > 1 ? argv[1] : "auto");
+  const std::size_t count = argc > 2 ? std::stoul(argv[2]) : 528;
+  const int turns = argc > 3 ? std::stoi(argv[3]) : 200;
+  RandomVoxelOptions full;
+  full.smallest = full.largest = {10, 10, 10};
+  full.air = 0;
+  full.patch = 1;
+  full.mirror = Mirror::none;
+  full.frequencies = 5;
+  const std::vector<Robot> robots = random_voxel_robots(full, 1, count);
+  measure(configuration, robots, turns);
+}
