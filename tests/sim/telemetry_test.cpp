@@ -46,6 +46,30 @@ TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
   }
 }
 
+// Backends may prepare the next report while they step; what is changed before it is asked for must show.
+TEST_P(TelemetryOf, ARobotIsThatOfTheMomentItIsAskedFor) {
+  const Robot robot = bodies::random_voxels({}, 1);
+  Simulation simulation(configuration(), {&robot, 1});
+  const State start = bodies::shaken(robot, 0.01f, 0.2f, 3);
+  simulation.set_state(0, start.positions, start.velocities);
+  simulation.step(10);
+  (void)simulation.telemetry();
+  simulation.step(10);
+  const State still{simulation.positions(0), std::vector<Vec3>(robot.masses.size())};
+  simulation.set_state(0, still.positions, still.velocities);
+  EXPECT_EQ(simulation.telemetry(0).kinetic_energy, 0);
+
+  simulation.step(10);
+  const double soft = simulation.telemetry(0).elastic_energy;
+  simulation.step(0);
+  for (MaterialId id = 1; id < max_materials; ++id) {
+    Material material = simulation.material(0, id);
+    material.stiffness *= 2;
+    simulation.set_material(0, id, material);
+  }
+  EXPECT_NEAR(simulation.telemetry(0).elastic_energy, 2 * soft, 1e-5 * soft);
+}
+
 class Reading : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, BackendTest::name);
 
