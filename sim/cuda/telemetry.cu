@@ -1,5 +1,6 @@
 #include "sim/cuda/memory.h"
 #include "sim/cuda/telemetry.h"
+#include "sim/springs.h"
 
 namespace mercury::cuda {
 namespace {
@@ -50,13 +51,19 @@ __device__ void fill(SharedTables& tables, const BatchView& batch, std::uint32_t
 }
 
 // Positions as they stand in memory, [group][rows][32], or copied to shared memory with three rows.
+template <int rows>
 struct Positions {
   const float* at;
-  std::uint32_t rows;
-  __device__ Vec3 operator[](std::uint32_t mass) const {
-    const float* x = at + (mass / lanes * rows) * lanes + mass % lanes;
-    return {x[0], x[lanes], x[2 * lanes]};
+  __device__ Vec3 operator[](std::uint32_t mass) const { return load(mass / lanes * rows * lanes + mass % lanes); }
+  // Of the mass that a record names by its place among groups of so many rows; 0 = by its number.
+  template <int rows_placed>
+  __device__ Vec3 at_place(std::uint32_t place) const {
+    if constexpr (rows_placed == 0)
+      return (*this)[place];
+    else
+      return load(place - place / (rows_placed * lanes) * ((rows_placed - rows) * lanes));
   }
+  __device__ Vec3 load(std::uint32_t offset) const { return {at[offset], at[offset + lanes], at[offset + 2 * lanes]}; }
 };
 
 template <int record_words>
@@ -68,8 +75,8 @@ struct Springs {
 };
 
 // `count` rows at once, so that their loads are under way together.
-template <int rows, int record_words, int count>
-__device__ void add_rows(const Positions& positions, const typename Springs<record_words>::Record (&records)[count], Vec3 own,
+template <int rows_placed, int rows, int record_words, int count>
+__device__ void add_rows(const Positions<rows>& positions, const typename Springs<record_words>::Record (&records)[count], Vec3 own,
                          const SharedTables& tables, Share& share) {
   const std::uint32_t copy = threadIdx.x % SharedTables::copies;
   float energy = 0;
@@ -84,17 +91,17 @@ __device__ void add_rows(const Positions& positions, const typename Springs<reco
       length.y = 1 / length.x;
     }
     const float2 law = tables.laws[id * SharedTables::copies + copy];
-    const Vec3 d = positions[mass_at(key >> 16, rows)] - own;
-    const float distance = sqrtf(dot(d, d));
-    const float stretch = distance - length.x * law.x;
-    energy += law.y * stretch * stretch;
+    const float squared = squared_length(positions.template at_place<rows_placed>(key >> 16) - own);
+    const float distance = squared * inverse_sqrt(squared);
+    const float stretch = multiply_add(-length.x, law.x, distance);
+    energy = multiply_add(law.y * stretch, stretch, energy);
     if (id != air) share.strain = fmaxf(share.strain, fabsf(distance - length.x) * length.y);
   }
   share.sums[7] += static_cast<double>(energy);
 }
 
-template <int rows, int record_words>
-__device__ void add_springs(const Positions& positions, const Springs<record_words>& springs, const SharedTables& tables,
+template <int rows_placed, int rows, int record_words>
+__device__ void add_springs(const Positions<rows>& positions, const Springs<record_words>& springs, const SharedTables& tables,
                             Share& share) {
   using Record = typename Springs<record_words>::Record;
   const std::uint32_t lane = threadIdx.x % lanes;
@@ -108,7 +115,7 @@ __device__ void add_springs(const Positions& positions, const Springs<record_wor
         records[i] = springs.records[std::size_t{row + i} * lanes + lane];
         if (row + i >= last) records[i].x &= ~0xffu;  // air: a row of the next group
       }
-      add_rows<rows, record_words>(positions, records, own, tables, share);
+      add_rows<rows_placed, rows, record_words>(positions, records, own, tables, share);
     }
   }
 }
@@ -131,7 +138,7 @@ __device__ void reduce(Share (&shares)[threads / lanes], Share share, DeviceTele
 }
 
 // `on_chip`: the robots' positions fit into shared memory.
-template <int rows, int record_words>
+template <int rows_placed, int record_words>
 __global__ void __launch_bounds__(threads)
     telemetry_kernel(BatchView batch, Clock clock, float stiffness_scale, bool on_chip, DeviceTelemetry* out) {
   extern __shared__ float copied[];
@@ -152,9 +159,9 @@ __global__ void __launch_bounds__(threads)
       reinterpret_cast<const Record*>(batch.springs) + std::size_t{robot} * batch.row_stride * lanes,
       batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups};
   if (on_chip)
-    add_springs<rows>({copied, 3}, springs, tables, share);
+    add_springs<rows_placed>(Positions<3>{copied}, springs, tables, share);
   else
-    add_springs<rows>({state, state_rows}, springs, tables, share);
+    add_springs<rows_placed>(Positions<state_rows>{state}, springs, tables, share);
   reduce(shares, share, out[robot], batch.statuses[robot]);
 }
 

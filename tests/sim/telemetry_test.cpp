@@ -61,11 +61,10 @@ TEST_P(TelemetryOf, ARobotIsThatOfTheMomentItIsAskedFor) {
 
   simulation.step(10);
   const double soft = simulation.telemetry(0).elastic_energy;
-  simulation.step(0);
-  for (MaterialId id = 1; id < max_materials; ++id) {
-    Material material = simulation.material(0, id);
+  for (std::size_t id = 1; id < default_materials().size(); ++id) {
+    Material material = simulation.material(0, static_cast<MaterialId>(id));
     material.stiffness *= 2;
-    simulation.set_material(0, id, material);
+    simulation.set_material(0, static_cast<MaterialId>(id), material);
   }
   EXPECT_NEAR(simulation.telemetry(0).elastic_energy, 2 * soft, 1e-5 * soft);
 }
