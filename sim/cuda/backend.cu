@@ -151,17 +151,17 @@ class CudaBackend final : public Backend {
     report_expected_ = true;
     check(cudaDeviceSynchronize(), "reading telemetry");
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const DeviceTelemetry& sums = sums_[i];
+      const DeviceTelemetry& device = sums_[i];
       const auto masses = static_cast<double>(batch_.robots()[i]->masses.size());
       const auto mean = [&](const double* sum) {
         return Vec3{static_cast<float>(sum[0] / masses), static_cast<float>(sum[1] / masses), static_cast<float>(sum[2] / masses)};
       };
-      all[i].telemetry.center_of_mass = mean(sums.position);
-      all[i].telemetry.velocity = mean(sums.velocity);
-      all[i].telemetry.kinetic_energy = sums.kinetic_energy;
-      all[i].telemetry.elastic_energy = sums.elastic_energy;
-      all[i].telemetry.largest_strain = sums.largest_strain;
-      all[i].status = {sums.exploded_step, sums.bad_mass};
+      all[i].telemetry.center_of_mass = mean(device.sums);
+      all[i].telemetry.velocity = mean(device.sums + 3);
+      all[i].telemetry.kinetic_energy = device.sums[6];
+      all[i].telemetry.elastic_energy = device.sums[7];
+      all[i].telemetry.largest_strain = device.largest_strain;
+      all[i].status = {device.exploded_step, device.bad_mass};
     }
     return all;
   }

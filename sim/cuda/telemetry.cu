@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint32_t threads = 256;
 
 struct Share {
-  double sums[8];  // as the first members of DeviceTelemetry
+  double sums[8];  // as in DeviceTelemetry
   float strain;
 };
 
@@ -100,22 +100,36 @@ __device__ void add_rows(const Positions<rows>& positions, const typename Spring
   share.sums[7] += static_cast<double>(energy);
 }
 
+template <class Record>
+__device__ void load_rows(const Record* from, Record (&records)[rows_at_once]) {
+#pragma unroll
+  for (int i = 0; i < rows_at_once; ++i) records[i] = from[i * lanes];
+}
+
+// Each warp takes groups that follow one another, so that its rows do, and the next rows are on their way while the
+// present ones are measured.
 template <int rows_placed, int rows, int record_words>
 __device__ void add_springs(const Positions<rows>& positions, const Springs<record_words>& springs, const SharedTables& tables,
                             Share& share) {
-  using Record = typename Springs<record_words>::Record;
-  const std::uint32_t lane = threadIdx.x % lanes;
-  for (std::uint32_t group = threadIdx.x / lanes; group < springs.groups; group += threads / lanes) {
+  const std::uint32_t lane = threadIdx.x % lanes, turns = (springs.groups + threads / lanes - 1) / (threads / lanes);
+  const std::uint32_t first = min(threadIdx.x / lanes * turns, springs.groups), end = min(first + turns, springs.groups);
+  if (first == end) return;
+  std::uint32_t row = springs.row_start[first];
+  typename Springs<record_words>::Record next[rows_at_once], present[rows_at_once];
+  load_rows(springs.records + std::size_t{row} * lanes + lane, next);
+  for (std::uint32_t group = first; group < end; ++group) {
     const Vec3 own = positions[group * lanes + lane];
     const std::uint32_t last = springs.row_start[group + 1];
-    for (std::uint32_t row = springs.row_start[group]; row < last; row += rows_at_once) {
-      Record records[rows_at_once];
+    while (row < last) {
+      const std::uint32_t left = last - row;
 #pragma unroll
       for (std::uint32_t i = 0; i < rows_at_once; ++i) {
-        records[i] = springs.records[std::size_t{row + i} * lanes + lane];
-        if (row + i >= last) records[i].x &= ~0xffu;  // air: a row of the next group
+        present[i] = next[i];
+        if (i >= left) present[i].x &= ~0xffu;  // air: a row of the next group
       }
-      add_rows<rows_placed, rows, record_words>(positions, records, own, tables, share);
+      row += min(left, static_cast<std::uint32_t>(rows_at_once));
+      load_rows(springs.records + std::size_t{row} * lanes + lane, next);
+      add_rows<rows_placed, rows, record_words>(positions, present, own, tables, share);
     }
   }
 }
@@ -127,14 +141,16 @@ __device__ void reduce(Share (&shares)[threads / lanes], Share share, DeviceTele
   }
   if (threadIdx.x % lanes == 0) shares[threadIdx.x / lanes] = share;
   __syncthreads();
-  if (threadIdx.x > 0) return;
-  for (std::uint32_t warp = 1; warp < threads / lanes; ++warp) {
-    for (int k = 0; k < 8; ++k) share.sums[k] += shares[warp].sums[k];
-    share.strain = fmaxf(share.strain, shares[warp].strain);
+  if (threadIdx.x < 8) {
+    double sum = 0;
+    for (const Share& of_warp : shares) sum += of_warp.sums[threadIdx.x];
+    out.sums[threadIdx.x] = sum;
+  } else if (threadIdx.x == lanes) {
+    for (const Share& of_warp : shares) share.strain = fmaxf(share.strain, of_warp.strain);
+    out.largest_strain = share.strain;
+    out.bad_mass = status.bad_mass;
+    out.exploded_step = status.exploded_step;
   }
-  const double* sums = share.sums;
-  out = {{sums[0], sums[1], sums[2]}, {sums[3], sums[4], sums[5]}, sums[6], sums[7], share.strain, status.bad_mass,
-         status.exploded_step};
 }
 
 // `on_chip`: the robots' positions fit into shared memory.

@@ -6,8 +6,7 @@
 namespace mercury::cuda {
 
 struct DeviceTelemetry {
-  double position[3], velocity[3];  // sums over the masses
-  double kinetic_energy, elastic_energy;
+  double sums[8];  // over the masses and springs: position, velocity, kinetic energy, elastic energy
   float largest_strain;
   std::uint32_t bad_mass;
   long long exploded_step;
