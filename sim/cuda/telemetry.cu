@@ -100,39 +100,56 @@ __device__ void add_rows(const Positions<rows>& positions, const typename Spring
   share.sums[7] += static_cast<double>(energy);
 }
 
-template <class Record>
-__device__ void load_rows(const Record* from, Record (&records)[rows_at_once]) {
-#pragma unroll
-  for (int i = 0; i < rows_at_once; ++i) records[i] = from[i * lanes];
-}
+// The rows of one warp: an even share of them, one after the other, the next ones on their way while the present ones are
+// measured.
+template <int record_words>
+class WarpRows {
+ public:
+  // Begins to read.
+  __device__ WarpRows(const Springs<record_words>& springs) : springs_(springs) {
+    constexpr std::uint32_t warps = threads / lanes;
+    const std::uint32_t warp = threadIdx.x / lanes, all = springs.row_start[springs.groups];
+    row_ = all * warp / warps;
+    end_ = all * (warp + 1) / warps;
+    std::uint32_t begun = 0;
+    for (std::uint32_t group = threadIdx.x % lanes; group < springs.groups; group += lanes)
+      begun += springs.row_start[group] <= row_;
+    group_ = __reduce_add_sync(0xffffffffu, begun) - 1;
+    load();
+  }
 
-// Each warp takes groups that follow one another, so that its rows do, and the next rows are on their way while the
-// present ones are measured.
-template <int rows_placed, int rows, int record_words>
-__device__ void add_springs(const Positions<rows>& positions, const Springs<record_words>& springs, const SharedTables& tables,
-                            Share& share) {
-  const std::uint32_t lane = threadIdx.x % lanes, turns = (springs.groups + threads / lanes - 1) / (threads / lanes);
-  const std::uint32_t first = min(threadIdx.x / lanes * turns, springs.groups), end = min(first + turns, springs.groups);
-  if (first == end) return;
-  std::uint32_t row = springs.row_start[first];
-  typename Springs<record_words>::Record next[rows_at_once], present[rows_at_once];
-  load_rows(springs.records + std::size_t{row} * lanes + lane, next);
-  for (std::uint32_t group = first; group < end; ++group) {
-    const Vec3 own = positions[group * lanes + lane];
-    const std::uint32_t last = springs.row_start[group + 1];
-    while (row < last) {
-      const std::uint32_t left = last - row;
+  template <int rows_placed, int rows>
+  __device__ void measure(const Positions<rows>& positions, const SharedTables& tables, Share& share) {
+    for (; row_ < end_; ++group_) {
+      const Vec3 own = positions[group_ * lanes + threadIdx.x % lanes];
+      const std::uint32_t last = min(springs_.row_start[group_ + 1], end_);
+      while (row_ < last) {
+        const std::uint32_t left = last - row_;
+        Record present[rows_at_once];
 #pragma unroll
-      for (std::uint32_t i = 0; i < rows_at_once; ++i) {
-        present[i] = next[i];
-        if (i >= left) present[i].x &= ~0xffu;  // air: a row of the next group
+        for (std::uint32_t i = 0; i < rows_at_once; ++i) {
+          present[i] = next_[i];
+          if (i >= left) present[i].x &= ~0xffu;  // air: a row of another group
+        }
+        row_ += min(left, static_cast<std::uint32_t>(rows_at_once));
+        load();
+        add_rows<rows_placed, rows, record_words>(positions, present, own, tables, share);
       }
-      row += min(left, static_cast<std::uint32_t>(rows_at_once));
-      load_rows(springs.records + std::size_t{row} * lanes + lane, next);
-      add_rows<rows_placed, rows, record_words>(positions, present, own, tables, share);
     }
   }
-}
+
+ private:
+  using Record = typename Springs<record_words>::Record;
+  __device__ void load() {
+    const Record* from = springs_.records + std::size_t{row_} * lanes + threadIdx.x % lanes;
+#pragma unroll
+    for (int i = 0; i < rows_at_once; ++i) next_[i] = from[i * lanes];
+  }
+
+  const Springs<record_words>& springs_;
+  std::uint32_t row_, end_, group_;
+  Record next_[rows_at_once];
+};
 
 __device__ void reduce(Share (&shares)[threads / lanes], Share share, DeviceTelemetry& out, const DeviceStatus& status) {
   for (std::uint32_t half = lanes / 2; half > 0; half /= 2) {
@@ -163,6 +180,11 @@ __global__ void __launch_bounds__(threads)
   const std::uint32_t robot = blockIdx.x;
   const RobotRecord& record = batch.robots[robot];
   const float* state = batch.state + std::size_t{robot} * batch.group_stride * state_rows * lanes;
+  using Record = typename Springs<record_words>::Record;
+  const Springs<record_words> springs{
+      reinterpret_cast<const Record*>(batch.springs) + std::size_t{robot} * batch.row_stride * lanes,
+      batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups};
+  WarpRows<record_words> springs_of_warp(springs);
   fill(tables, batch, robot, clock.step - clock.base_step, stiffness_scale);
   if (on_chip)
     for (std::uint32_t i = threadIdx.x; i < record.groups * 3 * lanes; i += threads)
@@ -170,14 +192,10 @@ __global__ void __launch_bounds__(threads)
   Share share{};
   add_masses(state, record.masses, share);
   __syncthreads();
-  using Record = typename Springs<record_words>::Record;
-  const Springs<record_words> springs{
-      reinterpret_cast<const Record*>(batch.springs) + std::size_t{robot} * batch.row_stride * lanes,
-      batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups};
   if (on_chip)
-    add_springs<rows_placed>(Positions<3>{copied}, springs, tables, share);
+    springs_of_warp.template measure<rows_placed>(Positions<3>{copied}, tables, share);
   else
-    add_springs<rows_placed>(Positions<state_rows>{state}, springs, tables, share);
+    springs_of_warp.template measure<rows_placed>(Positions<state_rows>{state}, tables, share);
   reduce(shares, share, out[robot], batch.statuses[robot]);
 }
 
