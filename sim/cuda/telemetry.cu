@@ -12,24 +12,31 @@ struct Share {
   float strain;
 };
 
-__device__ void add_masses(const float* state, std::uint32_t masses, Share& share) {
-  for (std::uint32_t mass = threadIdx.x; mass < masses; mass += threads) {
-    const float* at = state + (mass / lanes * state_rows) * lanes + mass % lanes;
-    double squared = 0;
+// `places` of which those behind the last mass are zero. Copies the positions, three rows a group, unless there is no room
+// for them.
+__device__ void add_masses(const float* state, std::uint32_t places, float* copied, Share& share) {
+#pragma unroll 3
+  for (std::uint32_t mass = threadIdx.x; mass < places; mass += threads) {
+    const std::uint32_t group = mass / lanes, lane = mass % lanes;
+    const float* at = state + group * state_rows * lanes + lane;
+    float x[3], v[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const double v = static_cast<double>(at[(3 + axis) * lanes]);
-      share.sums[axis] += static_cast<double>(at[axis * lanes]);
-      share.sums[3 + axis] += v;
-      squared += v * v;
+      x[axis] = at[axis * lanes];
+      v[axis] = at[(3 + axis) * lanes];
     }
-    share.sums[6] += 0.5 * squared;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (copied) copied[(group * 3 + axis) * lanes + lane] = x[axis];
+      share.sums[axis] += static_cast<double>(x[axis]);
+      share.sums[3 + axis] += static_cast<double>(v[axis]);
+    }
+    share.sums[6] += 0.5 * static_cast<double>(multiply_add(v[0], v[0], multiply_add(v[1], v[1], v[2] * v[2])));
   }
 }
 
-// What the springs of a robot are measured with, in shared memory. Every lane of a quarter-warp has its own copy of the
+// What the springs of a robot are measured with, in shared memory. Neighbouring lanes have their own copies of the
 // laws, for lanes look up different materials at once.
 struct SharedTables {
-  static constexpr std::uint32_t copies = 8;
+  static constexpr std::uint32_t copies = 4;
   float2 laws[max_materials * copies];  // L / L0, and half the stiffness
   float2 lengths[max_lengths];          // L0 and 1 / L0
 };
@@ -186,11 +193,8 @@ __global__ void __launch_bounds__(threads)
       batch.row_start + std::size_t{robot} * (batch.group_stride + 1), record.groups};
   WarpRows<record_words> springs_of_warp(springs);
   fill(tables, batch, robot, clock.step - clock.base_step, stiffness_scale);
-  if (on_chip)
-    for (std::uint32_t i = threadIdx.x; i < record.groups * 3 * lanes; i += threads)
-      copied[i] = state[(i / (3 * lanes) * state_rows) * lanes + i % (3 * lanes)];
   Share share{};
-  add_masses(state, record.masses, share);
+  add_masses(state, record.groups * lanes, on_chip ? copied : nullptr, share);
   __syncthreads();
   if (on_chip)
     springs_of_warp.template measure<rows_placed>(Positions<3>{copied}, tables, share);
