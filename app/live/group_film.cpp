@@ -57,31 +57,36 @@ struct GroupFilm::Parts {
     told.error = error;
   }
 
+  // The unfinished file of a film that was cancelled is gone when that is told.
   void make() {
     try {
-      const VideoKind kind = video_kind_of(options.output);
-      const PictureSize size = encoded_size(kind, options.size);
-      const FilmTiming timing = timing_of(options);
-      {
-        const std::lock_guard lock(mutex);
-        told.total = timing.frames;
-      }
-      if (robots.empty()) throw InputError("there is no robot to film");
-      const auto writer = open_frame_writer(options.output, {.size = size,
-                                                             .frames_per_second = options.frames_per_second,
-                                                             .expected_frames = timing.frames});
-      view.speed = options.speed;
-      Simulation simulation = simulation_of(robots, configuration);
-      Stage stage = make_stage(options.context, size, options.quality);
-      Studio studio(stage, std::move(simulation), view);
-      const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
-      if (control.stop || result.interrupted) return tell(FilmStatus::State::cancelled);
-      tell(FilmStatus::State::finishing);
-      writer->finish();
-      tell(FilmStatus::State::done);
+      tell(write() ? FilmStatus::State::done : FilmStatus::State::cancelled);
     } catch (const std::exception& error) {
       tell(FilmStatus::State::failed, error.what());
     }
+  }
+
+  bool write() {
+    const VideoKind kind = video_kind_of(options.output);
+    const PictureSize size = encoded_size(kind, options.size);
+    const FilmTiming timing = timing_of(options);
+    {
+      const std::lock_guard lock(mutex);
+      told.total = timing.frames;
+    }
+    if (robots.empty()) throw InputError("there is no robot to film");
+    const auto writer = open_frame_writer(options.output, {.size = size,
+                                                           .frames_per_second = options.frames_per_second,
+                                                           .expected_frames = timing.frames});
+    view.speed = options.speed;
+    Simulation simulation = simulation_of(robots, configuration);
+    Stage stage = make_stage(options.context, size, options.quality);
+    Studio studio(stage, std::move(simulation), view);
+    const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
+    if (control.stop || result.interrupted) return false;
+    tell(FilmStatus::State::finishing);
+    writer->finish();
+    return true;
   }
 };
 

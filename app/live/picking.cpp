@@ -1,5 +1,7 @@
 #include "app/live/picking.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

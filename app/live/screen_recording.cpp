@@ -78,28 +78,34 @@ struct ScreenRecording::Parts {
     told.error = error;
   }
 
+  // The unfinished file of a film that was cancelled is gone when that is told.
   void encode(const std::string& output) {
     try {
-      const VideoKind kind = video_kind_of(output);
-      const bool yuv = pixel_format_of(kind) == render::PixelFormat::yuv420;
-      const PictureSize written = yuv ? PictureSize{size.width - size.width % 2, size.height - size.height % 2} : size;
-      const auto writer = open_frame_writer(output, {.size = written, .frames_per_second = frames_per_second});
-      while (auto waiting = queue.pop()) {
-        const render::Image picture = yuv ? yuv420_of(waiting->picture) : std::move(waiting->picture);
-        for (std::int64_t i = 0; i < waiting->times && !cancelled; ++i) {
-          writer->write(picture);
-          const std::lock_guard lock(mutex);
-          ++told.frames;
-        }
-      }
-      if (cancelled) return tell(FilmStatus::State::cancelled);
-      if (told.frames == 0) return tell(FilmStatus::State::failed, output + ": nothing was recorded");
-      writer->finish();
-      tell(FilmStatus::State::done);
+      tell(write(output) ? FilmStatus::State::done : FilmStatus::State::cancelled);
     } catch (const std::exception& error) {
       queue.abandon();
       tell(FilmStatus::State::failed, error.what());
     }
+  }
+
+  bool write(const std::string& output) {
+    const VideoKind kind = video_kind_of(output);
+    const bool yuv = pixel_format_of(kind) == render::PixelFormat::yuv420;
+    const PictureSize written = yuv ? PictureSize{size.width - size.width % 2, size.height - size.height % 2} : size;
+    const auto writer = open_frame_writer(output, {.size = written, .frames_per_second = frames_per_second});
+    std::int64_t frames = 0;
+    while (auto waiting = queue.pop()) {
+      const render::Image picture = yuv ? yuv420_of(waiting->picture) : std::move(waiting->picture);
+      for (std::int64_t i = 0; i < waiting->times && !cancelled; ++i) {
+        writer->write(picture);
+        const std::lock_guard lock(mutex);
+        told.frames = ++frames;
+      }
+    }
+    if (cancelled) return false;
+    if (frames == 0) throw VideoError(output + ": nothing was recorded");
+    writer->finish();
+    return true;
   }
 };
 

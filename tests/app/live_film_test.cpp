@@ -1,0 +1,105 @@
+// Films made beside the window.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "app/live/screen_recording.h"
+#include "live_scene_bodies.h"
+#include "program.h"
+
+namespace mercury {
+namespace {
+
+class LiveFilm : public test::FolderTest {};
+
+render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
+  render::Image image{width, height, render::PixelFormat::rgb, {}};
+  for (int i = 0; i < width * height; ++i) image.bytes.insert(image.bytes.end(), color.begin(), color.end());
+  return image;
+}
+
+template <class Film>
+FilmStatus over(const Film& film) {
+  while (!film.status().over()) std::this_thread::yield();
+  return film.status();
+}
+
+TEST(Yuv420, FollowsBt709InLimitedRange) {
+  // Recommendation BT.709 with 8 bits: white is 235, black 16, red is Y 63, Cb 102, Cr 240.
+  const auto of = [](std::array<std::uint8_t, 3> color) {
+    const render::Image yuv = yuv420_of(plain(3, 3, color));
+    EXPECT_EQ(yuv.width, 2);
+    EXPECT_EQ(yuv.bytes.size(), 6u);
+    return std::array<int, 3>{yuv.bytes[0], yuv.bytes[4], yuv.bytes[5]};
+  };
+  EXPECT_EQ(of({255, 255, 255}), (std::array{235, 128, 128}));
+  EXPECT_EQ(of({0, 0, 0}), (std::array{16, 128, 128}));
+  EXPECT_EQ(of({255, 0, 0}), (std::array{63, 102, 240}));
+  EXPECT_EQ(of({0, 0, 255}), (std::array{32, 240, 118}));
+}
+
+TEST_F(LiveFilm, ARecordingKeepsRealTime) {
+  const std::string file = path("screen.mp4");
+  ScreenRecording recording(file, {65, 49}, 20);
+  // Frames at 0, 10 (too early), 60 ms and after a pause of a second: 0, 1 and 20..21.
+  EXPECT_TRUE(recording.offer(5.00, plain(65, 49, {200, 0, 0})));
+  EXPECT_FALSE(recording.wants(5.01));
+  EXPECT_FALSE(recording.offer(5.01, plain(65, 49, {0, 0, 0})));
+  EXPECT_TRUE(recording.wants(5.06));
+  EXPECT_TRUE(recording.offer(5.06, plain(65, 49, {0, 200, 0})));
+  EXPECT_FALSE(recording.offer(6.0, plain(64, 48, {0, 0, 200}))) << "another size";
+  EXPECT_TRUE(recording.offer(6.06, plain(65, 49, {0, 0, 200})));
+  recording.finish();
+  const FilmStatus status = over(recording);
+  ASSERT_EQ(status.state, FilmStatus::State::done) << status.error;
+  EXPECT_EQ(status.frames, 22);
+  EXPECT_EQ(status.dropped, 0);
+  const auto stream = test::probe(file);
+  EXPECT_EQ(stream["nb_read_frames"], "22");
+  EXPECT_EQ(stream["width"], 64);
+  EXPECT_EQ(stream["height"], 48);
+}
+
+TEST_F(LiveFilm, ARecordingThatCannotBeMadeSaysSoAndACancelledOneLeavesNothing) {
+  ScreenRecording wrong(path("screen.avi"), {64, 48});
+  const FilmStatus status = over(wrong);
+  EXPECT_EQ(status.state, FilmStatus::State::failed);
+  EXPECT_THAT(status.error, testing::HasSubstr(".avi"));
+  EXPECT_FALSE(wrong.offer(0, plain(64, 48, {})));
+  ScreenRecording cancelled(path("screen.mp4"), {64, 48});
+  cancelled.offer(0, plain(64, 48, {}));
+  cancelled.cancel();
+  EXPECT_EQ(over(cancelled).state, FilmStatus::State::cancelled);
+  EXPECT_TRUE(listing().empty());
+}
+
+TEST_F(LiveFilm, AGroupFilmIsMadeWhileTheSceneGoesOn) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.step(10);
+  const auto film = scene.film({.output = path("group.mp4"), .size = {160, 90}, .frames_per_second = 10, .seconds = 0.5,
+                                .quality = render::Quality::low});
+  scene.play();
+  while (!film->status().over()) scene.frame();
+  const FilmStatus status = film->status();
+  ASSERT_EQ(status.state, FilmStatus::State::done) << status.error;
+  EXPECT_EQ(status.frames, 5);
+  EXPECT_EQ(status.total, 5);
+  EXPECT_EQ(test::probe(path("group.mp4"))["nb_read_frames"], "5");
+}
+
+TEST_F(LiveFilm, ACancelledGroupFilmLeavesNothingAndAnEmptyOneSaysWhy) {
+  LiveScene scene(test::on_cpu());
+  EXPECT_EQ(over(*scene.film({.output = path("none.mp4")})).state, FilmStatus::State::failed);
+  test::make_robots(scene, 1);
+  const auto film = scene.film({.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
+  film->cancel();
+  film->wait();
+  EXPECT_EQ(film->status().state, FilmStatus::State::cancelled);
+  EXPECT_TRUE(listing().empty());
+}
+
+}  // namespace
+}  // namespace mercury
