@@ -150,9 +150,10 @@ class CudaBackend final : public Backend {
     if (!std::exchange(report_started_, false)) start_report(clock);
     report_expected_ = true;
     check(cudaDeviceSynchronize(), "reading telemetry");
+    const auto first_mass = batch_.first_mass();
     for (std::size_t i = 0; i < all.size(); ++i) {
       const DeviceTelemetry& device = sums_[i];
-      const auto masses = static_cast<double>(batch_.robots()[i]->masses.size());
+      const auto masses = static_cast<double>(first_mass[i + 1] - first_mass[i]);
       const auto mean = [&](const double* sum) {
         return Vec3{static_cast<float>(sum[0] / masses), static_cast<float>(sum[1] / masses), static_cast<float>(sum[2] / masses)};
       };

@@ -102,7 +102,7 @@ __device__ void add_rows(const Positions<rows>& positions, const typename Spring
     const float distance = squared * inverse_sqrt(squared);
     const float stretch = multiply_add(-length.x, law.x, distance);
     energy = multiply_add(law.y * stretch, stretch, energy);
-    if (id != air) share.strain = fmaxf(share.strain, fabsf(distance - length.x) * length.y);
+    if (id != air) share.strain = fmaxf(share.strain, fabsf(multiply_add(distance, length.y, -1.0f)));
   }
   share.sums[7] += static_cast<double>(energy);
 }
@@ -131,16 +131,20 @@ class WarpRows {
       const Vec3 own = positions[group_ * lanes + threadIdx.x % lanes];
       const std::uint32_t last = min(springs_.row_start[group_ + 1], end_);
       while (row_ < last) {
-        const std::uint32_t left = last - row_;
         Record present[rows_at_once];
 #pragma unroll
-        for (std::uint32_t i = 0; i < rows_at_once; ++i) {
-          present[i] = next_[i];
-          if (i >= left) present[i].x &= ~0xffu;  // air: a row of another group
-        }
-        row_ += min(left, static_cast<std::uint32_t>(rows_at_once));
+        for (int i = 0; i < rows_at_once; ++i) present[i] = next_[i];
+        const std::uint32_t left = min(last - row_, static_cast<std::uint32_t>(rows_at_once));
+        row_ += left;
         load();
-        add_rows<rows_placed, rows, record_words>(positions, present, own, tables, share);
+        if (left == rows_at_once) {
+          add_rows<rows_placed, rows, record_words>(positions, present, own, tables, share);
+        } else {
+          const Record pair[2] = {present[0], present[1]};
+          if (left >= 2) add_rows<rows_placed, rows, record_words>(positions, pair, own, tables, share);
+          const Record one[1] = {left == 3 ? present[2] : present[0]};
+          if (left != 2) add_rows<rows_placed, rows, record_words>(positions, one, own, tables, share);
+        }
       }
     }
   }
