@@ -30,8 +30,10 @@ void keep_best(std::vector<Winner>& winners, std::vector<Winner> more, std::uint
 // Simulates some robots; empty if the user interrupts.
 std::vector<Winner> heat(const Contest& contest, std::vector<Robot> robots) {
   Simulation simulation(contest.configuration, robots);
+  Stepper stepper(simulation);
+  if (!stepper.advance_to(contest.settling)) return {};
   const std::vector<Telemetry> start = simulation.telemetry();
-  if (!Stepper(simulation).advance_to(contest.steps)) return {};
+  if (!stepper.advance_to(contest.steps)) return {};
   const std::vector<Telemetry> end = simulation.telemetry();
   const bool on_land = std::holds_alternative<Land>(contest.configuration.environment);
   std::vector<Winner> finished;

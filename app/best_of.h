@@ -16,11 +16,12 @@ struct Contest {
   std::uint64_t candidates = 0;  // how many robots take part
   Configuration configuration;   // where they are tried
   std::int64_t steps = 0;        // for how long
+  std::int64_t settling = 0;     // of these steps, those before the distance is measured
 };
 
 struct Winner {
   Robot robot;
-  double distance;  // that its centre of mass got from where it began; on land along the ground [m]
+  double distance;  // that its centre of mass got from where it was once settled; on land along the ground [m]
 };
 
 // The `count` robots of a seed that get farthest, the best first; equals in the order of their index. Robots that cannot

@@ -1,6 +1,7 @@
 // mercury new: robot files.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "app/best_of.h"
@@ -19,11 +20,13 @@ namespace {
 struct NewOptions {
   RobotOutput output;
   std::uint64_t best_of = 0;  // 0 = no search
+  double settle = 0;          // [s]
   SimulationOptions simulation;
 
   void add_to(CLI::App& command) {
     output.add_to(command);
     add_number(command, "--best-of", best_of, "Simulate so many, and keep the --count that get farthest", "N");
+    add_number(command, "--settle", settle, "Of --best-of: distances count from this time on, when robots have fallen (default 0)", "S");
     simulation.add_to(command);
   }
 };
@@ -32,9 +35,12 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
   const RobotOutput& output = options.output;
   if (options.best_of < output.count())
     throw InputError("--best-of", fmt::format("{} is not accepted; give at least --count, {}", options.best_of, output.count()));
+  if (!(options.settle >= 0 && options.settle <= options.simulation.seconds()))
+    throw InputError("--settle", fmt::format("{} is not accepted; give 0 to --seconds, {} s", options.settle, options.simulation.seconds()));
   const Contest contest{.candidates = options.best_of,
                         .configuration = options.simulation.configuration(),
-                        .steps = options.simulation.steps()};
+                        .steps = options.simulation.steps(),
+                        .settling = std::llround(options.settle / options.simulation.configuration().dt)};
   output.prepare();
   const std::vector<Winner> winners = best_of(contest, make, output.seed(), output.count());
   if (interrupted()) {

@@ -7,4 +7,10 @@ std::vector<Robot> all_designs() {
           sea_star(), quadruped(), beetle(), inchworm(), caterpillar(), hopper()};
 }
 
+std::vector<Robot> all_robots() {
+  std::vector<Robot> robots = all_designs();
+  for (auto& some : {found_voxel_robots(), found_network_robots()}) robots.insert(robots.end(), some.begin(), some.end());
+  return robots;
+}
+
 }  // namespace mercury::library

@@ -26,4 +26,12 @@ Robot hopper();
 
 std::vector<Robot> all_designs();
 
+// Not designed but found, the farthest among thousands of random ones. Those grown by networks are missing in a build
+// without them.
+std::vector<Robot> found_voxel_robots();
+std::vector<Robot> found_network_robots();
+
+// All of the above.
+std::vector<Robot> all_robots();
+
 }  // namespace mercury::library

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    for (const mercury::Robot& robot : mercury::library::all_designs())
+    for (const mercury::Robot& robot : mercury::library::all_robots())
       mercury::save_robot(std::filesystem::path(argv[1]) / (robot.name + ".json"), robot);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "generate_library: %s\n", error.what());

@@ -84,6 +84,8 @@ TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
   EXPECT_EQ(message({"-o", path("r"), "--count", "0"}), "mercury: --count: 0 is not accepted; give 1 or more\n");
   EXPECT_EQ(message({"-o", path("r"), "--count", "5", "--best-of", "3"}),
             "mercury: --best-of: 3 is not accepted; give at least --count, 5\n");
+  EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--seconds", "2", "--settle", "3"}),
+            "mercury: --settle: 3 is not accepted; give 0 to --seconds, 2 s\n");
   EXPECT_EQ(message({}), "mercury: --output is required; see mercury new voxel --help\n");
   EXPECT_EQ(listing(), std::vector<std::string>{"file"});
 }

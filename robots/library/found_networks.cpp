@@ -1,0 +1,17 @@
+// Random network robots that a search found: mercury new nn --best-of (docs/library.md has the commands).
+#include "robots/library/designs.h"
+#include "robots/nn_robot.h"
+
+namespace mercury::library {
+namespace {
+
+Robot found(const char* name, const char* environment, std::size_t points, std::uint64_t index) {
+  constexpr std::uint64_t seed = 1;
+  return grow(random_nn_genome({.points = points, .environment = environment}, seed, index), name);
+}
+
+}  // namespace
+
+std::vector<Robot> found_network_robots() { return {found("kite", "ocean", 64, 2450), found("flapper", "ocean", 64, 1962)}; }
+
+}  // namespace mercury::library
