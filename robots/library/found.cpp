@@ -15,7 +15,7 @@ Robot found(const char* name, const char* environment, std::uint64_t index) {
 }  // namespace
 
 std::vector<Robot> found_voxel_robots() {
-  return {found("paddler", "ocean", 1332), found("wriggler", "ocean", 1748), found("tumbler", "land", 796)};
+  return {found("paddler", "ocean", 1332), found("wriggler", "ocean", 1748), found("tumbler", "land", 1446)};
 }
 
 }  // namespace mercury::library
