@@ -60,7 +60,7 @@ std::vector<Robot> RobotOptions::random_robots(const std::string& request) const
   if (count < 1 || count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
   if (kind != "voxel" && kind != "nn")
-    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", request));
+    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
   if (parts.size() > 4)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
   if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed, count, first);
