@@ -19,6 +19,12 @@ Vec3 at(const Lockstep& group, const Aligned<float>& values, std::size_t mass, s
   return {first[0], first[group.lanes], first[2 * group.lanes]};
 }
 
+std::vector<std::uint64_t> present_lists(const Lockstep& group) {
+  std::vector<std::uint64_t> lists;
+  for (const Body* body : group.members) lists.push_back(body->near_pairs.times_listed());
+  return lists;
+}
+
 void fill_springs(Lockstep& group, std::span<const Body> bodies, const Configuration& configuration) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const Body& body = bodies[member_of(group, lane)];
@@ -109,7 +115,8 @@ void load(Lockstep& group, std::span<Body> bodies) {
       }
     }
   }
-  group.compact = group.listed = false;
+  group.compact = false;
+  if (group.lists != present_lists(group)) group.lists.clear();
 }
 
 void store(const Lockstep& group, std::span<Body> bodies) {
@@ -126,16 +133,20 @@ void store(const Lockstep& group, std::span<Body> bodies) {
   }
 }
 
-void list_near_pairs(Lockstep& group, std::size_t lane) {
-  Body& body = *group.members[lane];
-  for (std::size_t mass = 0; mass < group.build->joints.size(); ++mass) {
-    const std::size_t place = body.places.of_mass[mass];
-    const std::size_t first = 3 * mass * group.lanes + lane;
-    body.x.x[place] = group.listed_x[first] = group.x[first];
-    body.x.y[place] = group.listed_x[first + group.lanes] = group.x[first + group.lanes];
-    body.x.z[place] = group.listed_x[first + 2 * group.lanes] = group.x[first + 2 * group.lanes];
+void list_near_pairs(Lockstep& group, std::uint32_t lanes) {
+  for (std::size_t lane = 0; lane < group.lanes; ++lane) {
+    if ((lanes >> lane & 1) == 0) continue;
+    Body& body = *group.members[lane];
+    for (std::size_t mass = 0; mass < group.build->joints.size(); ++mass) {
+      const std::size_t place = body.places.of_mass[mass];
+      const std::size_t first = 3 * mass * group.lanes + lane;
+      body.x.x[place] = group.listed_x[first] = group.x[first];
+      body.x.y[place] = group.listed_x[first + group.lanes] = group.x[first + group.lanes];
+      body.x.z[place] = group.listed_x[first + 2 * group.lanes] = group.x[first + 2 * group.lanes];
+    }
+    body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
   }
-  body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
+  group.lists = present_lists(group);
 }
 
 void add_contacts(Lockstep& group, float stiffness) {
@@ -161,7 +172,7 @@ void return_to_checkpoint(Lockstep& group) {
   std::ranges::copy(group.checkpoint_x, group.x.begin());
   std::ranges::copy(group.checkpoint_v, group.v.begin());
   std::ranges::fill(group.sums, 0);
-  group.compact = group.listed = false;
+  group.compact = false;
 }
 
 }  // namespace mercury::cpu

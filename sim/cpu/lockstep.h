@@ -48,8 +48,9 @@ struct Lockstep {
   Aligned<float> x, v;           // during XPBD's springs: the prediction and v + dt F
   Aligned<std::int32_t> sums;    // what acts on the masses, in units; zero between steps
   Aligned<float> checkpoint_x, checkpoint_v;
-  Aligned<float> listed_x;       // where the masses were when their robot's near pairs were listed
-  bool listed = false;
+  // Where the masses were when their robot's near pairs were listed, and which of its lists that was, by lane.
+  Aligned<float> listed_x;
+  std::vector<std::uint64_t> lists;  // empty = none
 
   // Of each lane's robot.
   Aligned<float> force_scale, correction_scale;  // FixedPointScale
@@ -69,8 +70,8 @@ Lockstep make_lockstep(std::shared_ptr<const Build> build, std::span<const Body>
 void load(Lockstep& group, std::span<Body> bodies);
 void store(const Lockstep& group, std::span<Body> bodies);
 
-// Lists the near pairs of a lane's robot where it is now; adds the forces of the contacts of all lanes.
-void list_near_pairs(Lockstep& group, std::size_t lane);
+// Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes' contacts.
+void list_near_pairs(Lockstep& group, std::uint32_t lanes);
 void add_contacts(Lockstep& group, float stiffness);
 
 void make_checkpoint(Lockstep& group);

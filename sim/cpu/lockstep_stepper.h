@@ -69,10 +69,8 @@ class LockstepStepper {
 
   // Adds the forces of contacts, and sees to it that near pairs are listed.
   void touch() {
-    std::uint32_t lanes = group_.listed ? bits_of(strayed()) : ~0u;
-    group_.listed = true;
-    for (std::size_t lane = 0; lane < lane_count; ++lane)
-      if ((lanes >> lane & 1) != 0) list_near_pairs(group_, lane);
+    const std::uint32_t lanes = group_.lists.empty() ? ~0u : bits_of(strayed());
+    if (lanes != 0) list_near_pairs(group_, lanes);
     add_contacts(group_, contact_stiffness_);
   }
 

@@ -94,6 +94,7 @@ void NearPairs::list(std::span<const float> x, std::span<const float> y, std::sp
   z_.assign(z.begin(), z.end());
   pairs_.clear();
   listed_ = true;
+  ++times_listed_;
   const float radius = list_radius * contact_distance;
   const Grid grid(masses_, {x, y, z}, radius);
   for (std::uint32_t n = 0; n < grid.sorted.size(); ++n) {

@@ -34,6 +34,7 @@ class NearPairs {
   void forget() { listed_ = false; }
 
   bool listed() const { return listed_; }
+  std::uint64_t times_listed() const { return times_listed_; }
   std::span<const Pair> pairs() const { return pairs_; }
   // Where the masses were when the list was made.
   const Aligned<float>& x() const { return x_; }
@@ -50,6 +51,7 @@ class NearPairs {
   std::vector<Pair> pairs_;
   Aligned<float> x_, y_, z_;
   bool listed_ = false;
+  std::uint64_t times_listed_ = 0;
 };
 
 }  // namespace mercury::cpu
