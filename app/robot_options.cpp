@@ -15,6 +15,17 @@ namespace {
 
 constexpr std::size_t most_robots = 1'000'000;
 
+std::vector<Robot> random_robots(const RobotOptions::RandomRobots& request) {
+  if (request.kind == RobotOptions::RandomRobots::Kind::voxel)
+    return random_voxel_robots(request.voxel, request.seed, request.count, request.first);
+  std::vector<FailedRobot> failed;
+  std::vector<Robot> robots = random_nn_robots(request.network, request.seed, request.count, request.first, &failed);
+  if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
+  for (const FailedRobot& robot : failed)
+    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", request.seed, robot.index, robot.reason);
+  return robots;
+}
+
 }  // namespace
 
 void RobotOptions::add_to(CLI::App& command) {
@@ -38,41 +49,45 @@ std::optional<std::filesystem::path> RobotOptions::recording() const {
 
 std::vector<Robot> RobotOptions::load() const {
   if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12 or nn:12");
-  std::vector<Robot> robots;
-  if (const auto file = recording())
-    throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
-  if (!paths_.empty()) robots = load_robots(std::vector<std::filesystem::path>(paths_.begin(), paths_.end()));
-  for (const std::string& request : random_) {
+  std::vector<Robot> robots = load_files();
+  for (const RandomRobots& request : random()) {
     std::vector<Robot> more = random_robots(request);
     robots.insert(robots.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   return robots;
 }
 
-std::vector<Robot> RobotOptions::random_robots(const std::string& request) const {
+std::vector<Robot> RobotOptions::load_files() const {
+  if (const auto file = recording())
+    throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
+  if (paths_.empty()) return {};
+  return load_robots(files());
+}
+
+std::vector<RobotOptions::RandomRobots> RobotOptions::random() const {
+  std::vector<RandomRobots> requests;
+  for (const std::string& request : random_) requests.push_back(random_from(request));
+  return requests;
+}
+
+RobotOptions::RandomRobots RobotOptions::random_from(const std::string& request) const {
   const std::vector<std::string_view> parts = split(request, ':');
   const std::string_view kind = parts.front();
   const auto number = [&](std::size_t place, std::uint64_t otherwise) {
     return place < parts.size() ? number_from<std::uint64_t>("--random", parts[place]) : otherwise;
   };
-  const std::size_t count = number(1, 1);
-  const std::uint64_t seed = number(2, seed_), first = number(3, 0);
-  if (count < 1 || count > most_robots)
+  RandomRobots robots{.count = number(1, 1), .seed = number(2, seed_), .first = number(3, 0)};
+  if (robots.count < 1 || robots.count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
   if (kind != "voxel" && kind != "nn")
     throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
   if (parts.size() > 4)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
-  if (kind == "voxel") return random_voxel_robots(voxel_.chosen(), seed, count, first);
-  return random_network_robots(count, seed, first);
-}
-
-std::vector<Robot> RobotOptions::random_network_robots(std::size_t count, std::uint64_t seed, std::uint64_t first) const {
-  std::vector<FailedRobot> failed;
-  std::vector<Robot> robots = random_nn_robots(nn_.chosen(), seed, count, first, &failed);
-  if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
-  for (const FailedRobot& robot : failed)
-    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", seed, robot.index, robot.reason);
+  if (kind == "voxel")
+    robots.voxel = voxel_.chosen();
+  else
+    robots.network = nn_.chosen();
+  robots.kind = kind == "voxel" ? RandomRobots::Kind::voxel : RandomRobots::Kind::network;
   return robots;
 }
 

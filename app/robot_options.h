@@ -27,14 +27,25 @@ class RobotOptions {
   // The trajectory file, if that is what was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> recording() const;
 
+  // The same in parts: robots of the files alone, the files' names, and what is to be made at random.
+  std::vector<Robot> load_files() const;
+  std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
+  struct RandomRobots {
+    enum class Kind { voxel, network } kind = Kind::voxel;
+    std::size_t count = 1;
+    std::uint64_t seed = 1, first = 0;
+    RandomVoxelOptions voxel;  // if voxel
+    NnOptions network;         // if network
+  };
+  std::vector<RandomRobots> random() const;
+
   bool empty() const { return paths_.empty() && random_.empty(); }
 
   // Of the random robots; nothing when there are none.
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
 
  private:
-  std::vector<Robot> random_robots(const std::string& request) const;
-  std::vector<Robot> random_network_robots(std::size_t count, std::uint64_t seed, std::uint64_t first) const;
+  RandomRobots random_from(const std::string& request) const;
 
   std::vector<std::string> paths_;   // files and folders
   std::vector<std::string> random_;  // "voxel:12", "nn:4"

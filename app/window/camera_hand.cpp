@@ -64,10 +64,8 @@ void CameraHand::frame(std::span<const render::Bounds> robots, float aspect) {
   if (mode_ != CameraMode::still && mode_ != CameraMode::follow) set_mode(CameraMode::still), glide_ = glide_time;
 }
 
-void CameraHand::start(std::span<const render::Bounds> robots, float aspect, bool on_ground) {
-  orbit_.azimuth = -1.3f;
-  orbit_.elevation = on_ground ? 0.6f : 0.35f;
-  orbit_.field_of_view = field_of_view;
+void CameraHand::start(std::span<const render::Bounds> robots, float aspect) {
+  field_of_view = orbit_.field_of_view;
   if (!all_of(robots).empty()) orbit_.frame(robots, aspect, margin);
   glide_ = 0;
 }

@@ -27,8 +27,8 @@ class CameraHand {
   void zoom(float factor);
   // Looks at the robots of these boxes, all of them in the picture; glides there.
   void frame(std::span<const render::Bounds> robots, float aspect);
-  // The direction that suits swimmers or crawlers, all in the picture.
-  void start(std::span<const render::Bounds> robots, float aspect, bool on_ground);
+  // The same at once.
+  void start(std::span<const render::Bounds> robots, float aspect);
 
   // The camera now; call once a picture with the time since the last one [s].
   render::Camera at(std::span<const render::Bounds> robots, float aspect, double dt);

@@ -20,7 +20,7 @@ struct ViewCommandOptions {
   SimulationOptions simulation;
   ViewOptions view;
   std::string config, size, quality = "auto", report;
-  bool fresh = false;
+  bool fresh = false, paused = false;
 };
 
 window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
@@ -32,24 +32,35 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.quality = render::quality_named(options.quality);
   result.report = options.report;
   result.remember = !options.fresh;
+  result.playing = !options.paused;
   result.view = options.view.settings();
   return result;
 }
 
+Generation generation_of(const RobotOptions::RandomRobots& request) {
+  const bool network = request.kind == RobotOptions::RandomRobots::Kind::network;
+  return {.kind = network ? Generation::Kind::network : Generation::Kind::voxel,
+          .count = request.count,
+          .seed = request.seed,
+          .first = request.first,
+          .voxel = request.voxel,
+          .network = request.network};
+}
+
 int view(const ViewCommandOptions& options) {
   window::ViewerOptions viewer = viewer_options(options);
-  std::vector<std::string> notes;
+  viewer.configuration = options.simulation.configuration();
   if (options.robots.empty()) {
-    viewer.configuration = options.simulation.configuration();
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
     // There are none for simple water: those that swim.
     if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
-  } else {
-    options.simulation.configuration();  // errors in options come before those in files
-    viewer.robots = options.robots.load();
-    viewer.configuration = options.simulation.configuration(viewer.robots, notes);
+    return window::run_viewer(std::move(viewer));
   }
-  viewer.notes = std::move(notes);
+  // Files are looked at here for what is wrong with them and where the robots live; the window reads them again.
+  const std::vector<Robot> robots = options.robots.load_files();
+  if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
+  viewer.files = options.robots.files();
+  for (const RobotOptions::RandomRobots& request : options.robots.random()) viewer.generations.push_back(generation_of(request));
   return window::run_viewer(std::move(viewer));
 }
 
@@ -63,6 +74,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
            "WIDTHxHEIGHT")
       ->group("Window");
   add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Effort of drawing")->group("Window");
+  command->add_flag("--paused", options->paused, "Begin at rest")->group("Window");
   command->add_flag("--fresh", options->fresh, "Neither use nor keep settings of earlier windows")->group("Window");
   add_text(*command, "--report", options->report,
            "Write what happens in the window to a file, one JSON object a line (docs/window.md)", "FILE")

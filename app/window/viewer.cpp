@@ -5,115 +5,290 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/group_scene.h"
-#include "app/position_bridge.h"
-#include "app/window/camera_hand.h"
+#include "app/cameraman.h"
+#include "app/interrupt.h"
+#include "app/live/live_scene.h"
+#include "app/live/remembered.h"
 #include "app/window/interface.h"
-#include "app/window/observations.h"
-#include "app/window/picture_view.h"
+#include "app/window/panels.h"
+#include "app/window/screenshot.h"
 #include "app/window/theme.h"
-#include "app/window/toasts.h"
 
 namespace mercury::window {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double frame_time = 1.0 / 60;  // at least, where the display sets no pace [s]
+constexpr double idle_time = 0.2;        // between looks at what goes on while nothing moves [s]
+
+double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+Preferences remembered(const ViewerOptions& options, const std::filesystem::path& folder) {
+  Preferences preferences;
+  if (options.remember && !folder.empty()) load(preferences, folder / "window.json");
+  if (options.size.width > 0) preferences.size = options.size;
+  if (options.quality != render::Quality::automatic) preferences.quality = options.quality;
+  return preferences;
+}
+
+Tone tone_of(Severity severity) {
+  switch (severity) {
+    case Severity::warning: return Tone::warning;
+    case Severity::error: return Tone::error;
+    default: return Tone::news;
+  }
+}
+
 class Viewer {
  public:
-  explicit Viewer(ViewerOptions options)
-      : options_(std::move(options)), window_("Mercury", {1280, 720}), interface_(window_, {}),
-        picture_(window_.context(), options_.quality),
-        observations_(options_.report.empty() ? Observations() : Observations(options_.report)),
-        simulation_(options_.configuration, options_.robots),
-        scene_(simulation_, offsets(), options_.view), details_(simulation_, options_.view), bridge_(make_host_bridge()) {
-    scene_.set_bodies(picture_.renderer());
-    update();
-    camera_.start(scene_.bounds(), 16.0f / 9, false);
-  }
-
-  int run() {
-    auto last = Clock::now();
-    while (!window_.asked_to_close()) {
-      window_.poll(0.001);
-      const auto now = Clock::now();
-      const double dt = std::chrono::duration<double>(now - last).count();
-      last = now;
-      frame(dt);
-    }
-    return 0;
-  }
+  explicit Viewer(ViewerOptions options);
+  ~Viewer();
+  int run();
 
  private:
-  std::vector<Eigen::Vector3f> offsets() const {
-    std::vector<render::Bounds> bounds;
-    for (const Robot& robot : options_.robots) bounds.push_back(rest_bounds(robot));
-    return grid_layout(bounds, {});
-  }
+  void remember();
+  void fill_scene();
+  void frame(double dt);
+  void listen();
+  void draw_picture(const PictureArea& area, double dt);
+  void finish_picture(const PictureArea& area);
+  void take_screenshot();
+  void tell(double dt);
+  bool anything_moves() const;
+  std::filesystem::path settings(const char* name) const { return folder_.empty() ? folder_ : folder_ / name; }
 
-  void update() {
-    const std::vector<Telemetry> telemetry = simulation_.telemetry();
-    snapshot_ = bridge_->take(simulation_);
-    scene_.update(simulation_.time(), telemetry, details_.observe(telemetry));
-    bridge_->show(*snapshot_, picture_.renderer(), scene_.scene());
-  }
-
-  void frame(double dt) {
-    for (const Press& press : window_.take_presses()) {
-      if (press.key == ' ' || press.character == U' ') playing_ = !playing_;
-    }
-    if (playing_) {
-      const auto begin = Clock::now();
-      const double target = simulation_.time() + std::min(dt, 0.1);
-      while (simulation_.time() < target && Clock::now() - begin < std::chrono::milliseconds(25)) simulation_.step(4);
-      update();
-    }
-    interface_.set_looks(options_.view.theme, 1);
-    interface_.begin_frame();
-    const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantCaptureMouse) {
-      const float height = io.DisplaySize.y;
-      if (ImGui::IsMouseDragging(0, 2)) camera_.turn(io.MouseDelta.x / height, -io.MouseDelta.y / height);
-      if (ImGui::IsMouseDragging(1, 2)) camera_.pan(io.MouseDelta.x / height, -io.MouseDelta.y / height);
-      if (io.MouseWheel != 0) camera_.zoom(std::pow(0.88f, io.MouseWheel));
-    }
-    ImGui::Begin("Play", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
-    if (ImGui::Button(playing_ ? "Pause" : "Play")) playing_ = !playing_;
-    observations_.item("play");
-    ImGui::Text("%.2f s, %.1f ms a picture", simulation_.time(), 1000 * picture_.draw_seconds());
-    ImGui::End();
-    const WindowSize pixels = window_.pixels();
-    picture_.place(0, 0, pixels.width, pixels.height);
-    picture_.draw(scene_.scene(), camera_.at(scene_.bounds(), picture_.aspect(), dt), playing_);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, pixels.width, pixels.height);
-    glClearColor(0.05f, 0.06f, 0.07f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    picture_.present(pixels.height);
-    interface_.end_frame();
-    window_.show_picture();
-    observations_.end_frame();
-    for (const std::string& message : window_.context().take_messages()) observations_.tell("gl", {{"text", message}});
-    if (frames_++ == 0) observations_.tell("ready", {{"seconds", 0}});
-  }
-
+  const Clock::time_point start_ = Clock::now();
   ViewerOptions options_;
+  std::filesystem::path folder_;  // of settings; empty = nothing is remembered
+  Preferences preferences_;
+  Observations observations_;
   Window window_;
   Interface interface_;
   PictureView picture_;
-  Observations observations_;
-  Simulation simulation_;
-  GroupScene scene_;
-  DetailObserver details_;
-  std::unique_ptr<PositionBridge> bridge_;
-  std::unique_ptr<PositionSnapshot> snapshot_;
+  LiveScene scene_;
   CameraHand camera_;
-  bool playing_ = true;
-  long frames_ = 0;
+  Toasts toasts_;
+  Dialogs dialogs_;
+  Desk desk_{scene_, camera_, preferences_, observations_, toasts_, dialogs_};
+  Panels panels_;
+  Hands hands_;
+  Screenshot screenshot_;
+
+  std::uint64_t bodies_ = 0;       // revision that the renderer has
+  bool turned_ = false;            // the camera moved in the last picture
+  bool framed_ = false;            // the camera has found its first robots
+  int redraw_ = 3;                 // pictures to be drawn though nothing in them moves
+  std::int64_t shown_steps_ = -1;
+  render::Camera shown_;           // the picture was drawn with
+  PictureArea area_{{0, 0}, {16, 9}};
+  FrameCost cost_;
+  std::int64_t frames_ = 0;
+  double told_ = -1;
+  std::size_t told_robots_ = 0;
 };
+
+Viewer::Viewer(ViewerOptions options)
+    : options_(std::move(options)), folder_(options_.remember ? settings_folder() : std::filesystem::path()),
+      preferences_(remembered(options_, folder_)),
+      observations_(options_.report.empty() ? Observations() : Observations(options_.report)),
+      window_("Mercury", preferences_.size), interface_(window_, settings("window.ini")),
+      picture_(window_.context(), preferences_.quality),
+      scene_({.configuration = options_.configuration, .view = options_.view}), panels_(desk_, window_, picture_) {
+  remember();
+  fill_scene();
+}
+
+Viewer::~Viewer() {
+  if (folder_.empty()) return;
+  Messages untold;
+  save_remembered(remembered_path(), {.view = scene_.view(),
+                                      .generation = panels_.generation(),
+                                      .pause_on_explosion = preferences_.pause_on_explosion,
+                                      .folder = preferences_.folder}, untold);
+  if (const WindowSize size = window_.size(); size.width > 0) preferences_.size = size;
+  save(preferences_, settings("window.json"));
+}
+
+// Settings of the last window, where the command line gives none.
+void Viewer::remember() {
+  if (folder_.empty()) return;
+  Messages messages;
+  const Remembered last = load_remembered(remembered_path(), messages);
+  for (const Message& message : messages.take()) toasts_.say(tone_of(message.severity), message.text);
+  if (options_of(options_.view).empty()) scene_.set_view(last.view);
+  std::error_code unknown;
+  if (std::filesystem::exists(remembered_path(), unknown)) panels_.generation() = last.generation;
+  preferences_.pause_on_explosion = last.pause_on_explosion;
+}
+
+void Viewer::fill_scene() {
+  if (!options_.robots.empty()) scene_.add(std::move(options_.robots));
+  if (!options_.files.empty()) scene_.open(options_.files);
+  for (const Generation& generation : options_.generations) scene_.generate(generation);
+  for (const std::string& line : options_.notes) toasts_.say(Tone::news, line);
+  if (options_.playing) scene_.play();
+}
+
+int Viewer::run() {
+  auto last = Clock::now();
+  while (!window_.asked_to_close() && !interrupted()) {
+    const double spent = since(last);
+    window_.poll(anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
+    const double dt = since(last);
+    last = Clock::now();
+    if (window_.take_activity()) redraw_ = std::max(redraw_, 3);
+    frame(std::min(dt, 0.5));
+  }
+  return 0;
+}
+
+bool Viewer::anything_moves() const {
+  return redraw_ > 0 || turned_ || scene_.playing() || camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() ||
+         panels_.busy() || panels_.film().busy() || screenshot_.under_way() || !scene_.work().empty() || hands_.busy() || picture_.coarse();
+}
+
+void Viewer::listen() {
+  if (const auto files = window_.take_dropped_files(); !files.empty()) {
+    scene_.open(files);
+    observations_.tell("dropped", {{"files", files.size()}});
+  }
+  const bool typing = ImGui::GetIO().WantTextInput;
+  for (const Press& press : window_.take_presses()) {
+    if (is_enter(press) && dialogs_.open()) dialogs_.accept();
+    const std::optional<Command> command = command_of(press);
+    if (!command) continue;
+    if (dialogs_.open() && command->action != Action::deselect && command->action != Action::quit) continue;
+    if (typing && (!press.control || command->action == Action::undo || command->action == Action::redo || command->action == Action::select_all) &&
+        command->action != Action::help)
+      continue;
+    panels_.carry_out(*command);
+  }
+}
+
+void Viewer::frame(double dt) {
+  listen();
+  const auto begin = Clock::now();
+  scene_.frame(area_.aspect());
+  for (const Message& message : scene_.take_messages()) toasts_.say(tone_of(message.severity), message.text);
+  cost_.scene = since(begin);
+  panels_.work(0.004);
+  cost_.thumbnails = since(begin) - cost_.scene;
+  interface_.set_looks(scene_.view().theme, preferences_.text_scale);
+  const auto panels_begin = Clock::now();
+  interface_.begin_frame();
+  area_ = panels_.draw_frame();
+  hands_.work(desk_, area_, shown_);
+  panels_.draw_over(area_, dt);
+  hands_.draw(desk_, area_, shown_);
+  cost_.panels = since(panels_begin);
+  draw_picture(area_, dt);
+  finish_picture(area_);
+  cost_.whole = dt;
+  panels_.note(cost_);
+  tell(dt);
+}
+
+void Viewer::draw_picture(const PictureArea& area, double dt) {
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  picture_.place(static_cast<int>(area.low.x * scale.x), static_cast<int>(area.low.y * scale.y),
+                 static_cast<int>(area.width() * scale.x), static_cast<int>(area.height() * scale.y));
+  LivePicture& live = scene_.picture();
+  if (preferences_.quality != render::Quality::automatic && preferences_.quality != picture_.renderer().quality()) {
+    picture_.renderer().set_quality(preferences_.quality);
+    redraw_ = 3;
+  }
+  if (bodies_ != live.bodies_revision()) {
+    live.set_bodies(picture_.renderer());
+    bodies_ = live.bodies_revision();
+    redraw_ = 3;
+  }
+  if (!framed_ && !live.bounds().empty()) {
+    camera_.set_orbit(direction_of(options_.view.camera, std::holds_alternative<Land>(scene_.configuration().environment)));
+    camera_.start(live.bounds(), area.aspect());
+    camera_.set_mode(options_.view.camera.mode);
+    framed_ = true;
+  }
+  const render::Camera camera = camera_.at(live.bounds(), area.aspect(), dt);
+  const bool turned = camera.eye != shown_.eye || camera.target != shown_.target || camera.field_of_view != shown_.field_of_view;
+  const bool stepped = shown_steps_ != scene_.moment().steps;
+  turned_ = turned;
+  const bool moving = turned || (stepped && scene_.playing()) || hands_.busy();
+  if (!moving && !stepped && redraw_ == 0 && !picture_.coarse()) return;
+  const auto begin = Clock::now();
+  picture_.draw(live.scene(), camera, moving);
+  cost_.picture = since(begin);
+  shown_ = camera;
+  shown_steps_ = scene_.moment().steps;
+  redraw_ = std::max(0, redraw_ - 1);
+}
+
+void Viewer::finish_picture(const PictureArea&) {
+  const WindowSize pixels = window_.pixels();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, pixels.width, pixels.height);
+  glClearColor(0.08f, 0.10f, 0.13f, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  if (pixels.width > 0 && pixels.height > 0) picture_.present(pixels.height);
+  interface_.end_frame();
+  panels_.film().frame(desk_, pixels);
+  if (panels_.take_screenshot_wish()) take_screenshot();
+  std::filesystem::path path;
+  std::string error;
+  if (screenshot_.done(path, error)) {
+    if (error.empty())
+      toasts_.say(Tone::success, "picture saved: " + path.string());
+    else
+      toasts_.say(Tone::error, error);
+    observations_.tell("screenshot", {{"file", path.string()}});
+  }
+  window_.show_picture();
+}
+
+void Viewer::take_screenshot() {
+  screenshot_.take(read_window(window_.pixels()), fresh_name(picture_folder(desk_), ".png"));
+}
+
+void Viewer::tell(double dt) {
+  observations_.end_frame();
+  const std::vector<std::string> complaints = window_.context().take_messages();
+  for (const std::string& complaint : complaints) {
+    observations_.tell("gl", {{"text", complaint}});
+    fmt::print(stderr, "mercury: OpenGL: {}\n", complaint);
+  }
+  if (frames_++ == 0) observations_.tell("ready", {{"seconds", since(start_)}, {"context", window_.context().describe()}});
+  if (!observations_) return;
+  const std::size_t robots = scene_.entries().size();
+  if (robots != told_robots_) {
+    std::vector<std::string> names;
+    for (const RobotEntry& entry : scene_.entries()) names.push_back(entry.name);
+    observations_.tell("robots", {{"count", robots}, {"names", names}});
+    told_robots_ = robots;
+  }
+  if (since(start_) - told_ < 0.2) return;
+  told_ = since(start_);
+  std::vector<std::array<float, 2>> where;  // the middle of each robot in the window
+  for (const render::Bounds& box : scene_.picture().bounds()) {
+    const Eigen::Vector3f p = shown_.project(box.center(), static_cast<int>(area_.width()), static_cast<int>(area_.height()));
+    if (where.size() < 20) where.push_back({area_.low.x + p.x(), area_.low.y + p.y()});
+  }
+  observations_.tell("frame", {{"number", frames_},
+                               {"where", where},
+                               {"distance", camera_.orbit().distance},
+                               {"azimuth", camera_.orbit().azimuth},
+                               {"steps", scene_.moment().steps},
+                               {"time", scene_.moment().time},
+                               {"playing", scene_.playing()},
+                               {"selected", scene_.selection().size()},
+                               {"panels", preferences_.panels},
+                               {"seconds", dt},
+                               {"picture", cost_.picture}});
+}
 
 }  // namespace
 

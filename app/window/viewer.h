@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/live/scene_document.h"
 #include "app/view_settings.h"
 #include "app/window/window.h"
 #include "render/renderer.h"
@@ -14,12 +15,15 @@
 namespace mercury::window {
 
 struct ViewerOptions {
-  std::vector<Robot> robots;
+  std::vector<Robot> robots;                   // that come from no file
+  std::vector<std::filesystem::path> files;    // read when the window is open
+  std::vector<Generation> generations;         // made when the window is open
   Configuration configuration;
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;
   WindowSize size{0, 0};           // 0 = of the last time
   std::filesystem::path report;    // where to tell what happens (observations.h); empty = nowhere
+  bool playing = true;             // from the start
   bool remember = true;            // settings of earlier windows are used, and kept for later ones
   std::vector<std::string> notes;  // shown at the start
 };

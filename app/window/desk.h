@@ -1,0 +1,38 @@
+// What every panel works on.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "app/live/live_scene.h"
+#include "app/window/camera_hand.h"
+#include "app/window/dialogs.h"
+#include "app/window/observations.h"
+#include "app/window/preferences.h"
+#include "app/window/toasts.h"
+
+namespace mercury::window {
+
+struct Desk {
+  LiveScene& scene;
+  CameraHand& camera;
+  Preferences& preferences;
+  Observations& observations;
+  Toasts& toasts;
+  Dialogs& dialogs;
+};
+
+// The selected robots; all where none is selected.
+std::vector<RobotId> chosen_robots(const LiveScene& scene);
+
+// Looks at these robots; all where there are none.
+void frame_robots(Desk& desk, const std::vector<RobotId>& robots, float aspect);
+
+// The boxes of these robots in the picture, as far as they are there.
+std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId>& robots);
+
+// Saves by `save(overwrite)`; where files exist, asks first. Tells how it went.
+void save_with_care(Desk& desk, const std::string& what, std::function<SaveResult(bool overwrite)> save);
+
+}  // namespace mercury::window

@@ -1,0 +1,69 @@
+#include "app/window/help_panel.h"
+
+#include <algorithm>
+#include <string>
+
+#include "app/window/actions.h"
+#include "app/window/theme.h"
+#include "app/window/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+void line(const char* keys, const char* meaning) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().accent);
+  ImGui::TextUnformatted(keys);
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(meaning);
+}
+
+bool begin_lines(const char* id) {
+  if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit)) return false;
+  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, 9.5f * ImGui::GetFontSize());
+  ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
+  return true;
+}
+
+void group(const std::string& name) {
+  heading(name.c_str());
+  if (!begin_lines(name.c_str())) return;
+  for (const Binding& binding : bindings())
+    if (binding.group == name) line(binding.keys, binding.meaning);
+  ImGui::EndTable();
+}
+
+void mouse() {
+  heading("Mouse");
+  if (!begin_lines("mouse")) return;
+  for (const MouseUse& use : mouse_uses()) line(use.gesture, use.meaning);
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void draw_help(bool& open, Observations& observations) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float text = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(0.96f * screen.x, 58 * text), std::min(0.98f * screen.y, 41.5f * text)}, ImGuiCond_Appearing);
+  if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    observations.item("panel.Help", ImGui::GetWindowPos(),
+                      {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
+    if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingStretchSame)) {
+      ImGui::TableNextColumn();
+      mouse();
+      group("Time");
+      group("Camera");
+      ImGui::TableNextColumn();
+      group("Robots");
+      group("Picture");
+      ImGui::EndTable();
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,10 @@
+// All keys and gestures.
+#pragma once
+
+#include "app/window/observations.h"
+
+namespace mercury::window {
+
+void draw_help(bool& open, Observations& observations);
+
+}  // namespace mercury::window

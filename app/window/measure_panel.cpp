@@ -1,0 +1,159 @@
+#include "app/window/measure_panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <vector>
+
+#include "app/window/plot.h"
+#include "app/window/theme.h"
+#include "app/window/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+constexpr std::size_t most_lines = 10;  // as many as there are colours
+
+struct Curve {
+  std::string name;
+  Series series;
+};
+
+std::string name_of_robot(const LiveScene& scene, RobotId robot) {
+  const DocumentRobot* found = scene.document().find(robot);
+  return found ? found->body.name : "?";
+}
+
+void save_csv(Desk& desk, const char* title, const char* name, std::function<std::string()> csv) {
+  const std::filesystem::path folder = desk.preferences.save_folder;
+  desk.dialogs.ask_text(title, "File:", folder.empty() ? name : (folder / name).string(), "Save",
+                        [&desk, csv = std::move(csv)](const std::string& path) {
+                          if (path.empty()) return;
+                          const std::string text = csv();
+                          save_with_care(desk, "CSV", [&desk, path, text](bool overwrite) {
+                            return desk.scene.save_text(path, text, overwrite);
+                          });
+                        });
+}
+
+}  // namespace
+
+void MeasurePanel::draw(Desk& desk) {
+  heading("Plots");
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    const QuantityName& name = quantities()[i];
+    if (i != 0) {
+      ImGui::SameLine();
+      if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name.name).x + 1.5f * ImGui::GetFontSize()) ImGui::NewLine();
+    }
+    if (toggle(name.name, shown_[i])) shown_[i] = !shown_[i];
+    desk.observations.item(std::string("measure.") + name.name);
+  }
+  draw_plots(desk);
+  draw_exports(desk);
+}
+
+void MeasurePanel::draw_plots(Desk& desk) {
+  std::vector<RobotId> robots = chosen_robots(desk.scene);
+  if (robots.size() > most_lines) {
+    note(fmt::format("the first {} of {} robots; select others to see them", most_lines, robots.size()).c_str());
+    robots.resize(most_lines);
+  }
+  std::deque<Curve> curves;
+  for (const RobotId robot : robots) curves.push_back({name_of_robot(desk.scene, robot), desk.scene.series(robot)});
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    if (!shown_[i]) continue;
+    const QuantityName& quantity = quantities()[i];
+    std::vector<std::vector<double>> values(curves.size());
+    std::vector<PlotLine> lines;
+    for (std::size_t k = 0; k < curves.size(); ++k) {
+      for (const Sample& sample : curves[k].series.samples) values[k].push_back(static_cast<double>(sample.of(quantity.quantity)));
+      lines.push_back({curves[k].name, render::category_color(static_cast<int>(k)), curves[k].series.times, values[k]});
+    }
+    plot(quantity.name, {.title = quantity.name, .unit = quantity.unit, .height = 9 * ImGui::GetFontSize()}, lines);
+  }
+  // Which line is whose.
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float text = ImGui::GetFontSize();
+    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text}, {corner.x + 0.6f * text, corner.y + 0.8f * text},
+                                              packed(render::category_color(static_cast<int>(k))), 0.1f * text);
+    ImGui::Dummy({0.7f * text, text});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(shortened(curves[k].name, 9 * text).c_str());
+    if (k + 1 < curves.size()) {
+      ImGui::SameLine();
+      if (ImGui::GetContentRegionAvail().x < 7 * text) ImGui::NewLine();
+    }
+  }
+}
+
+void MeasurePanel::draw_exports(Desk& desk) {
+  if (ImGui::Button("Save as CSV...", {-1, 0}))
+    save_csv(desk, "Save measurements", "measurements.csv", [&desk] { return desk.scene.csv(chosen_robots(desk.scene)); });
+  desk.observations.item("measure.csv");
+  hint("all quantities over time, of the selected robots, or of all");
+}
+
+void RankingPanel::draw(Desk& desk, float aspect) {
+  heading("Ranking");
+  struct Named {
+    std::string name;
+    RankingRow row;
+  };
+  std::vector<Named> rows;
+  for (const RankingRow& row : desk.scene.ranking()) rows.push_back({name_of_robot(desk.scene, row.robot), row});
+  const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
+  const float height = ImGui::GetContentRegionAvail().y - 2.2f * ImGui::GetFrameHeightWithSpacing();
+  if (ImGui::BeginTable("ranking", 6, flags, {0, std::max(height, 6 * ImGui::GetFrameHeight())})) {
+    ImGui::TableSetupScrollFreeze(1, 1);
+    ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 7 * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("distance [m]", ImGuiTableColumnFlags_DefaultSort | ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("mean speed [m/s]", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("speed [m/s]", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("energy [J]", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("largest strain", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableHeadersRow();
+    if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0) {
+      column_ = specs->Specs[0].ColumnIndex;
+      ascending_ = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
+    }
+    const auto key = [&](const Named& named) {
+      const RankingRow& r = named.row;
+      const double keys[] = {0, r.distance, r.mean_speed, r.speed, r.kinetic_energy + r.elastic_energy, r.largest_strain};
+      return keys[std::clamp(column_, 0, 5)];
+    };
+    std::stable_sort(rows.begin(), rows.end(), [&](const Named& a, const Named& b) {
+      if (column_ == 0) return ascending_ ? a.name < b.name : b.name < a.name;
+      return ascending_ ? key(a) < key(b) : key(b) < key(a);
+    });
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(rows.size()));
+    while (clipper.Step())
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        const auto& [name, row] = rows[static_cast<std::size_t>(i)];
+        ImGui::PushID(static_cast<int>(row.robot));
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (ImGui::Selectable(fmt::format("{}. {}", i + 1, name).c_str(), desk.scene.is_selected(row.robot),
+                              ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
+          desk.scene.select(row.robot, !ImGui::GetIO().KeyCtrl && !ImGui::GetIO().KeyShift);
+          if (ImGui::IsMouseDoubleClicked(0)) frame_robots(desk, {row.robot}, aspect);
+        }
+        if (i < 20) desk.observations.item(fmt::format("ranking.{}", i));
+        const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy, row.largest_strain};
+        for (const double number : numbers) {
+          ImGui::TableNextColumn();
+          ImGui::TextUnformatted(fmt::format("{:.4g}", number).c_str());
+        }
+        ImGui::PopID();
+      }
+    ImGui::EndTable();
+  }
+  if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
+    save_csv(desk, "Save the ranking", "ranking.csv", [&desk] { return desk.scene.ranking_csv(); });
+  desk.observations.item("ranking.csv");
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,62 @@
+// All panels of the window, and what keys and menus do with them.
+#pragma once
+
+#include "app/window/actions.h"
+#include "app/window/browser_panel.h"
+#include "app/window/desk.h"
+#include "app/window/explosion_card.h"
+#include "app/window/film_panel.h"
+#include "app/window/layout.h"
+#include "app/window/materials_panel.h"
+#include "app/window/measure_panel.h"
+#include "app/window/performance_panel.h"
+#include "app/window/picture_view.h"
+#include "app/window/robots_panel.h"
+
+namespace mercury::window {
+
+class Panels {
+ public:
+  Panels(Desk& desk, Window& window, PictureView& picture);
+
+  // Menu, columns and play bar; returns the place that is left for the picture.
+  PictureArea draw_frame();
+  // What lies over the picture.
+  void draw_over(const PictureArea& area, double dt);
+  void carry_out(const Command& command);
+  void note(const FrameCost& cost) { performance_.note(cost); }
+  // Background work of panels, for at most so long [s]; takes what it took.
+  void work(double seconds);
+  bool busy() const { return browser_.busy(); }
+  // Opens a panel by its name.
+  void show(const std::string& panel);
+
+  bool take_screenshot_wish() { return std::exchange(screenshot_wanted_, false); }
+  Generation& generation() { return robots_.generation; }
+  FilmPanel& film() { return film_; }
+  const FilmPanel& film() const { return film_; }
+
+ private:
+  void draw_menu();
+  void menu_item(const char* name, Action action, bool enabled = true, bool checked = false);
+  void change_view(Action action, int number);
+  void change_camera(Action action);
+  void escape();
+
+  Desk& desk_;
+  Window& window_;
+  PictureView& picture_;
+  RobotsPanel robots_;
+  BrowserPanel browser_;
+  MaterialsPanel materials_;
+  MeasurePanel measure_;
+  RankingPanel ranking_;
+  PerformancePanel performance_;
+  FilmPanel film_;
+  ExplosionCard explosions_;
+  Column left_, right_;
+  bool help_ = false, screenshot_wanted_ = false;
+  float aspect_ = 16.0f / 9;
+};
+
+}  // namespace mercury::window

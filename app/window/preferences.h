@@ -1,0 +1,32 @@
+// What a window remembers for the next one, apart from what the scene remembers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/window/window.h"
+#include "render/renderer.h"
+
+namespace mercury::window {
+
+struct Preferences {
+  WindowSize size;
+  float text_scale = 1;
+  bool panels = true;             // shown at all
+  float left_width = 19, right_width = 20;  // of the columns of panels, in lines of text
+  std::string left_panel = "Robots", right_panel = "See";
+  render::Quality quality = render::Quality::automatic;
+  std::string folder;             // shown by the browser last
+  std::string save_folder;
+  bool pause_on_explosion = false;
+};
+
+// Where settings are kept: $XDG_CONFIG_HOME/mercury or ~/.config/mercury; empty if neither is known.
+std::filesystem::path settings_folder();
+
+// From a file; what is missing or cannot be used is left as it is.
+void load(Preferences& preferences, const std::filesystem::path& file);
+// Does its best: a window whose settings cannot be written works all the same.
+void save(const Preferences& preferences, const std::filesystem::path& file);
+
+}  // namespace mercury::window

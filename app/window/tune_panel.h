@@ -1,0 +1,12 @@
+// Solver, environment and their parameters, as sliders that act at once.
+#pragma once
+
+#include "app/window/observations.h"
+#include "sim/configuration.h"
+
+namespace mercury::window {
+
+// True when the configuration changed; it stays one that validate() accepts.
+bool draw_physics_sliders(Configuration& configuration, Observations& observations);
+
+}  // namespace mercury::window

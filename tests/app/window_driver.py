@@ -1,0 +1,170 @@
+"""A window of `mercury view` on a display of its own, driven by real mouse and key events.
+
+What happened is read from the file that --report writes; nothing waits for a fixed time, everything for a deadline.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PATIENCE = 60  # seconds until something that does not happen is a failure
+
+
+class Display:
+    """An X server without a screen."""
+
+    def __init__(self, width=1280, height=720):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as numbers:
+            self.name = ":" + numbers.readline().strip()
+        if self.name == ":":
+            raise RuntimeError("Xvfb did not start")
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+
+class Window:
+    def __init__(self, program, display, folder, *arguments, size="1280x720"):
+        self.folder = Path(folder)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.report = self.folder / "report.jsonl"
+        self.report.unlink(missing_ok=True)
+        self.environment = dict(os.environ, DISPLAY=display.name, HOME=str(self.folder),
+                                XDG_CONFIG_HOME=str(self.folder / "config"), LIBGL_ALWAYS_SOFTWARE="1")
+        self.environment.pop("WAYLAND_DISPLAY", None)
+        self.messages = open(self.folder / "messages", "w+")
+        self.process = subprocess.Popen(
+            [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report), *arguments],
+            cwd=self.folder, env=self.environment, stderr=self.messages)
+        self.items, self.events, self.offset, self.rest = {}, [], 0, ""
+        self.wait("ready")
+
+    # What happened.
+
+    def look(self):
+        """Reads what was reported since the last look."""
+        if not self.report.exists():
+            return
+        with open(self.report) as file:
+            file.seek(self.offset)
+            text = self.rest + file.read()
+            self.offset = file.tell()
+        *lines, self.rest = text.split("\n")
+        for line in lines:
+            event = json.loads(line)
+            if event["event"] == "item":
+                self.items[event["name"]] = event
+            elif event["event"] == "gone":
+                self.items.pop(event["name"], None)
+            else:
+                self.events.append(event)
+
+    def until(self, what, found):
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            self.look()
+            if result := found():
+                return result
+            if self.process.poll() is not None:
+                raise AssertionError(f"the window ended with {self.process.returncode} before {what}: {self.said()}")
+            if time.monotonic() > deadline:
+                raise AssertionError(f"no {what}; last: {self.events[-3:]}")
+            time.sleep(0.02)
+
+    def mark(self):
+        """The number of events so far: later ones are those from there on."""
+        self.look()
+        return len(self.events)
+
+    def wait(self, event, since=0, accept=lambda event: True):
+        return self.until(f"{event} event", lambda: next(
+            (e for e in self.events[since:] if e["event"] == event and accept(e)), None))
+
+    def frame(self, accept=lambda frame: True, since=None):
+        """The next frame told of, or the next that is accepted."""
+        return self.wait("frame", self.mark() if since is None else since, accept)
+
+    def said(self):
+        self.messages.flush()
+        return Path(self.messages.name).read_text()
+
+    # What is done.
+
+    def do(self, *commands):
+        subprocess.run(["xdotool", *map(str, commands)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
+
+    def script(self, lines):
+        """Many commands by one process, as fast as the display takes them."""
+        subprocess.run(["xdotool", "-"], input="\n".join(lines) + "\n", text=True, env=self.environment, check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def place(self, item):
+        self.until(f"item {item}", lambda: item in self.items)
+        return round(self.items[item]["x"]), round(self.items[item]["y"])
+
+    def click(self, item):
+        # Twice on its way, so that the window sees it come to rest before it is pressed.
+        x, y = self.place(item)
+        self.do("mousemove", x, y)
+        since = self.mark()
+        self.frame(since=since)
+        self.do("click", 1)
+        # The window sees where the pointer is when it looks, not where it was when the button went down.
+        self.frame()
+
+    def dialog(self, text):
+        """Types into the question that is open, and accepts."""
+        self.place("dialog.text")
+        self.frame()  # it has the keyboard by then
+        self.type(text)
+        self.key("Return")
+
+    def key(self, *keys):
+        self.do("key", "--delay", "30", *keys)
+
+    def type(self, text):
+        self.do("type", "--delay", "25", text)
+
+    def screenshot(self):
+        """The window as a picture: height x width x 3, 0 to 1."""
+        import matplotlib.image
+        since = self.mark()
+        self.key("F2")
+        return matplotlib.image.imread(self.wait("screenshot", since)["file"])[:, :, :3]
+
+    def complaints(self):
+        self.look()
+        return [event["text"] for event in self.events if event["event"] == "gl"]
+
+    def close(self):
+        if self.process.poll() is None:
+            self.key("ctrl+q")
+            try:
+                self.process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self.messages.close()
+        return self.process.returncode
+
+
+def scratch():
+    """A folder that is removed at the end."""
+    folder = tempfile.mkdtemp(prefix="mercury-window-")
+    import atexit
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
+if __name__ == "__main__":
+    sys.exit("run window_test.py")

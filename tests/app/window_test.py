@@ -1,0 +1,228 @@
+"""The interactive window, started for real and driven with mouse and keys: window_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import json
+import random
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).parent))
+from window_driver import Display, Window, scratch  # noqa: E402
+
+PROGRAM, SAMPLES = sys.argv[1], Path(sys.argv[2])
+LEFT = ["Robots", "Browser", "Ranking"]
+RIGHT = ["See", "Tune", "Measure", "Film", "Time"]
+
+
+class WindowTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.display = Display()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.display.close()
+
+    def open(self, *arguments):
+        self.folder = scratch()
+        return self.window_in(self.folder, *arguments)
+
+    def window_in(self, folder, *arguments):
+        window = Window(PROGRAM, self.display, folder, *arguments)
+        self.addCleanup(window.close)
+        return window
+
+    def finish(self, window):
+        self.assertEqual(window.close(), 0)
+        self.assertEqual(window.complaints(), [])
+
+    def small(self, *arguments):
+        """A window with two small robots, so that little is waited for."""
+        return self.open(str(SAMPLES / "eel.json"), str(SAMPLES / "fish.json"), *arguments)
+
+    def test_opens_on_the_sample_robots_and_plays(self):
+        window = self.open()
+        robots = window.wait("robots")
+        self.assertIn("eel", robots["names"])
+        self.assertGreaterEqual(robots["count"], 5)
+        self.assertTrue(window.frame()["playing"])
+        window.frame(lambda frame: frame["time"] > 0.05)
+        window.key("space")
+        steps = window.frame(lambda frame: not frame["playing"])["steps"]
+        steps = window.frame()["steps"]  # one that was under way may have ended
+        window.key("period")
+        window.frame(lambda frame: frame["steps"] == steps + 1)
+        window.key("Right")
+        window.frame(lambda frame: frame["steps"] == steps + 2)
+        window.key("r")
+        window.frame(lambda frame: frame["steps"] == 0)
+        self.finish(window)
+
+    def test_camera_turns_and_comes_closer(self):
+        window = self.small("--paused")
+        before = window.frame()
+        x, y = window.place("picture")
+        window.script([f"mousemove {x} {y + 150}", "sleep 0.2", "mousedown 1", "sleep 0.1",
+                       *(f"mousemove {x + 8 * i} {y + 150}\nsleep 0.03" for i in range(12)), "mouseup 1"])
+        turned = window.frame(lambda frame: abs(frame["azimuth"] - before["azimuth"]) > 0.1)
+        window.do("click", 4)
+        window.frame(lambda frame: frame["distance"] < 0.95 * turned["distance"])
+        self.finish(window)
+
+    def test_every_panel_opens(self):
+        window = self.small()
+        for panel in LEFT[1:] + RIGHT[1:] + [LEFT[0], RIGHT[0]]:
+            since = window.mark()
+            window.click(f"tab.{panel}")
+            window.wait("panel", since, lambda event: event["name"] == panel)
+            window.place(f"panel.{panel}")
+        window.key("F1")
+        window.place("panel.Help")
+        window.key("Escape")
+        window.until("help closed", lambda: "panel.Help" not in window.items)
+        window.key("h")
+        window.frame(lambda frame: not frame["panels"])
+        window.key("h")
+        window.frame(lambda frame: frame["panels"])
+        self.finish(window)
+
+    def test_a_generated_robot_is_saved_and_loaded_again(self):
+        window = self.small("--paused")
+        since = window.mark()
+        window.click("generate")
+        robots = window.wait("robots", since, lambda event: all(name.startswith("voxel") for name in event["names"]))
+        window.click("robot.1")
+        window.frame(lambda frame: frame["selected"] == 1)
+        for expected in ("saved", "asks"):  # the second time, the file is there already
+            since = window.mark()
+            window.key("ctrl+s")
+            window.dialog(str(self.folder / "new.json"))
+            window.wait(expected, since)
+        window.click("dialog.cancel")
+        self.assertEqual(self.finish(window), None)
+        saved = json.loads((self.folder / "new.json").read_text())
+        self.assertEqual(saved["name"], robots["names"][1])
+
+        again = self.window_in(self.folder, "--fresh", "--paused")
+        since = again.mark()
+        again.key("ctrl+o")
+        again.dialog(str(self.folder / "new.json"))
+        again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
+        self.finish(again)
+
+    def test_a_robot_that_cannot_be_loaded_is_told(self):
+        window = self.small("--paused")
+        bad = self.folder / "bad.json"
+        bad.write_text('{"format": "mercury-robot", "version": 1, "masses": [[0, 0, 0]], "springs": [[0, 7, 1]], "faces": []}')
+        since = window.mark()
+        window.key("ctrl+o")
+        window.dialog(str(bad))
+        told = window.wait("message", since, lambda event: event["tone"] == "error")
+        self.assertIn("/springs/0", told["text"])
+        self.finish(window)
+
+    def test_drag_arrows_are_seen(self):
+        window = self.small()
+        window.frame(lambda frame: frame["time"] > 0.3)
+        window.key("space")
+        window.frame(lambda frame: not frame["playing"])
+        window.frame()
+        without = window.screenshot()
+        since = window.mark()
+        window.key("d")
+        window.wait("view", since, lambda event: event["drag"])
+        area = window.items["picture"]
+        left, right = int(area["x"] - area["width"] / 2) + 2, int(area["x"] + area["width"] / 2) - 2
+        top, bottom = int(area["y"] - area["height"] / 2) + 120, int(area["y"] + area["height"] / 2) - 2
+
+        def changed(a, b):
+            return (numpy.abs(a - b).max(axis=2) > 0.15)[top:bottom, left:right]
+
+        # Where the arrows are, near the robots, and nowhere else.
+        deadline = 20
+        while (share := changed(window.screenshot(), without).mean()) < 0.0005 and deadline:
+            deadline -= 1
+        self.assertGreater(share, 0.0005)
+        self.assertLess(share, 0.3)
+        self.finish(window)
+
+    def test_a_dragged_mass_moves(self):
+        window = self.small()
+        window.frame(lambda frame: len(frame["where"]) == 2)
+        window.key("minus", "minus", "minus")
+        x, y = map(round, window.frame()["where"][0])
+        window.script([f"mousemove {x} {y}", "sleep 0.3", "keydown ctrl", "sleep 0.1", "mousedown 1"])
+        pulled = window.wait("pull")
+        window.script([f"mousemove {x + 6 * i} {y - 6 * i}\nsleep 0.02" for i in range(1, 20)])
+        time = window.frame()["time"]
+        window.frame(lambda frame: frame["time"] > time + 0.15)
+        window.script(["mouseup 1", "keyup ctrl"])
+        released = window.wait("pulled")
+        self.assertGreater(released["force"], 1)
+        moved = numpy.linalg.norm(numpy.subtract(released["at"], pulled["at"]))
+        self.assertGreater(moved, 0.02)
+        self.finish(window)
+
+    def test_the_window_is_recorded(self):
+        window = self.small()
+        window.frame()
+        since = window.mark()
+        window.key("v")
+        window.wait("recording", since)
+        number = window.frame()["number"]
+        window.frame(lambda frame: frame["number"] > number + 30)
+        window.key("v")
+        file = window.wait("recorded", since)["file"]
+        probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", file],
+                               capture_output=True, text=True, check=True)
+        stream = json.loads(probe.stdout)["streams"][0]
+        self.assertEqual((stream["width"], stream["height"]), (1280, 720))
+        self.assertGreater(int(stream["nb_read_frames"]), 10)
+        self.finish(window)
+
+    def test_settings_are_remembered(self):
+        window = self.small("--paused")
+        window.click("tab.Tune")
+        window.wait("panel", 0, lambda event: event["name"] == "Tune")
+        self.finish(window)
+        again = self.window_in(self.folder, "--paused")
+        again.place("panel.Tune")
+        self.finish(again)
+
+    def test_whatever_is_clicked_and_typed_the_window_lives(self):
+        window = self.small()
+        chance = random.Random(4)
+        keys = ["space", "period", "Right", "plus", "minus", "f", "r", "n", "d", "h", "s", "l", "k", "b", "t", "z", "g", "m",
+                "1", "2", "3", "4", "5", "6", "7", "8", "0", "F1", "Escape", "Delete", "ctrl+z", "ctrl+y",
+                "Tab", "Return", "Up", "Down"]
+        for _ in range(20):
+            lines = []
+            for _ in range(100):
+                x, y = chance.randrange(1280), chance.randrange(720)
+                kind = chance.random()
+                if kind < 0.55:
+                    lines += [f"mousemove {x} {y} click {chance.choice([1, 1, 1, 1, 3, 4, 5])}"]
+                elif kind < 0.7:
+                    lines += [f"mousemove {x} {y} mousedown 1", f"mousemove {chance.randrange(1280)} {chance.randrange(720)} mouseup 1"]
+                elif kind < 0.75:
+                    lines += [f"keydown ctrl mousemove {x} {y} mousedown 1",
+                              f"mousemove {chance.randrange(1280)} {chance.randrange(720)} mouseup 1 keyup ctrl"]
+                else:
+                    lines += [f"key {chance.choice(keys)}"]
+            window.script(lines)
+            window.frame()
+        window.script(["keyup ctrl", "mouseup 1"])
+        window.key("Escape", "Escape")
+        self.assertIsNone(window.process.poll())
+        self.assertEqual(window.complaints(), [])
+        window.process.terminate()
+        window.process.wait()
+
+
+if __name__ == "__main__":
+    if shutil.which("xdotool") is None or shutil.which("Xvfb") is None:
+        sys.exit("window_test.py needs Xvfb and xdotool")
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
