@@ -2,14 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <utility>
 
 namespace mercury {
 namespace {
 
-std::uint32_t edge_key(std::uint16_t a, std::uint16_t b) {
-  return static_cast<std::uint32_t>(std::min(a, b)) << 16 | std::max(a, b);
-}
+// The springs that begin at each mass, the lower of their two: a window builds these again and again, and a hash table
+// of all springs would take it many times as long.
+class SpringsByMass {
+ public:
+  explicit SpringsByMass(const Robot& robot) : first_(robot.masses.size() + 1), springs_(robot.springs.size()) {
+    for (const Spring& spring : robot.springs) ++first_[lower(spring) + 1u];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    std::vector<std::uint32_t> next(first_);
+    for (const Spring& spring : robot.springs) springs_[next[lower(spring)]++] = &spring;
+  }
+  // The first of the robot's springs that joins them; nullptr without one.
+  const Spring* between(std::uint16_t a, std::uint16_t b) const {
+    if (a > b) std::swap(a, b);
+    for (std::uint32_t i = first_[a]; i < first_[a + 1u]; ++i)
+      if (std::max(springs_[i]->a, springs_[i]->b) == b) return springs_[i];
+    return nullptr;
+  }
+
+ private:
+  static std::uint16_t lower(const Spring& spring) { return std::min(spring.a, spring.b); }
+  std::vector<std::uint32_t> first_;
+  std::vector<const Spring*> springs_;
+};
 
 // From the lowest value seen to the highest.
 struct Range {
@@ -48,17 +68,14 @@ render::Body BodyShape::body() const {
 }
 
 std::vector<MaterialId> face_materials(const Robot& robot) {
-  std::unordered_map<std::uint32_t, const Spring*> springs;
-  springs.reserve(robot.springs.size());
-  for (const Spring& spring : robot.springs) springs.emplace(edge_key(spring.a, spring.b), &spring);
+  const SpringsByMass springs(robot);
   std::vector<MaterialId> materials;
   materials.reserve(robot.faces.size());
   for (const Face& face : robot.faces) {
     const Spring* longest = nullptr;
     for (const auto& [a, b] : {std::pair{face.a, face.b}, {face.b, face.c}, {face.c, face.a}}) {
-      const auto found = springs.find(edge_key(a, b));
-      if (found == springs.end()) continue;
-      if (!longest || found->second->rest_length > longest->rest_length) longest = found->second;
+      const Spring* spring = springs.between(a, b);
+      if (spring && (!longest || spring->rest_length > longest->rest_length)) longest = spring;
     }
     materials.push_back(longest ? longest->material : air);
   }

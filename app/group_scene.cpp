@@ -218,7 +218,8 @@ void GroupScene::lengthen_paths(std::span<const Telemetry> telemetry) {
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     std::vector<float>& points = trails_[i].points;
     const Vec3 now = telemetry[i].center_of_mass;
-    if (!telemetry[i].exploded) points.insert(points.end(), {now.x, now.y, now.z});
+    const bool moved = points.empty() || points[points.size() - 3] != now.x || points[points.size() - 2] != now.y || points.back() != now.z;
+    if (!telemetry[i].exploded && moved) points.insert(points.end(), {now.x, now.y, now.z});
     if (points.size() > 3 * most_points) points.erase(points.begin(), points.begin() + 3);
     paths_.push_back({.body = static_cast<std::uint32_t>(i), .points = points, .color = render::category_color(static_cast<int>(i))});
   }
