@@ -84,6 +84,7 @@ struct Physics::Parts {
   void carry_out(Orders& taken);
   void guarded(auto work);
   bool set_scene(const std::vector<LiveRobot>& robots, const Configuration& configuration);
+  void start_over();
   void watch();
   void begin_pace();
   void advance();
@@ -145,6 +146,7 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
+  const bool other_dt = taken.scene && taken.scene->second.dt != simulation.configuration().dt;
   const bool others = taken.scene && set_scene(taken.scene->first, taken.scene->second);
   if (taken.view) view = *taken.view;
   if (taken.view || others) watch();
@@ -164,7 +166,7 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
   steps_left += taken.steps;
-  if (taken.playing || taken.speed || taken.reset || taken.scene) begin_pace();
+  if (taken.playing || taken.speed || taken.reset || others || other_dt) begin_pace();
 }
 
 // Whether there are other robots now, or another kind of environment.
@@ -174,7 +176,13 @@ bool Physics::Parts::set_scene(const std::vector<LiveRobot>& robots, const Confi
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
   simulation.configure(configuration);
   simulation.set_pulls({});
-  const bool changed = population.follow(robots);
+  bool changed = false;
+  try {
+    changed = population.follow(robots);
+  } catch (...) {
+    start_over();
+    throw;
+  }
   telemetry = simulation.telemetry();
   if (first || (other_dt && simulation.steps() == 0))
     measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration.dt, telemetry);
@@ -187,6 +195,17 @@ bool Physics::Parts::set_scene(const std::vector<LiveRobot>& robots, const Confi
   for (const std::string& note : simulation.notes())
     if (told_notes.insert(note).second) messages.add(Severity::note, note);
   return true;
+}
+
+// A simulation that could not take its robots, as for want of memory, is left half changed: an empty one takes its place.
+void Physics::Parts::start_over() {
+  details.reset();
+  simulation = Simulation(simulation.configuration());
+  population.start_over();
+  telemetry.clear();
+  exploded.clear();
+  ++resets;
+  measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
 }
 
 // Details that this environment knows.

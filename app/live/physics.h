@@ -32,7 +32,8 @@ class Physics {
 
   // Simulates these robots, each valid, under this configuration, whose device must be the first one's. Robots that are
   // there already keep their state; new ones start at rest at the present time; one that was there before goes on from
-  // where it left, unless time began anew since.
+  // where it left, unless time began anew since. If they cannot be simulated, as for want of memory, that is told, and
+  // none is until the next call.
   void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
   void set_view(const ViewSettings& settings);  // what moments hold details of
   void set_pulls(std::vector<LivePull> pulls);  // those on masses that are not there are left out

@@ -34,8 +34,30 @@ void Population::keep_states(const std::vector<LiveRobot>& wanted) {
   for (std::size_t i = 0; i < robots_->size(); ++i) {
     const LiveRobot& old = robots_->robots[i];
     const bool stays = std::ranges::any_of(wanted, [&](const LiveRobot& robot) { return same_body(robot, old); });
-    if (!stays) departed_[old.id] = {old.robot, simulation_.state(i)};
+    if (stays) continue;
+    forget(old.id);
+    departed_[old.id] = {old.robot, simulation_.state(i)};
+    departed_masses_ += old.robot->masses.size();
   }
+  // The oldest go first.
+  while (departed_masses_ > most_departed) forget(departed_.begin()->first);
+}
+
+void Population::forget(RobotId id) {
+  const auto found = departed_.find(id);
+  if (found == departed_.end()) return;
+  departed_masses_ -= found->second.robot->masses.size();
+  departed_.erase(found);
+}
+
+void Population::forget_departed() {
+  departed_.clear();
+  departed_masses_ = 0;
+}
+
+void Population::start_over() {
+  forget_departed();
+  robots_ = listed({}, robots_->revision + 1);
 }
 
 // Those that stay in their order of before, then the new ones, then all in the order wanted.
@@ -61,7 +83,7 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
     if (before == departed_.end()) continue;
     if (before->second.robot == wanted[fresh[k]].robot)
       simulation_.set_state(first + k, before->second.state.positions, before->second.state.velocities);
-    departed_.erase(before);
+    forget(wanted[fresh[k]].id);
   }
   if (!std::ranges::is_sorted(places)) simulation_.keep(places);
 }

@@ -1,6 +1,7 @@
 #include "app/live/scene_document.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace mercury {
@@ -26,8 +27,22 @@ void EditHistory::before_change(const SceneDocument& document, std::string name,
   future_.clear();
   if (!key.empty() && key == open_key_) return;
   past_.push_back({std::move(name), document});
-  if (past_.size() > most) past_.erase(past_.begin());
+  forget_oldest(document);
   open_key_ = std::move(key);
+}
+
+void EditHistory::forget_oldest(const SceneDocument& document) {
+  if (past_.size() > most) past_.erase(past_.begin());
+  std::set<const Robot*> known;
+  for (const DocumentRobot& robot : document.robots) known.insert(robot.body.robot.get());
+  std::size_t springs = 0;
+  for (std::size_t i = past_.size(); i-- > 0;) {
+    for (const DocumentRobot& robot : past_[i].document.robots)
+      if (known.insert(robot.body.robot.get()).second) springs += robot.body.robot->springs.size();
+    if (springs <= most_springs_ || i + 1 == past_.size()) continue;
+    past_.erase(past_.begin(), past_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    return;
+  }
 }
 
 void EditHistory::undo(SceneDocument& document) {

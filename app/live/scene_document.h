@@ -60,9 +60,11 @@ struct SceneDocument {
 // The robot with its present name and materials, as it is saved.
 Robot whole_robot(const DocumentRobot& robot);
 
-// What was before and after, and the names of the changes.
+// What was before and after, and the names of the changes. The oldest are forgotten where robots that are no longer in
+// the scene would fill the memory.
 class EditHistory {
  public:
+  explicit EditHistory(std::size_t most_springs = 30'000'000) : most_springs_(most_springs) {}
   // Before `document` changes. An edit named and keyed as the one before goes on with it, until end_edit(); an empty key
   // never does.
   void before_change(const SceneDocument& document, std::string name, std::string key = {});
@@ -79,7 +81,10 @@ class EditHistory {
     std::string name;
     SceneDocument document;  // before it, or after it in the future
   };
-  static constexpr std::size_t most = 200;
+  void forget_oldest(const SceneDocument& document);
+
+  static constexpr std::size_t most = 200;  // edits
+  std::size_t most_springs_;                // of robots kept for them
   std::vector<Edit> past_, future_;
   std::string open_key_;
 };

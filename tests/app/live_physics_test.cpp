@@ -167,6 +167,28 @@ TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
   EXPECT_EQ(physics.take_explosions().size(), 1u);
 }
 
+TEST(LivePhysics, RobotsThatCannotBeSimulatedAreToldAndTheNextSceneIsSimulated) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  auto robots = some_robots(2);
+  physics.set_scene(robots, on_cpu());
+  physics.step(5);
+  physics.wait_until_done();
+  const LiveRobot impossible{.id = 9, .robot = std::make_shared<const Robot>()};
+  physics.set_scene({robots[0], impossible}, on_cpu());
+  physics.wait_until_done();
+  EXPECT_EQ(messages.take().size(), 1u);
+  EXPECT_EQ(physics.newest()->robots->size(), 0u);
+  EXPECT_TRUE(physics.newest()->positions.empty());
+  physics.set_scene(robots, on_cpu());
+  physics.step(5);
+  physics.wait_until_done();
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(5);
+  EXPECT_EQ(physics.newest()->positions, positions_of(simulation));
+  EXPECT_TRUE(messages.take().empty());
+}
+
 TEST(LivePhysics, ViewsThatTheEnvironmentLacksAreLeftOut) {
   Messages messages;
   Physics physics(on_cpu(), messages);

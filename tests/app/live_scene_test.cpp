@@ -249,6 +249,27 @@ TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
   EXPECT_EQ(scene.picture().bounds().size(), 3u);
 }
 
+TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
+  EditHistory history(10);
+  SceneDocument document;
+  const auto robot = [](std::size_t springs) {
+    return DocumentRobot{.body = {.robot = std::make_shared<const Robot>(Robot{.springs = std::vector<Spring>(springs)})}};
+  };
+  for (int i = 0; i < 20; ++i) {
+    history.before_change(document, "make");
+    document.robots = {robot(4)};
+  }
+  int undone = 0;
+  for (; history.can_undo(); ++undone) history.undo(document);
+  EXPECT_GE(undone, 2);
+  EXPECT_LE(undone, 4);
+  // Robots that stay cost nothing.
+  EditHistory slider(10);
+  for (int i = 0; i < 300; ++i) slider.before_change(document, "change");
+  for (undone = 0; slider.can_undo(); ++undone) slider.undo(document);
+  EXPECT_EQ(undone, 200);
+}
+
 TEST(LiveScene, ClosesWhileItPlaysAndWorks) {
   LiveScene scene(on_cpu());
   scene.generate({.count = 200});
