@@ -116,4 +116,11 @@ Program make_program(std::span<const std::string_view> names, const std::string&
                      log_of(program.get(), true));
 }
 
+void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height) {
+  glUseProgram(program);
+  glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, format);
+  glDispatchCompute(GLuint((width + 7) / 8), GLuint((height + 7) / 8), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
 }  // namespace mercury::render

@@ -47,7 +47,7 @@ void LatticePass::draw_masses(const Bodies& bodies, const Scene& scene, GLuint p
 
 void LatticePass::draw(const Bodies& bodies, const Scene& scene) {
   glBindVertexArray(empty_.get());
-  glEnable(GL_CLIP_DISTANCE0);
+  if (scene.cut) glEnable(GL_CLIP_DISTANCE0);
   if (scene.show.springs) draw_springs(bodies, scene, spring_.get());
   if (scene.show.masses) draw_masses(bodies, scene, mass_.get());
   glDisable(GL_CLIP_DISTANCE0);
@@ -55,7 +55,7 @@ void LatticePass::draw(const Bodies& bodies, const Scene& scene) {
 
 void LatticePass::draw_shadow(const Bodies& bodies, const Scene& scene) {
   glBindVertexArray(empty_.get());
-  glEnable(GL_CLIP_DISTANCE0);
+  if (scene.cut) glEnable(GL_CLIP_DISTANCE0);
   glDisable(GL_CULL_FACE);
   if (scene.show.springs) draw_springs(bodies, scene, spring_shadow_.get());
   if (scene.show.masses) draw_masses(bodies, scene, mass_shadow_.get());

@@ -68,8 +68,8 @@ LightPass::LightPass(const QualitySettings& settings)
       ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       caustics_grid_(make_vertex_array()),
       caustics_program_(make_program({"caustics.vert", "caustics.frag"})),
-      ground_program_("ground_light.frag", settings.defines()),
-      ground_blur_("ground_blur.frag") {
+      ground_program_(make_program({"ground_light.comp"}, settings.defines())),
+      ground_blur_(make_program({"ground_blur.comp"})) {
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
@@ -77,8 +77,6 @@ LightPass::LightPass(const QualitySettings& settings)
   caustics_indices_.write(grid_indices(caustics_cells));
   glVertexArrayElementBuffer(caustics_grid_.get(), caustics_indices_.get());
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
-  ground_rough_framebuffer_ = make_framebuffer({ground_rough_.get()});
-  ground_framebuffer_ = make_framebuffer({ground_light_.get()});
 }
 
 // Rays that the waves bend together add their light: the tile is drawn as a net of their paths.
@@ -118,17 +116,17 @@ void LightPass::begin_shadow() {
 void LightPass::end_shadow() {
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_POLYGON_OFFSET_FILL);
+  glBindTextureUnit(binding::shadow_map, shadow_.get());
+  glBindTextureUnit(binding::shadow_depths, shadow_depths_.get());
 }
 
 void LightPass::draw_maps(bool under_water, bool with_floor) {
-  glBindTextureUnit(binding::shadow_map, shadow_.get());
-  glBindTextureUnit(binding::shadow_depths, shadow_depths_.get());
   if (under_water) draw_caustics();
   if (with_floor) {
     const int side = settings_.ground_side;
-    ground_program_.draw_into(ground_rough_framebuffer_.get(), side, side);
+    compute_texels(ground_program_.get(), ground_rough_.get(), GL_R16F, side, side);
     glBindTextureUnit(binding::source, ground_rough_.get());
-    ground_blur_.draw_into(ground_framebuffer_.get(), side, side);
+    compute_texels(ground_blur_.get(), ground_light_.get(), GL_R16F, side, side);
   }
   glBindTextureUnit(binding::caustics, caustics_.get());
   glBindTextureUnit(binding::sand, sand_.get());

@@ -13,28 +13,27 @@ class LightPass {
   explicit LightPass(const QualitySettings& settings);
   int shadow_side() const { return settings_.shadow_side; }
 
-  // Binds the textures of what it has drawn. `casting`: draws what throws shadows with the current framebuffer.
+  // `casting`: draws what throws shadows with the current framebuffer. Binds the shadow map.
   template <typename Casting>
-  void draw(bool under_water, bool with_floor, Casting casting) {
+  void draw_shadows(Casting casting) {
     begin_shadow();
     casting();
     end_shadow();
-    draw_maps(under_water, with_floor);
   }
+  // The floor's map of light and the caustics, and binds both.
+  void draw_maps(bool under_water, bool with_floor);
 
  private:
   void begin_shadow();
   void end_shadow();
-  void draw_maps(bool under_water, bool with_floor);
   void draw_caustics() const;
 
   QualitySettings settings_;
   Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_, ground_rough_;
-  Framebuffer shadow_framebuffer_, caustics_framebuffer_, ground_framebuffer_, ground_rough_framebuffer_;
+  Framebuffer shadow_framebuffer_, caustics_framebuffer_;
   VertexArray caustics_grid_;
   Buffer caustics_indices_;
-  Program caustics_program_;
-  Fullscreen ground_program_, ground_blur_;
+  Program caustics_program_, ground_program_, ground_blur_;
 };
 
 }  // namespace mercury::render

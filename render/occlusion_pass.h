@@ -11,22 +11,14 @@ class OcclusionPass {
   explicit OcclusionPass(const QualitySettings& settings);
   void resize(int width, int height);  // of the picture
 
-  // `radius`: how far away things darken [m]. `depth`: draws what occludes, depth alone, besides the floor.
-  template <typename Depth>
-  void draw(float radius, Depth depth) {
-    begin_depth();
-    depth();
-    draw_maps(radius);
-  }
+  // `depths`: of FrontPass. `radius`: how far away things darken [m]. Binds its result.
+  void draw(GLuint depths, float radius) const;
 
  private:
-  void begin_depth();
-  void draw_maps(float radius);
-
   int width_ = 0, height_ = 0;
-  Texture depths_, rough_, smooth_;
-  Framebuffer depth_framebuffer_, rough_framebuffer_, smooth_framebuffer_;
-  Fullscreen floor_depth_, occlusion_, blur_;
+  Texture rough_, smooth_;
+  Framebuffer rough_framebuffer_, smooth_framebuffer_;
+  Fullscreen occlusion_, blur_;
 };
 
 }  // namespace mercury::render

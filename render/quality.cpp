@@ -41,6 +41,7 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 8;
     s.occlusion_taps = 12;
     s.particles = 900;
+    s.front_light = true;
   } else if (quality == Quality::high) {
     s.shadow_side = 4096;
     s.ground_side = 2048;
@@ -51,13 +52,14 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 24;
     s.occlusion_taps = 24;
     s.particles = 1500;
+    s.front_light = true;
   }
   return s;
 }
 
 std::string QualitySettings::defines() const {
   return define("SAMPLES", samples) + define("SHADOW_BLOCKERS", shadow_blockers) + define("SHADOW_TAPS", shadow_taps) +
-         define("OCCLUSION_TAPS", occlusion_taps);
+         define("OCCLUSION_TAPS", occlusion_taps) + define("DEPTH_STEP", front_light ? 2 : 1);
 }
 
 std::string QualitySettings::skin_defines() const {

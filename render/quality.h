@@ -16,6 +16,7 @@ struct QualitySettings {
   int occlusion_taps = 7;
   int particles = 500;
   int skin_blockers = 0, skin_taps = 4;  // of shadows on skins
+  bool front_light = false;              // shadows on skins are found once a pixel, before skins are drawn
   std::string defines() const;           // for the shaders
   std::string skin_defines() const;      // for the shaders of bodies
 };

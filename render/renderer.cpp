@@ -14,6 +14,7 @@
 #include "render/finish_pass.h"
 #include "render/fit_pass.h"
 #include "render/frame_block.h"
+#include "render/front_pass.h"
 #include "render/lattice_pass.h"
 #include "render/light_pass.h"
 #include "render/occlusion_pass.h"
@@ -85,13 +86,15 @@ Texture make_colormaps() {
 // What quality decides: thrown away and made anew when it changes.
 struct Passes {
   explicit Passes(const QualitySettings& settings)
-      : skin(settings.skin_defines()),
+      : skin(settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "")),
         lattice(settings.skin_defines()),
         light(settings),
+        front(settings),
         occlusion(settings),
         finish(settings),
         backdrop("backdrop.frag") {}
   void resize(int width, int height) {
+    front.resize(width, height);
     occlusion.resize(width, height);
     finish.resize(width, height);
   }
@@ -99,6 +102,7 @@ struct Passes {
   LatticePass lattice;
   AnnotationPass annotation;
   LightPass light;
+  FrontPass front;
   OcclusionPass occlusion;
   FinishPass finish;
   Fullscreen backdrop;
@@ -204,7 +208,8 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   fit.fit(frame, bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
-  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }));
+  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }),
+                      scene.cut.has_value());
 }
 
 // Calls draw_skins(variant) for the sides of skins that are seen.
@@ -225,14 +230,20 @@ void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
-  passes->light.draw(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none, [&] {
+  passes->light.draw_shadows([&] {
     if (scene.show.skin) passes->skin.draw_shadow(bodies);
     passes->lattice.draw_shadow(bodies, scene);
   });
-  timer.mark("shadows");
-  passes->occlusion.draw(6 * bodies.typical_spring(), [&] {
-    draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(bodies, side); });
-  });
+  timer.mark("shadow map");
+  passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
+  timer.mark("light on the floor");
+  passes->front.draw(
+      [&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(bodies, side); }); });
+  timer.mark("nearest surfaces");
+  passes->front.find_light();
+  timer.mark("light on skins");
+  glDisable(GL_CULL_FACE);
+  passes->occlusion.draw(passes->front.depths(), 6 * bodies.typical_spring());
   timer.mark("occlusion");
 }
 

@@ -44,7 +44,8 @@ void SkinPass::attach(const Bodies& bodies) {
   mass_normals_.reserve(16 * bodies.mass_count());
 }
 
-void SkinPass::deform(const Bodies& bodies, bool smooth) {
+void SkinPass::deform(const Bodies& bodies, bool smooth, bool cut) {
+  cut_ = cut;
   face_frames_.bind_storage(binding::face_frames);
   face_normals_.bind_storage(binding::face_normals);
   face_areas_.bind_storage(binding::face_areas);
@@ -65,7 +66,7 @@ void SkinPass::deform(const Bodies& bodies, bool smooth) {
 
 void SkinPass::draw_triangles(const Bodies& bodies) const {
   glBindVertexArray(corners_.get());
-  glEnable(GL_CLIP_DISTANCE0);
+  if (cut_) glEnable(GL_CLIP_DISTANCE0);
   glDrawElements(GL_TRIANGLES, GLsizei(3 * bodies.face_count()), GL_UNSIGNED_INT, nullptr);
   glDisable(GL_CLIP_DISTANCE0);
 }
@@ -79,6 +80,7 @@ void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, 
 
 void SkinPass::draw_depth(const Bodies& bodies, const std::string& variant) const {
   glUseProgram(depth_.get(variant));
+  face_normals_.bind_storage(binding::face_normals);  // for what looks at the surfaces found
   draw_triangles(bodies);
 }
 

@@ -13,13 +13,15 @@ class SkinPass {
   explicit SkinPass(const std::string& defines);
   // Call when the bodies have been replaced.
   void attach(const Bodies& bodies);
-  // Computes what follows from the positions: frames of faces and, if wanted, normals at masses.
-  void deform(const Bodies& bodies, bool smooth);
+  // Computes what follows from the positions: frames of faces and, if wanted, normals at masses. `cut`: a part of what
+  // is drawn next is cut away.
+  void deform(const Bodies& bodies, bool smooth, bool cut);
 
   enum class ColorBy { looks, face_values, mass_values };
   // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
   void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const;
-  // `variant`: "" or, with a cut whose inside is drawn, cut_variant.
+  // And, where there is a colour, the number of the face, counted from 1. `variant`: "" or, with a cut whose inside is
+  // drawn, cut_variant; its number is the largest.
   void draw_depth(const Bodies& bodies, const std::string& variant) const;
   void draw_shadow(const Bodies& bodies) const;
 
@@ -29,6 +31,7 @@ class SkinPass {
   VertexArray corners_;
   Program face_frames_program_, mass_normals_program_, shadow_;
   ProgramVariants depth_, skin_;
+  bool cut_ = false;
   Buffer face_frames_, face_normals_, face_areas_, mass_normals_;
 };
 

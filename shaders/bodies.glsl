@@ -23,12 +23,13 @@ struct FaceFrame {
   vec4 along_v;
 };
 
-// A direction in 32 bits (octahedral; Meyer et al. 2010).
-uint packed_direction(vec3 n) {
+// A direction as two numbers from -1 to 1 (octahedral; Meyer et al. 2010), and in 32 bits.
+vec2 octahedral(vec3 n) {
   vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-  return packSnorm2x16(p);
+  return p;
 }
+uint packed_direction(vec3 n) { return packSnorm2x16(octahedral(n)); }
 
 // Not of length 1.
 vec3 unpacked_direction(uint bits) {

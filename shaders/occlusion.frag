@@ -9,11 +9,16 @@ layout(location = 0) uniform float radius;  // [m]
 #ifndef OCCLUSION_TAPS
 #define OCCLUSION_TAPS 8
 #endif
+#ifndef DEPTH_STEP
+#define DEPTH_STEP 1
+#endif
 
+// A texel of the half-size picture stands for one texel of `depths`, which has DEPTH_STEP times its size.
 vec3 at(ivec2 texel) {
-  vec2 size = vec2(textureSize(depths, 0));
-  float range = distance_of_depth(texelFetch(depths, clamp(texel, ivec2(0), ivec2(size) - 1), 0).r);
-  return vec3((2.0 * (vec2(texel) + 0.5) / size - 1.0) * frame.depth.zw, -1.0) * range;
+  ivec2 size = textureSize(depths, 0);
+  ivec2 from = clamp(DEPTH_STEP * texel, ivec2(0), size - 1);
+  float range = distance_of_depth(texelFetch(depths, from, 0).r);
+  return vec3((2.0 * (vec2(from) + 0.5) / vec2(size) - 1.0) * frame.depth.zw, -1.0) * range;
 }
 
 // The flatter of two differences: the one that does not cross an edge.
@@ -23,14 +28,14 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   vec3 point = at(texel);
   float range = -point.z;
-  if (texelFetch(depths, texel, 0).r <= 0.0) {
+  if (texelFetch(depths, min(DEPTH_STEP * texel, textureSize(depths, 0) - 1), 0).r <= 0.0) {
     result = vec2(1.0, range);
     return;
   }
   vec3 right = flatter(at(texel + ivec2(1, 0)) - point, point - at(texel - ivec2(1, 0)));
   vec3 up = flatter(at(texel + ivec2(0, 1)) - point, point - at(texel - ivec2(0, 1)));
   vec3 normal = normalize(cross(right, up));
-  float reach = radius / (range * frame.depth.w) * 0.5 * float(textureSize(depths, 0).y);  // [texels]
+  float reach = radius / (range * frame.depth.w) * 0.5 * float(textureSize(depths, 0).y) / float(DEPTH_STEP);  // [texels]
   // A pattern of 4 x 4, which the blur that follows takes out again.
   int cell = (texel.x & 3) + 4 * ((texel.y ^ (texel.x << 1)) & 3);
   float turn = 6.2831853 * (float(cell) + 0.5) / 16.0;

@@ -5,6 +5,9 @@
 #include "shading.glsl"
 #include "caustics.glsl"
 #include "occlusion.glsl"
+#ifdef FRONT_LIGHT
+#include "front_light.glsl"
+#endif
 #ifdef CUT
 #include "cut.glsl"
 layout(binding = 10) uniform sampler2D section;  // looks of bodies' insides, where the cut is seen
@@ -13,7 +16,7 @@ layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
 
 // COLOR_BY: 0 looks, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
-// CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
+// FRONT_LIGHT: what of the key light arrives has been found before. CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
 layout(location = 0) in vec3 local;
 layout(location = 1) in vec3 skin_point;
 layout(location = 2) flat in uint flags;
@@ -120,10 +123,15 @@ void main() {
   if ((flags & PLACEMENT_FAULTY) != 0u) albedo = vec3(0.25 + 0.1 * dot(albedo, vec3(0.3)));
 #endif
 
-  float open = openness(gl_FragCoord.xy, dot(from_eye, -vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z)));
+  float depth = dot(from_eye, -vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z));
+  float open = openness(gl_FragCoord.xy, depth);
   vec3 key = frame.key_light.rgb;
   if (dot(normal, frame.to_key.xyz) > -0.25) {
+#ifdef FRONT_LIGHT
+    key *= front_light(gl_FragCoord.xy, depth, flat_normal);
+#else
     key *= key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
+#endif
 #if AROUND == AROUND_WATER
     key *= caustics(world, 1.0);
 #endif

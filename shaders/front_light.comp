@@ -1,0 +1,29 @@
+// How much of the key light reaches the nearest surface of each pixel, once a pixel: soft shadows cost too much to be
+// looked up by every sample of every edge.
+#include "frame.glsl"
+#include "bodies.glsl"
+#include "shadow.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D depths;
+layout(binding = 12) uniform usampler2D faces;  // of depth.frag
+layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
+layout(binding = 0, rgba16f) writeonly uniform image2D map;  // visibility, distance, normal (octahedral)
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(map);
+  if (any(greaterThanEqual(texel, size))) return;
+  uint face = texelFetch(faces, texel, 0).r;
+  if (face == 0u) {
+    imageStore(map, texel, vec4(1.0, 6e4, 0.0, 0.0));
+    return;
+  }
+  float range = distance_of_depth(texelFetch(depths, texel, 0).r);
+  vec2 place = (vec2(texel) + 0.5) / vec2(size);
+  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
+  vec3 normal = face == 0xffffffffu ? frame.cut.xyz : normalize(unpacked_direction(face_normals[face - 1u]));
+  if (dot(normal, sight) > 0.0) normal = -normal;
+  float visibility = 0.0;  // of what has turned its back to the light
+  if (dot(normal, frame.to_key.xyz) > -0.6)
+    visibility = key_visibility(frame.eye.xyz + range * sight, normal, pixel_noise(vec2(texel) + 0.5));
+  imageStore(map, texel, vec4(visibility, range, octahedral(normal)));
+}
