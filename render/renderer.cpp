@@ -231,14 +231,14 @@ void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
   glDepthMask(GL_TRUE);
   scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   passes->light.draw_shadows([&] {
-    if (scene.show.skin) passes->skin.draw_shadow(bodies);
+    if (scene.show.skin) passes->skin.draw_shadow();
     passes->lattice.draw_shadow(bodies, scene);
   });
   timer.mark("shadow map");
   passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
   timer.mark("light on the floor");
   passes->front.draw(
-      [&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(bodies, side); }); });
+      [&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(side); }); });
   timer.mark("nearest surfaces");
   passes->front.find_light();
   timer.mark("light on skins");
@@ -260,7 +260,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
   draw_sides(scene, camera, [&](const char* side) {
-    passes->skin.draw(bodies, color_by, scene.scale, variant + skin_variant(scene) + side);
+    passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side);
   });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");

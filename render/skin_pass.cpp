@@ -24,7 +24,7 @@ SkinPass::SkinPass(const std::string& defines)
       face_frames_program_(make_program({"face_frames.comp"})),
       mass_normals_program_(make_program({"mass_normals.comp"})),
       shadow_(make_program({"shadow.vert", "depth.frag"})),
-      depth_({"skin.vert", "depth.frag"}, define("COLOR_BY", 0)),
+      depth_({"skin.vert", "surface.frag"}, define("COLOR_BY", 0)),
       skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
@@ -37,7 +37,7 @@ void SkinPass::attach(const Bodies& bodies) {
     glVertexArrayAttribBinding(array, i, i);
     glEnableVertexArrayAttrib(array, i);
   }
-  glVertexArrayElementBuffer(array, bodies.faces.get());
+  cull_.attach(bodies);
   face_frames_.reserve(face_frame_bytes * bodies.face_count());
   face_normals_.reserve(4 * bodies.face_count());
   face_areas_.reserve(4 * bodies.face_count());
@@ -55,7 +55,11 @@ void SkinPass::deform(const Bodies& bodies, bool smooth, bool cut) {
   glUniform1ui(0, GLuint(bodies.face_count()));
   dispatch(bodies.face_count());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  if (!smooth) return;
+  if (smooth) find_mass_normals(bodies);
+  cull_.find(bodies, cut);
+}
+
+void SkinPass::find_mass_normals(const Bodies& bodies) const {
   bodies.mass_face_ends.bind_storage(binding::first_free);
   bodies.mass_faces.bind_storage(binding::first_free + 1);
   glUseProgram(mass_normals_program_.get());
@@ -64,29 +68,30 @@ void SkinPass::deform(const Bodies& bodies, bool smooth, bool cut) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void SkinPass::draw_triangles(const Bodies& bodies) const {
-  glBindVertexArray(corners_.get());
+void SkinPass::draw_seen() const {
+  cull_.seen_faces().bind_storage(binding::seen_faces);
+  face_normals_.bind_storage(binding::face_normals);
   if (cut_) glEnable(GL_CLIP_DISTANCE0);
-  glDrawElements(GL_TRIANGLES, GLsizei(3 * bodies.face_count()), GL_UNSIGNED_INT, nullptr);
+  cull_.draw_seen(corners_.get());
   glDisable(GL_CLIP_DISTANCE0);
 }
 
-void SkinPass::draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const {
+void SkinPass::draw(ColorBy color_by, const Scale& scale, const std::string& variant) const {
   glUseProgram(skin_.get(define("COLOR_BY", int(color_by)) + variant));
   if (color_by != ColorBy::looks) set_scale(1, scale);
-  face_normals_.bind_storage(binding::face_normals);
-  draw_triangles(bodies);
+  draw_seen();
 }
 
-void SkinPass::draw_depth(const Bodies& bodies, const std::string& variant) const {
+void SkinPass::draw_depth(const std::string& variant) const {
   glUseProgram(depth_.get(variant));
-  face_normals_.bind_storage(binding::face_normals);  // for what looks at the surfaces found
-  draw_triangles(bodies);
+  draw_seen();
 }
 
-void SkinPass::draw_shadow(const Bodies& bodies) const {
+void SkinPass::draw_shadow() const {
   glUseProgram(shadow_.get());
-  draw_triangles(bodies);
+  if (cut_) glEnable(GL_CLIP_DISTANCE0);
+  cull_.draw_lit(corners_.get());
+  glDisable(GL_CLIP_DISTANCE0);
 }
 
 }  // namespace mercury::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/bodies.h"
+#include "render/cull_pass.h"
 #include "render/gl_objects.h"
 #include "render/program_variants.h"
 #include "render/scene.h"
@@ -13,24 +14,26 @@ class SkinPass {
   explicit SkinPass(const std::string& defines);
   // Call when the bodies have been replaced.
   void attach(const Bodies& bodies);
-  // Computes what follows from the positions: frames of faces and, if wanted, normals at masses. `cut`: a part of what
-  // is drawn next is cut away.
+  // Computes what follows from the positions and the frame's block: frames of faces, if wanted normals at masses, and
+  // which faces are to be drawn. `cut`: a part of what is drawn next is cut away.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
   enum class ColorBy { looks, face_values, mass_values };
   // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
-  void draw(const Bodies& bodies, ColorBy color_by, const Scale& scale, const std::string& variant) const;
+  void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
   // And, where there is a colour, the number of the face, counted from 1. `variant`: "" or, with a cut whose inside is
   // drawn, cut_variant; its number is the largest.
-  void draw_depth(const Bodies& bodies, const std::string& variant) const;
-  void draw_shadow(const Bodies& bodies) const;
+  void draw_depth(const std::string& variant) const;
+  void draw_shadow() const;
 
  private:
-  void draw_triangles(const Bodies& bodies) const;
+  void find_mass_normals(const Bodies& bodies) const;
+  void draw_seen() const;
 
   VertexArray corners_;
   Program face_frames_program_, mass_normals_program_, shadow_;
   ProgramVariants depth_, skin_;
+  CullPass cull_;
   bool cut_ = false;
   Buffer face_frames_, face_normals_, face_areas_, mass_normals_;
 };

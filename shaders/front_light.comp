@@ -5,7 +5,7 @@
 #include "shadow.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depths;
-layout(binding = 12) uniform usampler2D faces;  // of depth.frag
+layout(binding = 12) uniform usampler2D faces;  // of surface.frag
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
 layout(binding = 0, rgba16f) writeonly uniform image2D map;  // visibility, distance, normal (octahedral)
 

@@ -14,6 +14,7 @@ layout(binding = 10) uniform sampler2D section;  // looks of bodies' insides, wh
 #endif
 layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]; };
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
+layout(std430, binding = 15) readonly buffer SeenFaces { uint seen_faces[]; };  // that are drawn
 
 // COLOR_BY: 0 looks, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
 // FRONT_LIGHT: what of the key light arrives has been found before. CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
@@ -67,7 +68,7 @@ vec3 beveled_normal(FaceRecord record, FaceFrame face, vec3 normal, out float se
 }
 
 void main() {
-  uint face = uint(gl_PrimitiveID);
+  uint face = seen_faces[gl_PrimitiveID];
   FaceRecord record = face_records[face];
   FaceFrame face_frame = face_frames[face];
   vec3 world = skin_point;
