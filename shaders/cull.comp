@@ -46,7 +46,8 @@ void main() {
   for (uint i = 0u; i < 10u; ++i) commands[i] = 0u;
   commands[0] = 3u * before.x;
   commands[5] = 3u * before.y;
-  commands[1] = commands[6] = 1u;
+  commands[1] = 1u;
+  commands[6] = 1u;
 }
 #else
 void main() {
