@@ -5,23 +5,21 @@
 namespace mercury::render {
 
 OcclusionPass::OcclusionPass(const QualitySettings& settings)
-    : occlusion_("occlusion.frag", settings.defines()), blur_("occlusion_blur.frag") {}
+    : occlusion_(make_program({"occlusion.comp"}, settings.defines())), blur_(make_program({"occlusion_blur.comp"})) {}
 
 void OcclusionPass::resize(int width, int height) {
   width_ = (width + 1) / 2;
   height_ = (height + 1) / 2;
   rough_ = make_texture(GL_RG16F, width_, height_);
   smooth_ = make_texture(GL_RG16F, width_, height_);
-  rough_framebuffer_ = make_framebuffer({rough_.get()});
-  smooth_framebuffer_ = make_framebuffer({smooth_.get()});
 }
 
 void OcclusionPass::draw(GLuint depths, float radius) const {
   glBindTextureUnit(binding::source, depths);
-  glProgramUniform1f(occlusion_.program(), 0, radius);
-  occlusion_.draw_into(rough_framebuffer_.get(), width_, height_);
+  glProgramUniform1f(occlusion_.get(), 0, radius);
+  compute_texels(occlusion_.get(), rough_.get(), GL_RG16F, width_, height_);
   glBindTextureUnit(binding::source, rough_.get());
-  blur_.draw_into(smooth_framebuffer_.get(), width_, height_);
+  compute_texels(blur_.get(), smooth_.get(), GL_RG16F, width_, height_);
   glBindTextureUnit(binding::occlusion, smooth_.get());
 }
 

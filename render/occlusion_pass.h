@@ -1,7 +1,7 @@
 // Ambient occlusion: how much of the sky's light each point of the picture sees, computed at half its size.
 #pragma once
 
-#include "render/fullscreen.h"
+#include "render/gl_objects.h"
 #include "render/quality.h"
 
 namespace mercury::render {
@@ -17,8 +17,7 @@ class OcclusionPass {
  private:
   int width_ = 0, height_ = 0;
   Texture rough_, smooth_;
-  Framebuffer rough_framebuffer_, smooth_framebuffer_;
-  Fullscreen occlusion_, blur_;
+  Program occlusion_, blur_;
 };
 
 }  // namespace mercury::render

@@ -1,4 +1,4 @@
-// Ambient light that nearby things leave, from the half-size map of occlusion.frag. Needs frame.glsl.
+// Ambient light that nearby things leave, from the half-size map of occlusion.comp. Needs frame.glsl.
 layout(binding = 3) uniform sampler2D occlusion_map;  // openness, distance along the line of sight
 
 // Of the four nearest values those count that lie at this pixel's own distance.

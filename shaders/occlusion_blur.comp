@@ -1,10 +1,11 @@
-// Averages the 4 x 4 pattern of occlusion.frag, over what lies at the same distance.
+// Averages the 4 x 4 pattern of occlusion.comp, over what lies at the same distance.
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D source;
-layout(location = 0) in vec2 place;
-layout(location = 0) out vec2 result;
+layout(binding = 0, rg16f) writeonly uniform image2D map;
 
 void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, imageSize(map)))) return;
   ivec2 last = textureSize(source, 0) - 1;
   float range = texelFetch(source, texel, 0).g;
   float sum = 0.0, weights = 0.0;
@@ -15,5 +16,5 @@ void main() {
       sum += weight * value.r;
       weights += weight;
     }
-  result = vec2(sum / weights, range);
+  imageStore(map, texel, vec4(sum / weights, range, 0.0, 0.0));
 }

@@ -1,8 +1,8 @@
 // How open each point of the half-size picture is to ambient light: horizon-free obscurance (McGuire et al. 2011).
 #include "frame.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depths;
-layout(location = 0) in vec2 place;
-layout(location = 0) out vec2 result;  // openness, distance
+layout(binding = 0, rg16f) writeonly uniform image2D map;  // openness, distance
 
 layout(location = 0) uniform float radius;  // [m]
 
@@ -25,11 +25,12 @@ vec3 at(ivec2 texel) {
 vec3 flatter(vec3 a, vec3 b) { return abs(a.z) < abs(b.z) ? a : b; }
 
 void main() {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, imageSize(map)))) return;
   vec3 point = at(texel);
   float range = -point.z;
   if (texelFetch(depths, min(DEPTH_STEP * texel, textureSize(depths, 0) - 1), 0).r <= 0.0) {
-    result = vec2(1.0, range);
+    imageStore(map, texel, vec4(1.0, range, 0.0, 0.0));
     return;
   }
   vec3 right = flatter(at(texel + ivec2(1, 0)) - point, point - at(texel - ivec2(1, 0)));
@@ -51,5 +52,5 @@ void main() {
     hidden += fade * fade * fade * max(0.0, dot(v, normal) - 0.004 * range) * inversesqrt(squared + 1e-8);
   }
   float open = max(0.0, 1.0 - 2.6 * hidden / float(OCCLUSION_TAPS));
-  result = vec2(open, range);
+  imageStore(map, texel, vec4(open, range, 0.0, 0.0));
 }
