@@ -20,7 +20,7 @@ class AnnotationPass {
 
   VertexArray empty_;
   Program arrow_, path_, particle_;
-  Buffer arrows_, points_;
+  StreamBuffer arrows_, points_;
 };
 
 }  // namespace mercury::render

@@ -54,12 +54,8 @@ void Buffer::reserve(std::size_t bytes) {
 }
 
 void Buffer::write(const void* data, std::size_t bytes) {
-  // The barriers should not be needed around a copy. Without them, NVIDIA's driver leaves old values of small storage
-  // buffers in the caches of processors that have read them in the picture before.
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   reserve(bytes);
   if (bytes) glNamedBufferSubData(name_.get(), 0, GLsizeiptr(bytes), data);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT);
 }
 
 Texture make_texture(GLenum format, int width, int height, int samples) {

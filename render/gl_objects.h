@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 
+#include <array>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -80,6 +81,28 @@ class Buffer {
  private:
   GlName<ReleaseBuffer> name_;
   std::size_t size_ = 0, capacity_ = 0;
+};
+
+// A buffer whose contents are replaced in every picture, at most twice. Pictures that the card has not finished keep
+// theirs: NVIDIA's driver has been seen to write into a storage buffer that an earlier picture was yet to read. Whoever
+// draws must see to it that the picture before the last is finished.
+class StreamBuffer {
+ public:
+  template <typename Values>
+  void write(const Values& values) {
+    next().write(values);
+  }
+  void write(const void* data, std::size_t bytes) { next().write(data, bytes); }
+  // As it was written last.
+  const Buffer& last() const { return ring_[current_]; }
+  void bind_storage(GLuint binding) const { last().bind_storage(binding); }
+  void bind_uniform(GLuint binding) const { last().bind_uniform(binding); }
+
+ private:
+  Buffer& next() { return ring_[current_ = (current_ + 1) % ring_.size()]; }
+
+  std::array<Buffer, 4> ring_;
+  std::size_t current_ = 0;
 };
 
 // A texture of one level; samples = 0 for an ordinary one. Clamped to its edge, bilinear unless it is multisampled.

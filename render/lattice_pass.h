@@ -20,7 +20,7 @@ class LatticePass {
 
   VertexArray empty_;
   Program spring_, spring_shadow_, mass_, mass_shadow_;
-  Buffer values_;
+  StreamBuffer values_;
 };
 
 inline constexpr std::size_t most_quads_a_call = std::size_t(1) << 27;  // 6 vertices each still count within 32 bits

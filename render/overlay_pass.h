@@ -15,7 +15,7 @@ class OverlayPass {
  private:
   VertexArray empty_;
   Program program_;
-  Buffer quads_;
+  StreamBuffer quads_;
   Texture atlas_;
 };
 

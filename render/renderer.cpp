@@ -19,6 +19,7 @@
 #include "render/light_pass.h"
 #include "render/occlusion_pass.h"
 #include "render/overlay_pass.h"
+#include "render/pace.h"
 #include "render/quality.h"
 #include "render/scene_buffers.h"
 #include "render/section_pass.h"
@@ -117,7 +118,7 @@ struct Renderer::Parts {
   QualitySettings settings;
   Targets targets;
   Bodies bodies;
-  Buffer frame;
+  StreamBuffer frame;
   SceneBuffers scene_buffers;
   Texture colormaps = make_colormaps();
   OverlayPass overlay;
@@ -127,6 +128,7 @@ struct Renderer::Parts {
   FitPass fit;
   SectionPass section;
   PassTimer timer;
+  Pace pace;
   std::string variant;  // of the picture that is being drawn
 
   void prepare(const Scene& scene, const Camera& camera, const Style& style);
@@ -205,7 +207,7 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   if (!scene.labels.empty()) bounds.start_reading();
   const FrameBlock block = frame_block(scene, camera, style, width, height);
   frame.write(&block, sizeof block);
-  fit.fit(frame, bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
+  fit.fit(frame.last(), bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
   passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }),
@@ -276,6 +278,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const Style style = style_of(scene.surroundings, scene.theme);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw with this context, too
+  p.pace.begin();
   p.timer.begin();
   p.prepare(scene, camera, style);
   p.timer.mark("positions");
@@ -293,6 +296,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.overlay.draw(text, p.targets.finished.get(), p.width, p.height, p.colormaps.get());
   p.timer.mark("finish");
   p.timer.end();
+  p.pace.end();
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDepthFunc(GL_LESS);
 }

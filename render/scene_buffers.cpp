@@ -57,8 +57,8 @@ void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   require(scene.spring_values.size(), bodies.spring_count(), "spring_values");
   if (!scene.positions.empty())
     glNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(scene.positions.size_bytes()), scene.positions.data());
-  // Whoever has written them (see Buffer::write).
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+  else
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // whoever has written them
   placements_.write(placement_records(scene.placements, bodies.body_count()));
   looks_.write(look_records(scene.looks));
   face_values_.write(scene.face_values);

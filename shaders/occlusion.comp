@@ -16,8 +16,8 @@ layout(location = 0) uniform float radius;  // [m]
 // A texel of the half-size picture stands for one texel of `depths`, which has DEPTH_STEP times its size.
 vec3 at(ivec2 texel) {
   ivec2 size = textureSize(depths, 0);
-  ivec2 from = clamp(DEPTH_STEP * texel, ivec2(0), size - 1);
-  float range = distance_of_depth(texelFetch(depths, from, 0).r);
+  ivec2 from = DEPTH_STEP * texel;
+  float range = distance_of_depth(texelFetch(depths, clamp(from, ivec2(0), size - 1), 0).r);
   return vec3((2.0 * (vec2(from) + 0.5) / vec2(size) - 1.0) * frame.depth.zw, -1.0) * range;
 }
 
