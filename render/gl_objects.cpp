@@ -117,6 +117,9 @@ Program make_program(std::span<const std::string_view> names, const std::string&
 }
 
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height) {
+  // While a framebuffer is bound, NVIDIA's driver does not see to it that what was drawn into it is read by others.
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glTextureBarrier();
   glUseProgram(program);
   glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, format);
   glDispatchCompute(GLuint((width + 7) / 8), GLuint((height + 7) / 8), 1);
