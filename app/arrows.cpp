@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "app/eigen_vec3.h"
 #include "app/face_forces.h"
+#include "app/floor_forces.h"
 #include "app/group_layout.h"
 #include "sim/error.h"
 
@@ -17,6 +19,7 @@ constexpr render::Color drag_color = render::rgb(0xff7043);
 constexpr render::Color lift_color = render::rgb(0x4fc3f7);
 constexpr render::Color velocity_color = render::rgb(0xaed581);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
+constexpr render::Color contact_color = render::rgb(0xffca28);
 
 float largest_of(std::span<const render::Arrow> arrows) {
   float largest = 0;
@@ -40,6 +43,8 @@ float mean_size(const Simulation& simulation) {
 Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
     : simulation_(simulation), kinds_(kinds), longest_(0.5f * mean_size(simulation)) {
   const Environment& environment = simulation.configuration().environment;
+  if (kinds.contact && !std::holds_alternative<Land>(environment))
+    throw InputError("--show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
   if ((kinds.drag || kinds.lift) && !has_face_forces(environment))
     throw InputError("--show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
                                            kinds.drag ? "drag" : "lift", name_of(environment)));
@@ -65,13 +70,22 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
   }
 }
 
+// From the mass up.
+void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const {
+  const std::size_t first = simulation_.mass_offsets()[robot];
+  for (const FloorForce& contact : floor_forces(simulation_, robot, state))
+    contacts.push_back({static_cast<std::uint32_t>(robot), eigen(state.positions[first + contact.mass]),
+                        eigen(contact.force), contact_color});
+}
+
 std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
   std::vector<render::Arrow> forces, lifts, velocities;
-  std::vector<render::Arrow> gravities;
+  std::vector<render::Arrow> gravities, contacts;
   const Eigen::Vector3f gravity = eigen(gravity_of(simulation_.configuration().environment));
   for (std::size_t i = 0; i < simulation_.size(); ++i) {
     if (telemetry[i].exploded) continue;
     if (kinds_.drag || kinds_.lift) add_faces(i, state, forces, lifts);
+    if (kinds_.contact) add_contacts(i, state, contacts);
     const Eigen::Vector3f middle = eigen(telemetry[i].center_of_mass);
     const auto index = static_cast<std::uint32_t>(i);
     if (kinds_.velocity) velocities.push_back({index, middle, eigen(telemetry[i].velocity), velocity_color});
@@ -81,7 +95,8 @@ std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const T
   forces.insert(forces.end(), lifts.begin(), lifts.end());
   scale(forces, longest_ * force_.fit(largest_of(forces)));
   scale(velocities, longest_ * velocity_.fit(largest_of(velocities)));
-  for (const auto* more : {&velocities, &gravities}) forces.insert(forces.end(), more->begin(), more->end());
+  scale(contacts, longest_ * contact_.fit(largest_of(contacts)));
+  for (const auto* more : {&velocities, &gravities, &contacts}) forces.insert(forces.end(), more->begin(), more->end());
   std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.allFinite(); });
   return forces;
 }
@@ -95,6 +110,7 @@ std::string Arrows::key() const {
   add(kinds_.drag && kinds_.lift, "drag, lift", force_);
   add(kinds_.drag && !kinds_.lift, "drag", force_);
   add(kinds_.lift && !kinds_.drag, "lift", force_);
+  add(kinds_.contact, contact_.name, contact_);
   add(kinds_.velocity, velocity_.name, velocity_);
   return text;
 }

@@ -14,15 +14,17 @@ struct ArrowKinds {
   bool drag = false, lift = false;  // on each face
   bool velocity = false;            // of each robot's centre of mass
   bool gravity = false;             // at each robot's centre of mass
+  bool contact = false;             // of the floor with each mass on it
 
-  bool any() const { return drag || lift || velocity || gravity; }
+  bool any() const { return drag || lift || velocity || gravity || contact; }
 };
 
 // Turns forces and velocities into arrows. The scale is chosen so that the longest arrow is about half a robot long, and
 // changes only by steps of 1, 2 and 5 as larger ones come.
 class Arrows {
  public:
-  // Throws InputError("--show: ...") for drag or lift in an environment that does not act on faces.
+  // Throws InputError("--show: ...") for drag or lift in an environment that does not act on faces, and for contact in
+  // one without a floor.
   Arrows(const Simulation& simulation, ArrowKinds kinds);
 
   // `telemetry` one a robot. Exploded robots have none.
@@ -41,11 +43,12 @@ class Arrows {
   };
   void add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
                  std::vector<render::Arrow>& lift) const;
+  void add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const;
 
   const Simulation& simulation_;
   ArrowKinds kinds_;
   float longest_;  // of an arrow [m]
-  Gauge force_{"force", "N"}, velocity_{"velocity", "m/s"};
+  Gauge force_{"force", "N"}, velocity_{"velocity", "m/s"}, contact_{"contact", "N"};
 };
 
 }  // namespace mercury

@@ -10,6 +10,7 @@
 
 #include "app/appearance.h"
 #include "app/face_forces.h"
+#include "app/materials_now.h"
 #include "sim/error.h"
 
 namespace mercury {
@@ -33,24 +34,6 @@ constexpr std::array<Quantity, 6> quantities{{
 }};
 
 const Quantity& quantity(ColorBy by) { return quantities[static_cast<std::size_t>(by)]; }
-
-// A robot's material at a moment.
-struct MaterialNow {
-  float stiffness;      // with the environment's scale [N/m]
-  float length_factor;  // 1 + dL0 sin(omega t + phi)
-};
-
-std::vector<MaterialNow> materials_at(const Simulation& simulation, std::size_t robot, double time) {
-  const float scale = stiffness_scale_of(simulation.configuration().environment);
-  std::vector<MaterialNow> now;
-  const std::size_t count = materials_of(simulation.robot(robot)).size();
-  for (std::size_t id = 0; id < count; ++id) {
-    const Material m = simulation.material(robot, static_cast<MaterialId>(id));
-    const double angle = static_cast<double>(m.frequency) * time + static_cast<double>(m.phase);
-    now.push_back({scale * m.stiffness, 1 + m.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI)))});
-  }
-  return now;
-}
 
 float contraction(const MaterialNow& material) { return 100 * (1 - material.length_factor); }
 

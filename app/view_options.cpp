@@ -44,7 +44,7 @@ Shown shown_from(const std::string& text) {
   const std::vector<std::pair<std::string_view, bool*>> items{
       {"skin", &shown.skin},          {"springs", &shown.springs},    {"masses", &shown.masses},
       {"drag", &shown.arrows.drag},   {"lift", &shown.arrows.lift},   {"velocity", &shown.arrows.velocity},
-      {"gravity", &shown.arrows.gravity}, {"path", &shown.path},      {"labels", &shown.labels},
+      {"gravity", &shown.arrows.gravity}, {"contact", &shown.arrows.contact}, {"path", &shown.path},      {"labels", &shown.labels},
       {"legend", &shown.legend},      {"clock", &shown.clock},        {"scale", &shown.scale_bar}};
   for (const std::string_view word : split(text, ',')) {
     bool known = false;
@@ -64,7 +64,7 @@ void ViewOptions::add_to(CLI::App& command) {
                  "Colour by (default material)"));
   add(add_value(command, "--scale", scale_, "Ends of the colours' scale (default: fits)", "LOW,HIGH", range_from));
   add(add_value(command, "--show", shown_,
-                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity, and "
+                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
                 "path,labels,legend,clock,scale (default skin,clock)",
                 "LIST", [](const std::string&, const std::string& text) {
                   shown_from(text);

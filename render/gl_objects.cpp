@@ -58,6 +58,13 @@ void Buffer::write(const void* data, std::size_t bytes) {
   if (bytes) glNamedBufferSubData(name_.get(), 0, GLsizeiptr(bytes), data);
 }
 
+void Buffer::bind(GLenum target, GLuint binding) const {
+  if (size_ > 0)
+    glBindBufferRange(target, binding, name_.get(), 0, GLsizeiptr(size_));
+  else
+    glBindBufferBase(target, binding, name_.get());
+}
+
 Texture make_texture(GLenum format, int width, int height, int samples) {
   GLuint name = 0;
   glCreateTextures(samples ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, 1, &name);

@@ -74,11 +74,13 @@ class Buffer {
   void write(const std::vector<T>& values) {
     write(values.data(), values.size() * sizeof(T));
   }
-  // As storage or uniform block at that binding.
-  void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get()); }
-  void bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, name_.get()); }
+  // As storage or uniform block at that binding; an array's length() in a shader is that of what was written last.
+  void bind_storage(GLuint binding) const { bind(GL_SHADER_STORAGE_BUFFER, binding); }
+  void bind_uniform(GLuint binding) const { bind(GL_UNIFORM_BUFFER, binding); }
 
  private:
+  void bind(GLenum target, GLuint binding) const;
+
   GlName<ReleaseBuffer> name_;
   std::size_t size_ = 0, capacity_ = 0;
 };

@@ -7,6 +7,7 @@
 
 #include "app/arrows.h"
 #include "app/face_forces.h"
+#include "app/floor_forces.h"
 #include "sim/error.h"
 
 namespace mercury::test {
@@ -84,6 +85,49 @@ TEST(FaceForce, DragOpposesMotionAndLiftLiesAcrossIt) {
   EXPECT_NEAR(sum.x, -96, 0.01);
   EXPECT_NEAR(sum.y, 0, 0.01);
   EXPECT_NEAR(sum.z, -178, 0.01);
+}
+
+// Springs at rest: the floor carries each mass's own weight.
+TEST(FloorForces, MassesAtRestAreCarried) {
+  Robot flat = plate();
+  for (Vec3& mass : flat.masses) mass.z = 0;
+  const Simulation simulation({.environment = Land{}, .device = cpu.device}, std::vector<Robot>{flat});
+  const auto forces = floor_forces(simulation, 0, state(flat.masses, {0, 0, 0}));
+  ASSERT_EQ(forces.size(), flat.masses.size());
+  for (const FloorForce& contact : forces) {
+    EXPECT_NEAR(contact.force.z, 9.81, 1e-3);
+    EXPECT_NEAR(contact.force.x, 0, 1e-3);
+  }
+}
+
+// Coulomb's law: it slides, so friction is mu N against its motion.
+TEST(FloorForces, FrictionOfWhatSlidesIsItsShareOfThePush) {
+  Robot flat = plate();
+  for (Vec3& mass : flat.masses) mass.z = 0;
+  const Simulation simulation({.environment = Land{.friction = 0.5f}, .device = cpu.device}, std::vector<Robot>{flat});
+  for (const FloorForce& contact : floor_forces(simulation, 0, state(flat.masses, {2, 0, 0}))) {
+    EXPECT_NEAR(contact.force.x, -0.5 * 9.81, 1e-3);
+    EXPECT_NEAR(contact.force.z, 9.81, 1e-3);
+  }
+}
+
+// A robot that has come to rest weighs on the floor with all of its masses.
+TEST(FloorForces, CarryTheWholeWeightOfARobotAtRest) {
+  Robot tower{.name = "tower"};
+  for (int i = 0; i < 3; ++i) tower.masses.push_back({0, 0, static_cast<float>(i)});
+  for (std::uint16_t i = 0; i < 2; ++i)
+    tower.springs.push_back({.a = i, .b = static_cast<std::uint16_t>(i + 1), .material = 22, .rest_length = 1});
+  Simulation simulation({.damping = 20, .environment = Land{}, .device = cpu.device}, std::vector<Robot>{tower});
+  simulation.step(20000);
+  const auto forces = floor_forces(simulation, 0, read_state(simulation));
+  ASSERT_EQ(forces.size(), 1u);
+  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.01);
+}
+
+TEST(FloorForces, WaterHasNone) {
+  const Simulation simulation(cpu, std::vector<Robot>{plate()});
+  EXPECT_TRUE(floor_forces(simulation, 0, state(plate().masses, {0, 0, -1})).empty());
+  EXPECT_THROW(Arrows(simulation, {.contact = true}), InputError);
 }
 
 TEST(Arrows, LongestIsHalfARobotAndKeepsItsScale) {

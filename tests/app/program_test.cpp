@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "--scale: \"2,1\" is not accepted; give the lower end first"},
         BadInput{"UnknownThing", {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
                  "--show: \"bones\" is not accepted; give some of "
-                 "skin,springs,masses,drag,lift,velocity,gravity,path,labels,legend,clock,scale"},
+                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,legend,clock,scale"},
         BadInput{"UnknownCamera", {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "drone"},
                  "--camera: \"drone\" is not accepted; give group, follow, turntable, top, still, follow:ROBOT or a camera "
                  "file (.json)"},
