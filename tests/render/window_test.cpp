@@ -41,7 +41,7 @@ class Display {
     close(ends[1]);
     // The server writes the display's number when it is ready, and nothing if it is not there.
     std::string number;
-    for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    for (char c; ::read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
     close(ends[0]);
     if (!number.empty()) setenv("DISPLAY", (":" + number).c_str(), 1);
   }
