@@ -121,7 +121,7 @@ TEST(FloorForces, CarryTheWholeWeightOfARobotAtRest) {
   simulation.step(20000);
   const auto forces = floor_forces(simulation, 0, read_state(simulation));
   ASSERT_EQ(forces.size(), 1u);
-  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.01);
+  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.1);  // a last digit of the positions is 0.005 N to these springs
 }
 
 TEST(FloorForces, WaterHasNone) {
