@@ -34,23 +34,16 @@ bool alike(const Body& a, const Body& b) {
   return a.build_key == b.build_key && compare_tables(a, b) == 0 && same_build(*a.robot, *b.robot);
 }
 
-// Contacts pick masses lane by lane, which only pays where positions and sums of a group are in the nearest cache.
-bool fits_in_lockstep(const Body& body, bool contacts) {
-  constexpr std::size_t nearest_cache_share = 24 * 1024;  // [bytes]
-  const std::size_t picked = body.robot->masses.size() * body.places.lanes * 3 * (sizeof(float) + sizeof(std::int32_t));
-  return body.status.exploded_step < 0 && footprint_in_lockstep(*body.robot, body.places.lanes) <= cache_share &&
-         (!contacts || picked <= nearest_cache_share);
-}
-
 // Bodies that are alike stand together in `order`. Groups are made of as many as there are lanes, or nearly, but not so
 // that threads have nothing to do.
-std::vector<Unit> cut(std::span<const Body> bodies, std::span<const std::size_t> order, std::size_t threads, bool contacts) {
+std::vector<Unit> cut(std::span<const Body> bodies, std::span<const std::size_t> order, std::size_t threads,
+                      const Configuration& configuration) {
   std::vector<Unit> groups, singles;
   for (std::size_t first = 0; first < order.size();) {
     const Body& body = bodies[order[first]];
     std::size_t last = first + 1;
-    if (fits_in_lockstep(body, contacts))
-      while (last < order.size() && last - first < body.places.lanes && fits_in_lockstep(bodies[order[last]], contacts) &&
+    if (fits_in_lockstep(body, configuration))
+      while (last < order.size() && last - first < body.places.lanes && fits_in_lockstep(bodies[order[last]], configuration) &&
              alike(body, bodies[order[last]]))
         ++last;
     if (4 * (last - first) >= 3 * body.places.lanes)
@@ -84,6 +77,15 @@ void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting,
 
 }  // namespace
 
+// Contacts pick masses lane by lane, which only pays where positions and sums of a group are in the nearest cache.
+bool fits_in_lockstep(const Body& body, const Configuration& configuration) {
+  constexpr std::size_t nearest_cache_share = 24 * 1024;  // [bytes]
+  const Land* const land = std::get_if<Land>(&configuration.environment);
+  const std::size_t picked = body.robot->masses.size() * body.places.lanes * 3 * (sizeof(float) + sizeof(std::int32_t));
+  return body.status.exploded_step < 0 && footprint_in_lockstep(*body.robot, body.places.lanes) <= cache_share &&
+         (land == nullptr || !land->self_collision || picked <= nearest_cache_share);
+}
+
 std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const Configuration& configuration) {
   std::vector<std::size_t> order(bodies.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -96,8 +98,7 @@ std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const 
   std::size_t count = 0, bytes = 0;
   const Body* before = nullptr;
   std::shared_ptr<const Build> build;
-  const Land* const land = std::get_if<Land>(&configuration.environment);
-  for (Unit& unit : cut(bodies, order, threads, land != nullptr && land->self_collision)) {
+  for (Unit& unit : cut(bodies, order, threads, configuration)) {
     const Body& body = bodies[unit.bodies.front()];
     const std::size_t size = unit.together ? footprint_in_lockstep(*body.robot, body.places.lanes) : footprint(body);
     const bool joins = before != nullptr && count + unit.bodies.size() <= most && bytes + size <= cache_share &&

@@ -16,6 +16,9 @@ struct Pack {
   bool broken = false;              // a group had to be stepped one by one; pack anew
 };
 
+// Whether a body is small enough to be one of a group, if enough others are built alike.
+bool fits_in_lockstep(const Body& body, const Configuration& configuration);
+
 // Every body in one pack; at least a few packs a thread where there are enough bodies. With `configuration` as the bodies'
 // laws stand.
 std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const Configuration& configuration);
