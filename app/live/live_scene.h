@@ -79,7 +79,7 @@ class LiveScene {
   // Robots.
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
-  void add(std::vector<Robot> robots);                          // unsaved ones
+  void add(std::vector<Robot> robots, bool unsaved = true);     // `unsaved`: they are kept nowhere else
   void open(const std::vector<std::filesystem::path>& paths);   // files and folders; in the background
   void generate(const Generation& generation, bool replace = false);  // in the background; replace = instead of all
   void remove(const std::vector<RobotId>& robots);

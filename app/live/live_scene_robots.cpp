@@ -132,7 +132,7 @@ RobotId LiveScene::Parts::append(Robot robot, RobotSource source) {
   return id;
 }
 
-void LiveScene::add(std::vector<Robot> robots) {
+void LiveScene::add(std::vector<Robot> robots, bool unsaved) {
   std::erase_if(robots, [&](const Robot& robot) {
     try {
       validate(robot);
@@ -144,7 +144,10 @@ void LiveScene::add(std::vector<Robot> robots) {
   });
   if (robots.empty()) return;
   parts_->edit("add " + robots_counted(robots.size()));
-  for (Robot& robot : robots) parts_->append(std::move(robot), {});
+  for (Robot& robot : robots) {
+    const RobotId id = parts_->append(std::move(robot), {});
+    if (!unsaved) parts_->saved[id] = {"", parts_->document.robots.back().body};
+  }
   parts_->told();
 }
 

@@ -112,6 +112,20 @@ TEST(LiveScene, ARobotThatBreaksARuleIsToldAndLeftOut) {
   EXPECT_THAT(scene.take_messages(), SizeIs(1));
 }
 
+TEST(LiveScene, RobotsThatAreKeptElsewhereAreUnsavedOnlyOnceTheyChange) {
+  LiveScene scene(on_cpu());
+  scene.add({random_voxel_robot({}, 1, 0)}, false);
+  scene.add({random_voxel_robot({}, 1, 1)});
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+  EXPECT_TRUE(scene.entries()[1].unsaved);
+  EXPECT_EQ(scene.entries()[0].file, "");
+  EXPECT_THAT(scene.command().notes, SizeIs(2));
+  scene.scale_materials({ids_of(scene)[0]}, {.stiffness = 2});
+  EXPECT_TRUE(scene.entries()[0].unsaved);
+  scene.undo();
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+}
+
 TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
   LiveScene scene(on_cpu());
   make_robots(scene, 1);
