@@ -139,6 +139,11 @@ void Hands::draw(Desk& desk, const PictureArea& area, const render::Camera& came
   }
   if (!hovered_) return;
   const HitFigures figures = desk.scene.describe(*hovered_);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const float text_height = ImGui::GetFontSize();
+  const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;
+  ImGui::SetNextWindowPos({mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)},
+                          ImGuiCond_Always, {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);

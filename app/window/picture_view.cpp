@@ -11,7 +11,7 @@ namespace mercury::window {
 namespace {
 
 constexpr double slow = 0.045, quick = 0.015;  // a picture [s]
-constexpr std::array<float, 4> shares{1, 0.75f, 0.5f, 0.35f};
+constexpr std::array<float, 3> shares{1, 0.75f, 0.5f};
 
 }  // namespace
 

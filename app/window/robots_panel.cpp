@@ -87,8 +87,9 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
   const std::size_t selected = scene.selection().size();
   heading(fmt::format("{} robot{}{}", entries.size(), entries.size() == 1 ? "" : "s",
                       selected ? fmt::format(", {} selected", selected) : "").c_str());
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float height = std::clamp(static_cast<float>(entries.size()) + 1.8f, 4.0f, 11.0f) * line;
+  // Whole rows, and the heading.
+  const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+  const float height = (std::clamp(static_cast<float>(entries.size()), 3.0f, 12.0f) + 1) * line + 2;
   if (!ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter, {0, height})) return;
   ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("springs", ImGuiTableColumnFlags_WidthFixed);
@@ -103,8 +104,9 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
       ImGui::PushID(static_cast<int>(entry.id));
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
+      const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
       if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
-      const std::string name = shortened(entry.name + (entry.unsaved ? " *" : ""), ImGui::GetContentRegionAvail().x);
+      const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
       if (ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick)) {
         if (ImGui::IsMouseDoubleClicked(0))
           frame_robots(desk, {entry.id}, aspect);

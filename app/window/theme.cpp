@@ -61,8 +61,9 @@ void set_colors(ImGuiStyle& style, const Tones& tones) {
   colors[ImGuiCol_ScrollbarBg] = hex(tones.panel, 0);
   colors[ImGuiCol_ScrollbarGrab] = hex(tones.hovered);
   colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = hex(tones.pressed);
-  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = accent;
-  colors[ImGuiCol_SliderGrabActive] = accent;
+  colors[ImGuiCol_CheckMark] = accent;
+  colors[ImGuiCol_SliderGrab] = hex(tones.accent, 0.5f);  // a number may stand under it
+  colors[ImGuiCol_SliderGrabActive] = hex(tones.accent, 0.7f);
   colors[ImGuiCol_Button] = hex(tones.raised);
   colors[ImGuiCol_ButtonHovered] = hex(tones.hovered);
   colors[ImGuiCol_ButtonActive] = hex(tones.pressed);

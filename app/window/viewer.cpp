@@ -16,6 +16,7 @@
 #include "app/live/remembered.h"
 #include "app/window/interface.h"
 #include "app/window/panels.h"
+#include "app/window/picture_text.h"
 #include "app/window/screenshot.h"
 #include "app/window/theme.h"
 
@@ -185,6 +186,7 @@ void Viewer::frame(double dt) {
   area_ = panels_.draw_frame();
   hands_.work(desk_, area_, shown_);
   panels_.draw_over(area_, dt);
+  draw_picture_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_);
   hands_.draw(desk_, area_, shown_);
   cost_.panels = since(panels_begin);
   draw_picture(area_, dt);
@@ -215,13 +217,16 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
     framed_ = true;
   }
   const render::Camera camera = camera_.at(live.bounds(), area.aspect(), dt);
-  const bool turned = camera.eye != shown_.eye || camera.target != shown_.target || camera.field_of_view != shown_.field_of_view;
+  // The end of a glide is too slow to be seen, and must not keep the picture coarse.
+  const float least = 2e-4f * (camera.eye - camera.target).norm();
+  const bool turned = (camera.eye - shown_.eye).norm() > least || (camera.target - shown_.target).norm() > least ||
+                      camera.field_of_view != shown_.field_of_view;
   const bool stepped = shown_steps_ != scene_.moment().steps;
   turned_ = turned;
   const bool moving = turned || (stepped && scene_.playing()) || hands_.busy();
   if (!moving && !stepped && redraw_ == 0 && !picture_.coarse()) return;
   const auto begin = Clock::now();
-  picture_.draw(live.scene(), camera, moving);
+  picture_.draw(without_text(live.scene()), camera, moving);
   cost_.picture = since(begin);
   shown_ = camera;
   shown_steps_ = scene_.moment().steps;

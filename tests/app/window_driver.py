@@ -47,7 +47,12 @@ class Window:
             [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report), *arguments],
             cwd=self.folder, env=self.environment, stderr=self.messages)
         self.items, self.events, self.offset, self.rest = {}, [], 0, ""
-        self.wait("ready")
+        try:
+            self.wait("ready")
+        except BaseException:
+            self.process.kill()
+            self.process.wait()
+            raise
 
     # What happened.
 
@@ -119,7 +124,9 @@ class Window:
         since = self.mark()
         self.frame(since=since)
         self.do("click", 1)
-        # The window sees where the pointer is when it looks, not where it was when the button went down.
+        # The window sees where the pointer is when it looks, not where it was when the button went down; the first frame
+        # told of may have looked before.
+        self.frame()
         self.frame()
 
     def dialog(self, text):
