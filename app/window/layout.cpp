@@ -53,7 +53,13 @@ void Column::draw_tabs(Desk& desk, std::string& open) {
       desk.observations.tell("panel", {{"name", open}});
     }
     ImGui::PopStyleColor();
-    hint(panel.meaning);
+    // Below the tabs, so that it hides none.
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (ImGui::IsItemHovered()) {
+      ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
+                              {right_ ? 1.0f : 0.0f, 0});
+      hint(panel.meaning);
+    }
     desk.observations.item(std::string("tab.") + panel.name);
   }
 }

@@ -105,14 +105,14 @@ void RankingPanel::draw(Desk& desk, float aspect) {
   std::vector<Named> rows;
   for (const RankingRow& row : desk.scene.ranking()) rows.push_back({name_of_robot(desk.scene, row.robot), row});
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
-  const float height = ImGui::GetContentRegionAvail().y - 2.2f * ImGui::GetFrameHeightWithSpacing();
+  const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
   if (ImGui::BeginTable("ranking", 6, flags, {0, std::max(height, 6 * ImGui::GetFrameHeight())})) {
     ImGui::TableSetupScrollFreeze(1, 1);
-    ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 7 * ImGui::GetFontSize());
-    ImGui::TableSetupColumn("distance [m]", ImGuiTableColumnFlags_DefaultSort | ImGuiTableColumnFlags_PreferSortDescending);
-    ImGui::TableSetupColumn("mean speed [m/s]", ImGuiTableColumnFlags_PreferSortDescending);
-    ImGui::TableSetupColumn("speed [m/s]", ImGuiTableColumnFlags_PreferSortDescending);
-    ImGui::TableSetupColumn("energy [J]", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 6 * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("distance", ImGuiTableColumnFlags_DefaultSort | ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("mean speed", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("speed", ImGuiTableColumnFlags_PreferSortDescending);
+    ImGui::TableSetupColumn("energy", ImGuiTableColumnFlags_PreferSortDescending);
     ImGui::TableSetupColumn("largest strain", ImGuiTableColumnFlags_PreferSortDescending);
     ImGui::TableHeadersRow();
     if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0) {
@@ -145,12 +145,13 @@ void RankingPanel::draw(Desk& desk, float aspect) {
         const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy, row.largest_strain};
         for (const double number : numbers) {
           ImGui::TableNextColumn();
-          ImGui::TextUnformatted(fmt::format("{:.4g}", number).c_str());
+          ImGui::TextUnformatted(fmt::format("{:.3g}", number).c_str());
         }
         ImGui::PopID();
       }
     ImGui::EndTable();
   }
+  note("distance in m, speeds in m/s, energy in J; a click on a heading sorts");
   if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
     save_csv(desk, "Save the ranking", "ranking.csv", [&desk] { return desk.scene.ranking_csv(); });
   desk.observations.item("ranking.csv");

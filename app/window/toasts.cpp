@@ -42,6 +42,11 @@ void Toasts::say(Tone tone, std::string text) {
       toast.told = false;
       return;
     }
+  // "picture saved: ..." takes the place of the one before.
+  const std::string kind = text.substr(0, text.find(": "));
+  std::erase_if(toasts_, [&](const Toast& toast) {
+    return tone == Tone::success && toast.tone == tone && toast.told && toast.text.substr(0, toast.text.find(": ")) == kind;
+  });
   toasts_.push_back({tone, std::move(text), stays});
   if (toasts_.size() > most) toasts_.pop_front();
 }
