@@ -21,15 +21,24 @@ constexpr render::Color velocity_color = render::rgb(0xaed581);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
 constexpr render::Color contact_color = render::rgb(0xffca28);
 
-float largest_of(std::span<const render::Arrow> arrows) {
-  float largest = 0;
+// The largest of the middle one of the robots that have any, so that one strong robot does not make all others' invisible.
+float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
+  std::vector<float> largest(robots);
   for (const render::Arrow& arrow : arrows)
-    if (arrow.vector.allFinite()) largest = std::max(largest, arrow.vector.norm());
-  return largest;
+    if (arrow.vector.allFinite()) largest[arrow.body] = std::max(largest[arrow.body], arrow.vector.norm());
+  std::erase(largest, 0.0f);
+  if (largest.empty()) return 0;
+  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
+  std::ranges::nth_element(largest, middle);
+  return *middle;
 }
 
-void scale(std::span<render::Arrow> arrows, float factor) {
-  for (render::Arrow& arrow : arrows) arrow.vector *= factor;
+void scale(std::span<render::Arrow> arrows, float factor, float most) {
+  for (render::Arrow& arrow : arrows) {
+    arrow.vector *= factor;
+    const float length = arrow.vector.norm();
+    if (length > most) arrow.vector *= most / length;
+  }
 }
 
 float mean_size(const Simulation& simulation) {
@@ -93,9 +102,12 @@ std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const T
       gravities.push_back({index, middle, longest_ * gravity.normalized(), gravity_color});
   }
   forces.insert(forces.end(), lifts.begin(), lifts.end());
-  scale(forces, longest_ * force_.fit(largest_of(forces)));
-  scale(velocities, longest_ * velocity_.fit(largest_of(velocities)));
-  scale(contacts, longest_ * contact_.fit(largest_of(contacts)));
+  const auto fit = [&](std::vector<render::Arrow>& arrows, Gauge& gauge) {
+    scale(arrows, longest_ * gauge.fit(largest_of(arrows, simulation_.size())), 2 * longest_);
+  };
+  fit(forces, force_);
+  fit(velocities, velocity_);
+  fit(contacts, contact_);
   for (const auto* more : {&velocities, &gravities, &contacts}) forces.insert(forces.end(), more->begin(), more->end());
   std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.allFinite(); });
   return forces;

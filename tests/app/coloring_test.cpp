@@ -144,6 +144,24 @@ TEST(Arrows, LongestIsHalfARobotAndKeepsItsScale) {
   EXPECT_EQ(arrows.key(), "drag: 1.4 m = 1000 N");
 }
 
+// Drag grows with the square of speed: the third plate's is 100 times the others'.
+TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
+  const Simulation simulation(cpu, std::vector<Robot>(3, plate()));
+  Arrows arrows(simulation, {.drag = true});
+  GroupState group;
+  for (const float speed : {1.0f, 1.0f, 10.0f})
+    for (const Vec3 x : plate().masses) {
+      group.positions.push_back(x);
+      group.velocities.push_back({0, 0, -speed});
+    }
+  const auto all = arrows.at(group, simulation.telemetry());
+  ASSERT_EQ(all.size(), 3u);
+  const double half_a_robot = 0.5 * std::sqrt(8.0);
+  EXPECT_NEAR(all[0].vector.norm(), half_a_robot, 1e-3);
+  EXPECT_NEAR(all[1].vector.norm(), half_a_robot, 1e-3);
+  EXPECT_NEAR(all[2].vector.norm(), 2 * half_a_robot, 2e-3);
+}
+
 TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
   GrowingScale scale(ColorBy::force, std::nullopt);
   scale.fit({.spring = {3, -4}});

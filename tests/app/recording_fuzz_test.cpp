@@ -44,6 +44,9 @@ class RecordingFuzz : public FolderTest {
   }
 
   void expect_modest_memory() const {
+#ifdef __SANITIZE_ADDRESS__  // keeps what was freed
+    return;
+#endif
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     EXPECT_LT(usage.ru_maxrss, 600 * 1024) << "kB";
