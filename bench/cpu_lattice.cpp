@@ -107,10 +107,10 @@ class Voxels {
 Robot lattice(int n) { return Voxels(n, 0).robot(); }
 Robot lattice_with_holes(int n, double share) { return Voxels(n, share).robot(); }
 
-Robot scrambled(const Robot& robot) {
+Robot scrambled(const Robot& robot, std::uint64_t seed) {
   std::vector<std::uint16_t> place(robot.masses.size());
   std::iota(place.begin(), place.end(), std::uint16_t{0});
-  Random random(3);
+  Random random(seed);
   for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random() % i]);
   Robot result = robot;
   for (std::size_t i = 0; i < place.size(); ++i) result.masses[place[i]] = robot.masses[i];

@@ -1,6 +1,8 @@
 // The robot that the CPU is measured with: a lattice of n x n x n voxels, every spring of a random material.
 #pragma once
 
+#include <cstdint>
+
 #include "sim/robot.h"
 
 namespace mercury::bench {
@@ -13,6 +15,6 @@ Robot lattice(int n);
 Robot lattice_with_holes(int n, double share);
 
 // The same with masses numbered in any order, so that nothing follows one another.
-Robot scrambled(const Robot& robot);
+Robot scrambled(const Robot& robot, std::uint64_t seed = 3);
 
 }  // namespace mercury::bench

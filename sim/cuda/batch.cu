@@ -27,7 +27,7 @@ __global__ void place_partners(std::uint32_t* records, std::size_t count, std::u
   for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count; i += std::size_t{gridDim.x} * blockDim.x) {
     std::uint32_t& key = records[i * record_words];
     const std::uint32_t place = key >> 16;
-    const std::uint32_t mass = old_rows == 0 ? place : place / (old_rows * lanes) * lanes + place % lanes;
+    const std::uint32_t mass = mass_at(place, old_rows);
     const std::uint32_t moved = new_rows == 0 ? mass : mass / lanes * new_rows * lanes + mass % lanes;
     key = moved << 16 | (key & 0xffff);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
 #include "bodies.h"
 #include "sim/cpu/backend.h"
@@ -36,22 +37,6 @@ std::string name_of_case(const testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-// The same robot with its masses numbered in any order, so that neighbours do not follow one another.
-Robot scrambled(const Robot& robot, std::uint64_t seed) {
-  std::vector<std::uint16_t> place(robot.masses.size());
-  for (std::size_t i = 0; i < place.size(); ++i) place[i] = static_cast<std::uint16_t>(i);
-  std::mt19937_64 random(seed);
-  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random() % i]);
-  Robot result = robot;
-  for (std::size_t i = 0; i < place.size(); ++i) result.masses[place[i]] = robot.masses[i];
-  for (Spring& spring : result.springs) {
-    spring.a = place[spring.a];
-    spring.b = place[spring.b];
-  }
-  for (Face& face : result.faces) face = {place[face.a], place[face.b], place[face.c]};
-  return result;
-}
-
 // Without some of its springs and faces.
 Robot torn(const Robot& robot, std::uint64_t seed) {
   Robot result = robot;
@@ -76,9 +61,9 @@ std::vector<Robot> zoo() {
   std::vector<Robot> robots = {lattice,
                                bodies::random_voxels({.x = 17, .y = 2, .z = 2}, 2),
                                bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3),
-                               scrambled(lattice, 4),
+                               bench::scrambled(lattice, 4),
                                torn(lattice, 5),
-                               scrambled(torn(lattice, 6), 7),
+                               bench::scrambled(torn(lattice, 6), 7),
                                entangled(bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 8)),
                                bodies::pair({50, 0.5f, 3, 0.2f}),
                                bodies::point({0, 0, 1})};
