@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/integration.h"
 #include "sim/telemetry.h"
@@ -85,15 +86,12 @@ std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positio
   if (const auto found = std::ranges::find_if(robot.springs, has_bad_mass); found != robot.springs.end())
     return index_of(found);
   const float limit = measure(robot).squared_stretch_limit();
-  const auto squared = [&](const Spring& spring) {
-    const Vec3 d = positions[spring.b] - positions[spring.a];
-    return dot(d, d);
-  };
-  const auto too_long = [&](const Spring& spring) { return !(squared(spring) <= limit); };
-  if (const auto found = std::ranges::find_if(robot.springs, too_long); found != robot.springs.end())
-    return index_of(found);
+  // Springs beside the one that fails leave the limit in the same step, but less.
   const auto strain = [&](const Spring& spring) {
-    return std::abs(std::sqrt(squared(spring)) - spring.rest_length) / spring.rest_length;
+    const Vec3 d = positions[spring.b] - positions[spring.a];
+    const float squared = dot(d, d);
+    const float own = std::abs(std::sqrt(squared) - spring.rest_length) / spring.rest_length;
+    return squared <= limit ? std::pair{false, own} : std::pair{true, std::isnan(own) ? INFINITY : own};
   };
   const auto most = std::ranges::max_element(robot.springs, {}, strain);
   return most == robot.springs.end() ? no_spring : index_of(most);

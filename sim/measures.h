@@ -32,7 +32,7 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
                                   const Configuration& configuration);
 
 // The spring to blame for an explosion, or no_spring: the first that `bad_mass` belongs to, if a mass left the finite,
-// else the first that is longer than the stretch limit allows, else the most strained one.
+// else the most strained of those that are longer than the stretch limit allows, else the most strained one.
 std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
 
 // `noted`, or a mass at most two faces from it that is more to blame: one that is out of reach or not finite, else the

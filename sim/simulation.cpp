@@ -57,6 +57,13 @@ struct Snapshot {
   std::vector<RobotStatus> statuses;
 };
 
+// When and where a robot exploded, found out when somebody first asks: its state and status stay from then on.
+struct KnownExplosion {
+  std::int64_t step = -1;  // of the status that it belongs to; -1 = none is known
+  double at = 0;           // [s]
+  std::uint32_t first_bad_spring = no_spring;
+};
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -65,6 +72,7 @@ struct Simulation::Parts {
   std::vector<std::unique_ptr<Robot>> robots;
   std::vector<std::size_t> offsets{0};
   std::vector<Material> materials;
+  mutable std::vector<KnownExplosion> explosions;  // one a robot
   std::unique_ptr<Backend> backend;
 
   std::size_t size() const { return robots.size(); }
@@ -105,6 +113,7 @@ struct Simulation::Parts {
     const std::vector<Vec3> velocities(positions.size());
     backend->write(robot, positions, velocities);
     backend->set_status(robot, {});
+    explosions[robot] = {};
   }
 
   void restore(const Snapshot& snapshot) {
@@ -121,15 +130,31 @@ struct Simulation::Parts {
     backend->load(pointers, configuration);
   }
 
-  void complete(Telemetry& telemetry, std::size_t robot, const RobotStatus& status) const {
-    if (status.exploded_step < 0) return;
+  const KnownExplosion& explosion(std::size_t robot, const RobotStatus& status) const {
+    KnownExplosion& known = explosions[robot];
+    if (known.step == status.exploded_step) return known;
     Clock clock_then = clock;
     clock_then.step = status.exploded_step;
-    telemetry.exploded = true;
-    telemetry.exploded_at = time_of(clock_then);
     const State frozen = state(robot);
     const std::uint32_t bad_mass = mass_to_blame(*robots[robot], frozen, status.bad_mass);
-    telemetry.first_bad_spring = first_bad_spring(*robots[robot], frozen.positions, bad_mass);
+    known = {status.exploded_step, time_of(clock_then), first_bad_spring(*robots[robot], frozen.positions, bad_mass)};
+    return known;
+  }
+
+  void complete(auto& told, std::size_t robot, const RobotStatus& status) const {
+    if (status.exploded_step < 0) return;
+    const KnownExplosion& known = explosion(robot, status);
+    told.exploded = true;
+    told.exploded_at = known.at;
+    told.first_bad_spring = known.first_bad_spring;
+  }
+
+  // Steps of before are told by the clock of before.
+  void change_clock(const Clock& changed) {
+    const std::vector<RobotStatus> statuses = backend->statuses();
+    for (std::size_t i = 0; i < statuses.size(); ++i)
+      if (statuses[i].exploded_step >= 0) explosion(i, statuses[i]);
+    clock = changed;
   }
 };
 
@@ -158,6 +183,7 @@ std::size_t Simulation::add(std::span<const Robot> robots) {
   for (const Robot& robot : robots) {
     parts_->robots.push_back(std::make_unique<Robot>(robot));
     parts_->offsets.push_back(parts_->offsets.back() + robot.masses.size());
+    parts_->explosions.emplace_back();
     parts_->materials.resize(parts_->robots.size() * max_materials);
     std::ranges::copy(materials_of(robot), parts_->table(size() - 1).begin());
   }
@@ -181,9 +207,11 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   Snapshot after;
   std::vector<std::unique_ptr<Robot>> bodies;
   std::vector<Material> materials;
+  std::vector<KnownExplosion> explosions;
   std::vector<std::size_t> offsets{0};
   for (const std::size_t i : robots) {
-    after.states.push_back(state(i));
+    explosions.push_back(parts_->explosions[i]);
+    after.states.push_back(parts_->state(i));
     after.statuses.push_back(parts_->backend->status(i));
     const auto table = parts_->table(i);
     materials.insert(materials.end(), table.begin(), table.end());
@@ -193,6 +221,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   // The robots that leave live on until the backend has let them go.
   std::swap(parts_->robots, bodies);
   parts_->materials = std::move(materials);
+  parts_->explosions = std::move(explosions);
   parts_->offsets = std::move(offsets);
   parts_->load();
   parts_->backend->write_materials(parts_->materials);
@@ -207,6 +236,12 @@ const Robot& Simulation::robot(std::size_t index) const {
 const Configuration& Simulation::configuration() const { return parts_->configuration; }
 double Simulation::time() const { return time_of(parts_->clock); }
 std::int64_t Simulation::steps() const { return parts_->clock.step; }
+const Clock& Simulation::clock() const { return parts_->clock; }
+void Simulation::set_clock(const Clock& clock) {
+  if (clock.dt != parts_->clock.dt || clock.step < clock.base_step || clock.base_step < 0)
+    throw std::invalid_argument("a clock has the configuration's time step, and stands at its base or later");
+  parts_->change_clock(clock);
+}
 std::string Simulation::device_name() const { return parts_->backend->device_name(); }
 std::vector<std::string> Simulation::notes() const { return parts_->backend->notes(); }
 
@@ -230,8 +265,8 @@ void Simulation::configure(const Configuration& configuration) {
   if (configuration.device != parts_->configuration.device)
     throw std::invalid_argument("the device of a simulation cannot change");
   if (configuration.dt != parts_->clock.dt) {
-    Clock& clock = parts_->clock;
-    clock = {.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step};
+    const Clock& clock = parts_->clock;
+    parts_->change_clock({.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step});
   }
   const bool lands = std::holds_alternative<Land>(configuration.environment) &&
                      !std::holds_alternative<Land>(parts_->configuration.environment);
@@ -239,7 +274,7 @@ void Simulation::configure(const Configuration& configuration) {
   parts_->backend->configure(configuration);
   if (!lands) return;
   for (std::size_t i = 0; i < size(); ++i) {
-    State now = state(i);
+    State now = parts_->state(i);
     const Vec3 up{0, 0, set_down(now.positions, configuration.environment)};
     for (Vec3& x : now.positions) x += up;
     parts_->backend->write(i, now.positions, now.velocities);
@@ -248,9 +283,14 @@ void Simulation::configure(const Configuration& configuration) {
 
 State Simulation::state(std::size_t robot) const {
   parts_->require(robot);
-  return parts_->state(robot);
+  State state = parts_->state(robot);
+  parts_->complete(state, robot, parts_->backend->status(robot));
+  return state;
 }
-std::vector<Vec3> Simulation::positions(std::size_t robot) const { return state(robot).positions; }
+std::vector<Vec3> Simulation::positions(std::size_t robot) const {
+  parts_->require(robot);
+  return parts_->state(robot).positions;
+}
 
 void Simulation::read_positions(std::span<Vec3> out) const {
   if (out.size() != mass_count()) throw std::invalid_argument("one position a mass is needed");
@@ -272,6 +312,14 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
     throw std::invalid_argument("one position and one velocity a mass are needed");
   parts_->backend->write(robot, positions, velocities);
   parts_->backend->set_status(robot, {});
+  parts_->explosions[robot] = {};
+}
+
+void Simulation::set_state(std::size_t robot, const State& state) {
+  set_state(robot, state.positions, state.velocities);
+  if (!state.exploded) return;
+  parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.first_bad_spring};
+  parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
 }
 
 std::vector<Telemetry> Simulation::telemetry() const {
@@ -289,7 +337,7 @@ Telemetry Simulation::telemetry(std::size_t robot) const {
 }
 
 std::uint64_t Simulation::hash(std::size_t robot) const {
-  const State now = state(robot);
+  const State now = parts_->state(robot);
   constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
   return fnv1a(now.velocities, fnv1a(now.positions, offset_basis));
 }

@@ -14,11 +14,16 @@
 namespace mercury {
 
 class Backend;
+struct Clock;
 
 // One robot's state as it stood at the last step: no reference into the simulation.
 struct State {
   std::vector<Vec3> positions;   // [m], one a mass
   std::vector<Vec3> velocities;  // [m/s]
+  // As in Telemetry.
+  bool exploded = false;
+  double exploded_at = 0;
+  std::uint32_t first_bad_spring = no_spring;
 };
 
 // A pull on one mass by a spring of rest length 0 to a point in the robot's own frame, as a hand on a mouse does.
@@ -59,6 +64,9 @@ class Simulation {
   const Configuration& configuration() const;
   double time() const;                            // [s]
   std::int64_t steps() const;                     // since the start or the last reset
+  // The instant, exactly (sim/muscle.h). Set, all goes on from there as it would have there; robots keep their state.
+  const Clock& clock() const;
+  void set_clock(const Clock& clock);
 
   // What runs it, for people: "CPU, 2 threads, AVX2" or "NVIDIA H100 80GB HBM3".
   std::string device_name() const;
@@ -94,7 +102,10 @@ class Simulation {
   std::size_t mass_count() const;                 // of all robots together
   std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements
   // Throws std::invalid_argument unless both have one element a mass.
+  // The robot has not exploded then.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
+  // The same, with the explosion if it had exploded.
+  void set_state(std::size_t robot, const State& state);
 
   // One a robot, reduced on the device.
   std::vector<Telemetry> telemetry() const;

@@ -239,6 +239,11 @@ std::optional<PullFigures> LiveScene::pull() const {
 Series LiveScene::series(RobotId robot) const { return parts_->physics.measurements().series(robot); }
 std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
 
+std::vector<ExplodedRobot> LiveScene::exploded() const {
+  std::vector<ExplodedRobot> robots = exploded_robots(*parts_->moment, parts_->picture.offsets());
+  std::erase_if(robots, [&](const ExplodedRobot& robot) { return parts_->hidden.contains(robot.robot); });
+  return robots;
+}
 std::vector<Explosion> LiveScene::take_explosions() { return parts_->physics.take_explosions(); }
 void LiveScene::pause_on_explosion(bool pause) { parts_->physics.pause_on_explosion(pause); }
 

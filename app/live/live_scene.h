@@ -11,6 +11,7 @@
 
 #include "app/live/background.h"
 #include "app/live/command_text.h"
+#include "app/live/explosions.h"
 #include "app/live/group_film.h"
 #include "app/live/live_picture.h"
 #include "app/live/picking.h"
@@ -153,7 +154,8 @@ class LiveScene {
   std::unique_ptr<GroupFilm> film(const GroupFilmOptions& options) const;
 
   // Explosions.
-  std::vector<Explosion> take_explosions();
+  std::vector<ExplodedRobot> exploded() const;  // at the moment, those that are hidden left out
+  std::vector<Explosion> take_explosions();     // since the last call
   void pause_on_explosion(bool pause);
   // NAME.json and NAME.toml in a folder, for mercury run NAME.json --config NAME.toml.
   SaveResult save_repro(RobotId robot, const std::filesystem::path& folder, bool overwrite = false);

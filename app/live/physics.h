@@ -46,7 +46,7 @@ class Physics {
 
   // The newest moment told; asks for a newer one. Never nothing.
   std::shared_ptr<const Moment> newest();
-  // Those since the last call.
+  // Those since the last call, and robots that came back exploded.
   std::vector<Explosion> take_explosions();
   const Measurements& measurements() const;
   std::string device_name() const;

@@ -192,10 +192,18 @@ HitFigures describe(const Moment& moment, const Hit& hit) {
   const auto positions = moment.positions_of(*index);
   figures.mass = {.position = positions[hit.mass], .speed = length(moment.velocities_of(*index)[hit.mass])};
   for (const Spring& spring : robot.springs) figures.mass.springs += spring.a == hit.mass || spring.b == hit.mass;
-  if (!hit.spring || *hit.spring >= robot.springs.size()) return figures;
-  const Spring& spring = robot.springs[*hit.spring];
+  if (hit.spring && *hit.spring < robot.springs.size()) figures.spring = spring_figures(moment, *index, *hit.spring);
+  return figures;
+}
+
+HitFigures::OfSpring spring_figures(const Moment& moment, std::size_t index, std::uint32_t place) {
+  const LiveRobot& live = moment.robots->robots[index];
+  const Robot& robot = *live.robot;
+  const Spring& spring = robot.springs[place];
   const Material& material = materials_of(live)[spring.material];
-  const double angle = static_cast<double>(material.frequency) * moment.time + static_cast<double>(material.phase);
+  const auto positions = moment.positions_of(index);
+  const double time = moment.telemetry[index].exploded ? moment.telemetry[index].exploded_at : moment.time;
+  const double angle = static_cast<double>(material.frequency) * time + static_cast<double>(material.phase);
   const float rest_now =
       spring.rest_length * (1 + material.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI))));
   HitFigures::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
@@ -204,8 +212,7 @@ HitFigures describe(const Moment& moment, const Hit& hit) {
   of.force = material.stiffness * stiffness_scale_of(moment.configuration.environment) * (of.length - rest_now);
   if (!robot.material_names.empty()) of.material_name = robot.material_names[spring.material];
   else of.material_name = robot.materials.empty() ? default_material_name(spring.material) : "material " + std::to_string(spring.material);
-  figures.spring = of;
-  return figures;
+  return of;
 }
 
 }  // namespace mercury

@@ -55,5 +55,7 @@ struct HitFigures {
 // The figures of a hit at another moment of the same robots, or of robots that still have it; nothing but the name
 // otherwise.
 HitFigures describe(const Moment& moment, const Hit& hit);
+// Those of one spring of the robot at that place of the moment; of one that has exploded, as it did.
+HitFigures::OfSpring spring_figures(const Moment& moment, std::size_t robot, std::uint32_t spring);
 
 }  // namespace mercury

@@ -82,7 +82,7 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
     const auto before = departed_.find(wanted[fresh[k]].id);
     if (before == departed_.end()) continue;
     if (before->second.robot == wanted[fresh[k]].robot)
-      simulation_.set_state(first + k, before->second.state.positions, before->second.state.velocities);
+      simulation_.set_state(first + k, before->second.state);
     forget(wanted[fresh[k]].id);
   }
   if (!std::ranges::is_sorted(places)) simulation_.keep(places);

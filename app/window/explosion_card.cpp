@@ -2,76 +2,120 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/window/explosion_marks.h"
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
 
 namespace mercury::window {
 namespace {
 
-std::string spring_text(const DocumentRobot& robot, std::uint32_t spring) {
-  if (spring == no_spring || spring >= robot.body.robot->springs.size()) return "no spring is to blame";
-  const Spring& bad = robot.body.robot->springs[spring];
-  return fmt::format("first bad spring: {} (masses {} and {}, material {})", spring, bad.a, bad.b, bad.material);
+std::string advice_for(const ExplodedRobot& robot) {
+  const std::string advice = "A smaller time step, or XPBD, may help.";
+  if (!robot.spring) return "It is frozen; no spring is to blame. " + advice;
+  return fmt::format("Spring {} went first (masses {} and {}, {}). It is frozen, the others go on. {}", robot.spring->index, robot.spring->a,
+                     robot.spring->b, robot.spring->figures.material_name, advice);
+}
+
+void ask_for_repro(Desk& desk, RobotId robot) {
+  desk.dialogs.ask_text("Save what explodes", "Folder for the robot and its configuration, for mercury run:",
+                        desk.preferences.save_folder.empty() ? "repro" : desk.preferences.save_folder, "Save",
+                        [&desk, robot](const std::string& folder) {
+                          if (!folder.empty())
+                            save_with_care(desk, "repro", [&desk, robot, folder](bool overwrite) { return desk.scene.save_repro(robot, folder, overwrite); });
+                        });
 }
 
 }  // namespace
 
-void ExplosionCard::follow(Desk& desk) {
-  desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
-  for (const Explosion& explosion : desk.scene.take_explosions()) {
-    explosions_.push_back(explosion);
-    desk.observations.tell("exploded", {{"robot", explosion.robot}, {"time", explosion.time}});
-  }
-  if (explosions_.empty()) return;
-  // Gone with the robot, or healed by a reset.
-  std::erase_if(explosions_, [&](const Explosion& explosion) {
-    for (const RobotEntry& entry : desk.scene.entries())
-      if (entry.id == explosion.robot) return desk.scene.moment().time < explosion.time;
-    return true;
-  });
+const ExplodedRobot* ExplosionCard::chosen() const {
+  const auto found = std::ranges::find_if(robots_, [&](const ExplodedRobot& robot) { return robot.robot == chosen_; });
+  return found == robots_.end() ? nullptr : &*found;
 }
 
-void ExplosionCard::draw(Desk& desk, ImVec2 low, ImVec2 high, float aspect) {
-  if (explosions_.empty()) return;
-  const Explosion explosion = explosions_.front();
-  const DocumentRobot* robot = desk.scene.document().find(explosion.robot);
-  if (!robot) return;
+void ExplosionCard::choose(int places) {
+  const auto count = static_cast<int>(robots_.size());
+  const auto place = static_cast<int>(chosen() - robots_.data());
+  chosen_ = robots_[static_cast<std::size_t>((place + places + count) % count)].robot;
+}
+
+void ExplosionCard::follow(Desk& desk, const PictureArea& area, const render::Camera& camera) {
+  desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
+  for (const Explosion& explosion : desk.scene.take_explosions())
+    desk.observations.tell("exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.first_bad_spring}});
+  robots_ = desk.scene.exploded();
+  std::erase_if(dismissed_, [&](const auto& one) {
+    return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) { return one == std::pair{robot.robot, robot.time}; });
+  });
+  if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
+  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, desk.observations, area, camera);
+}
+
+void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
+  low_ = high_ = {0, 0};
+  const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) { return !dismissed_.contains({robot.robot, robot.time}); });
+  if (!news) return;
+  const ExplodedRobot robot = *chosen();
   const float text = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({low.x + text, high.y - 5 * text}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({std::min(26 * text, high.x - low.x - 2 * text), 0});
+  ImGui::SetNextWindowPos({area.low.x + text, area.high.y - text}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({std::min(27 * text, area.width() - 2 * text), 0});
   ImGui::PushStyleColor(ImGuiCol_Border, palette().bad);
   ImGui::Begin("##explosion", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PopStyleColor();
+  draw_heading(desk, robot);
+  note(advice_for(robot).c_str());
+  draw_buttons(desk, robot, area);
+  ImGui::Checkbox("Pause when something explodes", &desk.preferences.pause_on_explosion);
+  low_ = ImGui::GetWindowPos();
+  high_ = {low_.x + ImGui::GetWindowWidth(), low_.y + ImGui::GetWindowHeight()};
+  desk.observations.item("panel.Explosion", low_, high_);
+  ImGui::End();
+}
+
+void ExplosionCard::draw_heading(Desk& desk, const ExplodedRobot& robot) {
+  const std::string place = fmt::format("{} of {}", chosen() - robots_.data() + 1, robots_.size());
+  const float spacing = ImGui::GetStyle().ItemInnerSpacing.x, button = ImGui::GetFrameHeight();
+  const float steppers = robots_.size() < 2 ? 0 : 2 * (button + spacing) + ImGui::CalcTextSize(place.c_str()).x + spacing;
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::AlignTextToFramePadding();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
-  ImGui::TextWrapped("%s exploded at %.4g s%s", robot->body.name.c_str(), explosion.time,
-                     explosions_.size() > 1 ? fmt::format(", and {} more", explosions_.size() - 1).c_str() : "");
+  const std::string when = fmt::format(" exploded at {:.4g} s", robot.time);
+  const float room = right - ImGui::GetCursorPosX() - steppers - ImGui::CalcTextSize(when.c_str()).x;
+  ImGui::TextUnformatted((shortened(robot.name, room) + when).c_str());
   ImGui::PopStyleColor();
-  note(spring_text(*robot, explosion.first_bad_spring).c_str());
-  note("It stays frozen, the others go on. A smaller time step, or XPBD, may help.");
-  if (ImGui::Button("Show")) {
-    desk.scene.select(explosion.robot);
-    frame_robots(desk, {explosion.robot}, aspect);
+  if (robots_.size() < 2) return;
+  ImGui::SameLine(right - steppers + spacing);
+  if (ImGui::ArrowButton("##earlier", ImGuiDir_Left)) choose(-1);
+  ImGui::SameLine(0, spacing);
+  ImGui::TextUnformatted(place.c_str());
+  ImGui::SameLine(0, spacing);
+  if (ImGui::ArrowButton("##later", ImGuiDir_Right)) choose(1);
+  desk.observations.item("explosion.next");
+}
+
+void ExplosionCard::draw_buttons(Desk& desk, const ExplodedRobot& robot, const PictureArea& area) {
+  if (ImGui::Button("Show it")) {
+    desk.scene.select(robot.robot);
+    desk.camera.set_mode(CameraMode::still);
+    if (robot.spring)
+      desk.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
+    else
+      frame_robots(desk, {robot.robot}, area.aspect());
   }
+  desk.observations.item("explosion.show");
   ImGui::SameLine();
-  if (ImGui::Button("Save repro...")) {
-    desk.dialogs.ask_text("Save what explodes", "Folder for the robot and its configuration, for mercury run:",
-                          desk.preferences.save_folder.empty() ? "repro" : desk.preferences.save_folder, "Save",
-                          [&desk, id = explosion.robot](const std::string& folder) {
-                            if (!folder.empty())
-                              save_with_care(desk, "repro", [&desk, id, folder](bool overwrite) { return desk.scene.save_repro(id, folder, overwrite); });
-                          });
-  }
+  if (ImGui::Button("Save repro...")) ask_for_repro(desk, robot.robot);
   desk.observations.item("explosion.repro");
   ImGui::SameLine();
   if (ImGui::Button("Reset")) desk.scene.reset();
+  desk.observations.item("explosion.reset");
   ImGui::SameLine();
-  if (ImGui::Button("Dismiss")) explosions_.clear();
+  if (ImGui::Button("Dismiss"))
+    for (const ExplodedRobot& one : robots_) dismissed_.insert({one.robot, one.time});
   desk.observations.item("explosion.dismiss");
-  ImGui::Checkbox("Pause when something explodes", &desk.preferences.pause_on_explosion);
-  ImGui::End();
 }
 
 }  // namespace mercury::window

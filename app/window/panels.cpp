@@ -75,9 +75,9 @@ PictureArea Panels::draw_frame() {
   return area;
 }
 
-void Panels::draw_over(const PictureArea& area, double dt) {
-  explosions_.follow(desk_);
-  explosions_.draw(desk_, area.low, area.high, area.aspect());
+void Panels::draw_over(const PictureArea& area, const render::Camera& camera, double dt) {
+  explosions_.follow(desk_, area, camera);
+  explosions_.draw(desk_, area);
   if (help_) draw_help(help_, desk_.observations);
   desk_.dialogs.draw(desk_.observations);
   desk_.toasts.draw(area.low, area.high, dt, desk_.observations);

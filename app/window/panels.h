@@ -22,7 +22,7 @@ class Panels {
   // Menu, columns and play bar; returns the place that is left for the picture.
   PictureArea draw_frame();
   // What lies over the picture.
-  void draw_over(const PictureArea& area, double dt);
+  void draw_over(const PictureArea& area, const render::Camera& camera, double dt);
   void carry_out(const Command& command);
   void note(const FrameCost& cost) { performance_.note(cost); }
   // Background work of panels, for at most so long [s]; takes what it took.

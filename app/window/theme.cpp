@@ -105,6 +105,8 @@ void apply_theme(render::Theme theme, float scale) {
   chosen.grid = ImGui::GetColorU32(hex(tones.line, 0.7f));
   chosen.panel = ImGui::GetColorU32(hex(tones.panel));
   chosen.on_picture = ImGui::GetColorU32(hex(tones.panel, 0.88f));
+  chosen.mark = ImGui::GetColorU32(hex(dark ? 0xffe14a : 0xd1006c));
+  chosen.mark_ground = ImGui::GetColorU32(hex(dark ? 0x14060a : 0xffffff, 0.9f));
 }
 
 const Palette& palette() { return chosen; }

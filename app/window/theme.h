@@ -14,6 +14,7 @@ void apply_theme(render::Theme theme, float scale);
 // Colours beside ImGui's own, of the theme applied last.
 struct Palette {
   ImU32 accent, good, warning, bad, faint, grid, panel, on_picture;
+  ImU32 mark, mark_ground;  // of what must be seen wherever it lies on the picture, and of the edge around it
 };
 const Palette& palette();
 

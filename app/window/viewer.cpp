@@ -185,7 +185,7 @@ void Viewer::frame(double dt) {
   interface_.begin_frame();
   area_ = panels_.draw_frame();
   hands_.work(desk_, area_, shown_);
-  panels_.draw_over(area_, dt);
+  panels_.draw_over(area_, shown_, dt);
   draw_picture_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_);
   hands_.draw(desk_, area_, shown_);
   cost_.panels = since(panels_begin);

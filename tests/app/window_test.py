@@ -17,6 +17,15 @@ LEFT = ["Robots", "Browser", "Ranking"]
 RIGHT = ["See", "Tune", "Measure", "Film", "Time"]
 
 
+def robot_that_explodes(name):
+    """A row of masses; the spring in its middle, number 3, is far too stiff for the time step."""
+    masses = [[0.1 * i, 0, 0] for i in range(8)]
+    springs = [[i, i + 1, 2 if i == 3 else 1, 0.098] for i in range(7)]
+    materials = [{"stiffness": stiffness} for stiffness in (0, 50, 2.3e6)]
+    return {"format": "mercury-robot", "version": 1, "name": name, "materials": materials, "masses": masses,
+            "springs": springs, "faces": []}
+
+
 class WindowTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -147,6 +156,44 @@ class WindowTest(unittest.TestCase):
             deadline -= 1
         self.assertGreater(share, 0.0005)
         self.assertLess(share, 0.3)
+        self.finish(window)
+
+    def test_the_first_bad_spring_is_shown(self):
+        folder = scratch()
+        for name in ("one", "two"):
+            (folder / f"{name}.json").write_text(json.dumps(robot_that_explodes(name)))
+        window = self.open(str(folder / "one.json"), str(folder / "two.json"), "--paused")
+        window.frame(lambda frame: len(frame["where"]) == 2)
+        yellow, magenta = numpy.array([255, 225, 74]) / 255, numpy.array([209, 0, 108]) / 255
+
+        def marked(color, x, y, reach):
+            """How many pixels of a colour are within reach of a place, when the camera rests."""
+            while (before := window.frame()["distance"]) != window.frame()["distance"]:
+                self.assertGreater(before, 0)
+            near = window.screenshot()[max(0, y - reach):y + reach + 1, max(0, x - reach):x + reach + 1]
+            return int((numpy.abs(near - color).max(axis=2) < 0.04).sum())
+
+        self.assertEqual(marked(yellow, 640, 360, 400), 0)
+        window.key("space")
+        told = [window.wait("exploded", accept=lambda event, robot=robot: event["robot"] == robot) for robot in (1, 2)]
+        self.assertEqual([event["spring"] for event in told], [3, 3])
+        window.key("space")
+        window.place("panel.Explosion")
+        window.frame()  # where it stays
+        area, ends = window.items["picture"], ("explosion.a", "explosion.b")
+        for _ in range(2):  # each of them
+            window.click("explosion.show")
+            window.until("the spring in the picture", lambda: all(
+                abs(window.items[end]["x"] - area["x"]) < area["width"] / 2 and
+                abs(window.items[end]["y"] - area["y"]) < area["height"] / 2 for end in ends))
+            for end in ends:
+                self.assertGreater(marked(yellow, *window.place(end), 10), 60)
+            window.click("explosion.next")
+        window.key("b")
+        window.frame()
+        self.assertGreater(marked(magenta, *window.place("explosion.a"), 10), 60)
+        window.click("explosion.reset")
+        window.until("the card gone", lambda: "panel.Explosion" not in window.items and "explosion.a" not in window.items)
         self.finish(window)
 
     def test_a_dragged_mass_moves(self):

@@ -1,0 +1,91 @@
+// What Physics holds: what is asked of its thread, and what that thread works on.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "app/live/moment_pool.h"
+#include "app/live/pace.h"
+#include "app/live/physics.h"
+#include "app/live/population.h"
+
+namespace mercury {
+
+// What is asked for and not yet carried out.
+struct Orders {
+  std::optional<std::pair<std::vector<LiveRobot>, Configuration>> scene;
+  std::optional<ViewSettings> view;
+  std::optional<std::vector<LivePull>> pulls;
+  std::optional<bool> playing, pause_on_explosion;
+  std::optional<double> speed;
+  std::int64_t steps = 0;
+  bool drop_steps = false, reset = false, quit = false;
+  std::uint64_t ticket = 0;  // of the last who waits until all is done; 0 = nobody
+
+  bool any() const {
+    return scene || view || pulls || playing || pause_on_explosion || speed || steps > 0 || reset || quit || ticket > 0;
+  }
+};
+
+struct Physics::Parts {
+  Parts(const Configuration& configuration, Messages& all)
+      : messages(all), simulation(configuration), population(simulation), device(simulation.device_name()) {}
+
+  // Shared by both threads, under the mutex.
+  std::mutex mutex;
+  std::condition_variable asked, done;
+  Orders orders;
+  std::shared_ptr<const Moment> moment;
+  std::vector<Explosion> explosions;
+  bool looked_at = true;  // newest() was called since the last moment
+  std::uint64_t tickets = 0, tickets_done = 0;
+
+  Messages& messages;
+  Measurements measurements;
+
+  // The physics thread's own.
+  Simulation simulation;
+  Population population;
+  const std::string device;
+  MomentPool pool;
+  ViewSettings view;
+  std::optional<DetailObserver> details;
+  std::vector<LivePull> pulls;
+  std::vector<Telemetry> telemetry;
+  std::set<RobotId> exploded;
+  std::set<std::string> told_notes;
+  Pace pace;
+  SpeedGauge gauge;
+  bool playing = false, stop_at_explosion = false;
+  double speed = 1, step_seconds = 0;
+  std::int64_t steps_left = 0;  // asked for one by one
+  std::uint64_t ticket = 0;     // the last one taken
+  std::uint64_t resets = 0, stops = 0;
+  bool dirty = true;            // something changed since the last moment told
+  std::thread thread;           // last: begins when all else is there
+
+  void run();
+  bool take_orders(Orders& taken);
+  void carry_out(Orders& taken);
+  void guarded(auto work);
+  bool set_scene(const std::vector<LiveRobot>& robots, const Configuration& configuration);
+  void start_over();
+  void watch();
+  void begin_pace();
+  void advance();
+  void take_steps(std::int64_t count);
+  void note_explosions(bool stop);
+  void tell();
+};
+
+// Wall time [s].
+inline double wall_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace mercury

@@ -1,0 +1,71 @@
+// The physics thread's steps: so many as are due, in slices, with a look at the robots now and then.
+#include <algorithm>
+
+#include "app/live/physics_parts.h"
+
+namespace mercury {
+namespace {
+
+constexpr double slice_seconds = 0.006;  // of wall time between two looks at what is asked for
+
+}  // namespace
+
+void Physics::Parts::begin_pace() {
+  pace.start(wall_now(), speed, simulation.configuration().dt);
+  gauge.clear();
+  gauge.mark(wall_now(), simulation.time());
+}
+
+// One slice, of what is due.
+void Physics::Parts::advance() {
+  if (steps_left == 0 && !playing) return;
+  const auto affordable = step_seconds > 0 ? static_cast<std::int64_t>(std::clamp(slice_seconds / step_seconds, 1.0, 1e6)) : 1;
+  if (steps_left > 0) {
+    const std::int64_t count = std::min(affordable, steps_left);
+    take_steps(count);
+    steps_left = std::max<std::int64_t>(0, steps_left - count);
+    return;
+  }
+  const std::int64_t count = std::min(affordable, pace.due(wall_now()));
+  if (count <= 0) return;
+  take_steps(count);
+  pace.done(count);
+  gauge.mark(wall_now(), simulation.time());
+}
+
+// Samples are taken on the way, at steps of their own.
+void Physics::Parts::take_steps(std::int64_t count) {
+  const std::int64_t target = simulation.steps() + count;
+  double spent = 0;
+  while (simulation.steps() < target) {
+    const std::int64_t sample = std::max(measurements.next_step(), simulation.steps() + 1);
+    const std::int64_t stop = std::min(target, sample);
+    const double start = wall_now();
+    simulation.step(stop - simulation.steps());
+    spent += wall_now() - start;
+    if (stop != sample && stop != target) continue;
+    telemetry = simulation.telemetry();
+    measurements.observe(simulation.time(), simulation.steps(), telemetry);
+    note_explosions(stop_at_explosion);
+    if (!playing && steps_left == 0) break;  // stopped by an explosion
+  }
+  const double each = spent / static_cast<double>(count);
+  step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
+  dirty = true;
+}
+
+void Physics::Parts::note_explosions(bool stop) {
+  const LiveRobots& robots = *population.robots();
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!telemetry[i].exploded || !exploded.insert(robots.robots[i].id).second) continue;
+    if (stop) {
+      playing = false;
+      steps_left = 0;
+      ++stops;
+    }
+    const std::lock_guard lock(mutex);
+    explosions.push_back({robots.robots[i].id, telemetry[i].exploded_at, telemetry[i].first_bad_spring});
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,170 @@
+// The physics thread: what is asked for is taken, carried out, and what came of it told.
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "app/face_forces.h"
+#include "app/live/physics_parts.h"
+
+namespace mercury {
+
+void Physics::Parts::run() {
+  begin_pace();
+  Orders taken;
+  while (take_orders(taken)) {
+    guarded([&] { carry_out(taken); });
+    guarded([&] { advance(); });
+    bool wanted;
+    {
+      const std::lock_guard lock(mutex);
+      wanted = looked_at || ticket > tickets_done;
+    }
+    if (!dirty || !wanted) continue;
+    dirty = false;  // also when it fails: not again before something else changes
+    guarded([&] { tell(); });
+  }
+}
+
+// Waits for orders, or for the next step's time. False when it is time to go.
+bool Physics::Parts::take_orders(Orders& taken) {
+  const auto due = std::chrono::steady_clock::time_point(
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
+          playing && std::isfinite(speed) ? std::min(pace.next_due(), wall_now() + 1) : 0)));
+  std::unique_lock lock(mutex);
+  const auto ready = [&] { return orders.any() || (dirty && (looked_at || ticket > tickets_done)); };
+  if (steps_left == 0 && !ready()) {
+    tickets_done = ticket;
+    done.notify_all();
+    if (playing)
+      asked.wait_until(lock, due, ready);
+    else
+      asked.wait(lock, ready);
+  }
+  taken = std::exchange(orders, {});
+  ticket = std::max(ticket, taken.ticket);
+  return !taken.quit;
+}
+
+// The window must not end because physics failed: it is told, and physics rests.
+void Physics::Parts::guarded(auto work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    messages.add(Severity::error, error.what());
+    playing = false;
+    steps_left = 0;
+    ++stops;
+  }
+}
+
+void Physics::Parts::carry_out(Orders& taken) {
+  if (!taken.any()) return;
+  dirty = true;
+  if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
+  const bool other_dt = taken.scene && taken.scene->second.dt != simulation.configuration().dt;
+  const bool others = taken.scene && set_scene(taken.scene->first, taken.scene->second);
+  if (taken.view) view = *taken.view;
+  if (taken.view || others) watch();
+  if (taken.reset) {
+    simulation.reset();
+    population.forget_departed();
+    telemetry = simulation.telemetry();
+    exploded.clear();
+    steps_left = 0;
+    ++resets;
+    measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
+    measurements.observe(0, 0, telemetry);
+  }
+  if (taken.pulls) pulls = std::move(*taken.pulls);
+  if (taken.pulls || taken.scene) simulation.set_pulls(population.pulls_of(pulls));
+  if (taken.speed) speed = *taken.speed;
+  if (taken.playing) playing = *taken.playing;
+  if (taken.drop_steps) steps_left = 0;
+  steps_left += taken.steps;
+  if (taken.playing || taken.speed || taken.reset || others || other_dt) begin_pace();
+}
+
+// Whether there are other robots now, or another kind of environment.
+bool Physics::Parts::set_scene(const std::vector<LiveRobot>& robots, const Configuration& configuration) {
+  const bool first = simulation.size() == 0 && simulation.steps() == 0;
+  const bool other_dt = configuration.dt != simulation.configuration().dt;
+  const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
+  simulation.configure(configuration);
+  simulation.set_pulls({});
+  bool changed = false;
+  try {
+    changed = population.follow(robots);
+  } catch (...) {
+    start_over();
+    throw;
+  }
+  telemetry = simulation.telemetry();
+  if (first || (other_dt && simulation.steps() == 0))
+    measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration.dt, telemetry);
+  else
+    measurements.set_robots(*population.robots(), simulation.time(), telemetry);
+  if (first) measurements.observe(simulation.time(), simulation.steps(), telemetry);
+  if (!changed) return moved;
+  std::erase_if(exploded, [&](RobotId id) { return !population.robots()->index_of(id); });
+  note_explosions(false);  // of robots that came back as they were
+  for (const std::string& note : simulation.notes())
+    if (told_notes.insert(note).second) messages.add(Severity::note, note);
+  return true;
+}
+
+// A simulation that could not take its robots, as for want of memory, is left half changed: an empty one takes its place.
+void Physics::Parts::start_over() {
+  details.reset();
+  simulation = Simulation(simulation.configuration());
+  population.start_over();
+  telemetry.clear();
+  exploded.clear();
+  ++resets;
+  measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
+}
+
+// Details that this environment knows.
+void Physics::Parts::watch() {
+  details.reset();
+  const Environment& environment = simulation.configuration().environment;
+  ViewSettings known = view;
+  if (!has_face_forces(environment)) {
+    known.shown.arrows.drag = known.shown.arrows.lift = false;
+    if (known.color == ColorBy::pressure) known.color = ColorBy::material;
+  }
+  details.emplace(simulation, known);
+}
+
+void Physics::Parts::tell() {
+  const double start = wall_now();
+  std::shared_ptr<Moment> next = pool.take();
+  next->robots = population.robots();
+  next->configuration = simulation.configuration();
+  next->time = simulation.time();
+  next->steps = simulation.steps();
+  next->resets = resets;
+  next->stops = stops;
+  next->positions.resize(simulation.mass_count());
+  next->velocities.resize(simulation.mass_count());
+  simulation.read_positions(next->positions);
+  simulation.read_velocities(next->velocities);
+  telemetry = simulation.telemetry();
+  next->telemetry = telemetry;
+  next->details = details ? details->observe(telemetry) : SceneDetails{};
+  next->color = details ? details->color() : ColorBy::material;
+  next->pulls.clear();
+  for (const LivePull& pull : pulls)
+    if (!population.pulls_of({&pull, 1}).empty()) next->pulls.push_back(pull);
+  next->playing = playing;
+  next->speed = speed;
+  next->achieved_speed = playing ? gauge.speed() : 0;
+  next->step_seconds = step_seconds;
+  next->springs_per_second =
+      step_seconds > 0 && (playing || steps_left > 0) ? static_cast<double>(population.robots()->springs) / step_seconds : 0;
+  next->telling_seconds = wall_now() - start;
+  const std::lock_guard lock(mutex);
+  moment = std::move(next);
+  looked_at = false;
+}
+
+}  // namespace mercury
