@@ -81,7 +81,7 @@ class LiveScene {
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
   void add(std::vector<Robot> robots, bool unsaved = true);     // `unsaved`: they are kept nowhere else
-  void open(const std::vector<std::filesystem::path>& paths);   // files and folders; in the background
+  void open(const std::vector<std::filesystem::path>& paths);   // files and folders, recordings for their robots; in the background
   void generate(const Generation& generation, bool replace = false);  // in the background; replace = instead of all
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);

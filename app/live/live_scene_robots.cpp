@@ -8,6 +8,7 @@
 #include "app/live/live_scene_parts.h"
 #include "app/robot_output.h"
 #include "app/trajectory_layout.h"
+#include "app/trajectory_reader.h"
 #include "robots/file.h"
 #include "robots/origin.h"
 #include "robots/random.h"
@@ -46,19 +47,46 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
   return files;
 }
 
+// A recording's robots, at rest.
+void read_recording(const fs::path& file, std::vector<OpenedRobot>& opened, Messages& messages) {
+  const TrajectoryReader recording(file);
+  for (const RecordedRobot& recorded : recording.robots()) opened.push_back({"", recorded.robot});
+  messages.add(Severity::note, fmt::format("{}: the recording's {}, at rest; mercury render plays it", file.string(),
+                                           robots_counted(recording.robots().size())));
+}
+
+void read_file(const fs::path& file, std::vector<OpenedRobot>& opened, Messages& messages) {
+  if (is_trajectory_name(file.string())) {
+    read_recording(file, opened, messages);
+    return;
+  }
+  if (file.extension() == ".toml")
+    throw InputError(file.string(), "holds options, not robots; give it to mercury view --config");
+  opened.push_back({file.string(), load_robot(file)});
+}
+
+// What one of many files is no use for, one line each; of many the first ones.
+void tell_failures(const std::vector<std::string>& failures, Messages& messages) {
+  constexpr std::size_t most = 4;
+  const std::size_t told = failures.size() > most ? most - 1 : failures.size();
+  for (std::size_t i = 0; i < told; ++i) messages.add(Severity::error, failures[i]);
+  if (told < failures.size()) messages.add(Severity::error, fmt::format("and {} more files cannot be used", failures.size() - told));
+}
+
 std::vector<OpenedRobot> read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
   std::vector<OpenedRobot> opened;
+  std::vector<std::string> failures;
+  std::int64_t done = 0;
   for (const fs::path& file : files) {
     if (control.cancelled()) break;
     try {
-      if (is_trajectory_name(file.string()))
-        throw InputError(file.string(), "is a recording; mercury render plays it, here open robots");
-      opened.push_back({file.string(), load_robot(file)});
+      read_file(file, opened, messages);
     } catch (const InputError& error) {
-      messages.add(Severity::error, error.what());
+      failures.emplace_back(error.what());
     }
-    control.progress(static_cast<std::int64_t>(opened.size()));
+    control.progress(++done);
   }
+  tell_failures(failures, messages);
   return opened;
 }
 

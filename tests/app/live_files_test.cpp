@@ -79,7 +79,58 @@ TEST_F(LiveFiles, OpensWhatCanBeReadAndTellsOfTheRest) {
   ASSERT_THAT(messages, SizeIs(3));
   EXPECT_THAT(messages[0].text, HasSubstr("broken.json"));
   EXPECT_THAT(messages[1].text, HasSubstr("missing.json"));
-  EXPECT_THAT(messages[2].text, HasSubstr("recording"));
+  EXPECT_THAT(messages[2].text, HasSubstr("run.h5"));
+}
+
+TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
+  const test::Outcome run = test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
+  ASSERT_EQ(run.status, 0) << run.messages;
+  LiveScene scene(test::on_cpu());
+  scene.open({path("swim.h5")});
+  scene.wait_until_done();
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
+  EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(0), random_voxel_robot({}, 5, 0).masses));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(1));
+  EXPECT_EQ(messages[0].severity, Severity::note);
+  EXPECT_THAT(messages[0].text, HasSubstr("2 robots, at rest"));
+}
+
+TEST_F(LiveFiles, WhatIsDroppedInOneGoLoadsWhereItCanAndTheRestIsTold) {
+  // As a drop hands it over: files of all kinds, folders, names with anything in them.
+  save_robot(path("a b%20\xc3\xa9 '#?.json"), random_voxel_robot({}, 1, 0));
+  std::filesystem::create_directories(folder_ / "many" / "inner");
+  std::filesystem::create_directories(folder_ / "empty");
+  save_robot(path("many/one.json"), random_voxel_robot({}, 1, 1));
+  save_robot(path("many/two.cbor"), random_voxel_robot({}, 1, 2));
+  write("picture.png", "\x89PNG");
+  write("scene.toml", "dt = 0.01\n");
+  write("cut.cbor", read("many/two.cbor").substr(0, 100));
+  LiveScene scene(test::on_cpu());
+  scene.open({path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"), path("scene.toml"),
+              path("cut.cbor")});
+  scene.wait_until_done();
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-0", "voxel-1-1", "voxel-1-2"));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(4));
+  EXPECT_THAT(messages[0].text, HasSubstr("empty: the folder holds no robot"));
+  EXPECT_THAT(messages[1].text, HasSubstr("picture.png"));
+  EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: holds options, not robots; give it to mercury view --config"));
+  EXPECT_THAT(messages[3].text, HasSubstr("cut.cbor"));
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.entries(), IsEmpty()) << "one drop is one edit";
+}
+
+TEST_F(LiveFiles, ManyFilesThatCannotBeUsedMakeFewMessages) {
+  for (int i = 0; i < 30; ++i) write("broken-" + std::to_string(i) + ".json", "{");
+  LiveScene scene(test::on_cpu());
+  scene.open({folder_});
+  scene.wait_until_done();
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(4));
+  EXPECT_EQ(messages[3].text, "and 27 more files cannot be used");
 }
 
 TEST_F(LiveFiles, SavesWhatIsThereAndNeverReplacesUnasked) {

@@ -142,6 +142,14 @@ class Window:
     def type(self, text):
         self.do("type", "--delay", "25", text)
 
+    def drop(self, *paths):
+        """Files and folders, dropped on the middle of the picture as a file manager does."""
+        found = subprocess.run(["xdotool", "search", "--class", "mercury"], env=self.environment, check=True,
+                               capture_output=True, text=True).stdout.split()
+        x, y = self.place("picture")
+        subprocess.run([sys.executable, "-B", str(Path(__file__).with_name("drop_files.py")), found[-1], str(x), str(y),
+                        *map(str, paths)], env=self.environment, check=True)
+
     def screenshot(self):
         """The window as a picture: height x width x 3, 0 to 1."""
         import matplotlib.image

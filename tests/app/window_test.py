@@ -133,6 +133,27 @@ class WindowTest(unittest.TestCase):
         self.assertIn("/springs/0", told["text"])
         self.finish(window)
 
+    def test_files_dropped_on_the_window_are_opened(self):
+        window = self.small("--paused")
+        inner = self.folder / "a folder, #1"
+        inner.mkdir()
+        for name in ("ray", "squid"):
+            shutil.copy(SAMPLES / f"{name}.json", inner)
+        odd = self.folder / "t\u00fcrtle 100%.json"
+        shutil.copy(SAMPLES / "turtle.json", odd)
+        (self.folder / "notes.txt").write_text("no robot")
+        (self.folder / "broken.json").write_text("{")
+        since = window.mark()
+        window.drop(inner, self.folder / "notes.txt", odd, self.folder / "broken.json")
+        self.assertEqual(window.wait("dropped", since)["files"], 4)
+        robots = window.wait("robots", since, lambda event: event["count"] == 5)
+        self.assertEqual(robots["names"], ["eel", "fish", "ray", "squid", "turtle"])
+        for text in ("notes.txt", "broken.json"):
+            window.wait("message", since, lambda event, text=text: event["tone"] == "error" and text in event["text"])
+        window.key("ctrl+z")
+        window.wait("robots", since, lambda event: event["names"] == ["eel", "fish"])
+        self.finish(window)
+
     def test_drag_arrows_are_seen(self):
         window = self.small()
         window.frame(lambda frame: frame["time"] > 0.3)
