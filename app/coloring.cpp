@@ -24,13 +24,15 @@ struct Quantity {
   float least;  // the scale's smallest end
 };
 
-constexpr std::array<Quantity, 6> quantities{{
+constexpr std::array<Quantity, 8> quantities{{
     {ColorBy::material, "material", "", render::Colormap::viridis, false, 1},
     {ColorBy::activation, "activation", "%", render::Colormap::diverging, true, 1},
     {ColorBy::strain, "strain", "%", render::Colormap::diverging, true, 1},
     {ColorBy::force, "force", "N", render::Colormap::diverging, true, 0.01f},
     {ColorBy::speed, "speed", "m/s", render::Colormap::viridis, false, 0.001f},
     {ColorBy::pressure, "pressure", "Pa", render::Colormap::turbo, false, 0.001f},
+    {ColorBy::energy, "energy", "mJ", render::Colormap::viridis, false, 0.01f},
+    {ColorBy::stiffness, "stiffness", "N/m", render::Colormap::viridis, false, 1},
 }};
 
 const Quantity& quantity(ColorBy by) { return quantities[static_cast<std::size_t>(by)]; }
@@ -39,9 +41,12 @@ float contraction(const MaterialNow& material) { return 100 * (1 - material.leng
 
 float spring_value(ColorBy by, const Spring& spring, const MaterialNow& material, std::span<const Vec3> positions) {
   if (by == ColorBy::activation) return contraction(material);
+  if (by == ColorBy::stiffness) return material.stiffness;
   const float length_now = length(positions[spring.b] - positions[spring.a]);
   if (by == ColorBy::strain) return 100 * (length_now / spring.rest_length - 1);
-  return material.stiffness * (length_now - spring.rest_length * material.length_factor);
+  const float stretch = length_now - spring.rest_length * material.length_factor;
+  if (by == ColorBy::energy) return 1000 * material.stiffness * stretch * stretch / 2;
+  return material.stiffness * stretch;
 }
 
 // Each mass gets the mean of its springs.
@@ -96,8 +101,9 @@ ColorValues Coloring::values(const GroupState& state) const {
   ColorValues values;
   const auto is = [&](std::initializer_list<ColorBy> any) { return std::find(any.begin(), any.end(), by_) != any.end(); };
   if (is({ColorBy::activation, ColorBy::pressure})) values.face.resize(face_offsets_.back());
-  if (is({ColorBy::activation, ColorBy::strain, ColorBy::force})) values.spring.resize(spring_offsets_.back());
-  if (is({ColorBy::strain, ColorBy::force, ColorBy::speed})) values.mass.resize(state.positions.size());
+  const bool of_springs = is({ColorBy::strain, ColorBy::force, ColorBy::energy, ColorBy::stiffness});
+  if (of_springs || by_ == ColorBy::activation) values.spring.resize(spring_offsets_.back());
+  if (of_springs || by_ == ColorBy::speed) values.mass.resize(state.positions.size());
   tbb::parallel_for(std::size_t{0}, simulation_.size(), [&](std::size_t i) { fill(values, i, state); });
   return values;
 }

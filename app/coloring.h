@@ -19,9 +19,11 @@ enum class ColorBy {
   force,       // of a spring, positive = it pulls its ends together [N]
   speed,       // of a mass [m/s]
   pressure,    // of the water on a face, |F| / A [Pa]
+  energy,      // elastic, of a spring, k (|d| - L)^2 / 2 [mJ]
+  stiffness,   // of a spring, times the environment's scale [N/m]
 };
 
-// "material", ..., "pressure".
+// "material", ..., "stiffness".
 std::string_view name_of(ColorBy by);
 // Throws InputError("--color: ...") that lists them.
 ColorBy color_named(std::string_view name);

@@ -60,7 +60,7 @@ Shown shown_from(const std::string& text) {
 
 void ViewOptions::add_to(CLI::App& command) {
   const auto add = [](CLI::Option* option) { option->group("View"); };
-  add(add_choice(command, "--color", color_, {"material", "activation", "strain", "force", "speed", "pressure"},
+  add(add_choice(command, "--color", color_, {"material", "activation", "strain", "force", "speed", "pressure", "energy", "stiffness"},
                  "Colour by (default material)"));
   add(add_value(command, "--scale", scale_, "Ends of the colours' scale (default: fits)", "LOW,HIGH", range_from));
   add(add_value(command, "--show", shown_,

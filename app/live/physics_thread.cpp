@@ -132,6 +132,7 @@ void Physics::Parts::watch() {
     known.shown.arrows.drag = known.shown.arrows.lift = false;
     if (known.color == ColorBy::pressure) known.color = ColorBy::material;
   }
+  if (!std::holds_alternative<Land>(environment)) known.shown.arrows.contact = false;
   details.emplace(simulation, known);
 }
 

@@ -15,7 +15,7 @@ namespace mercury::window {
 namespace {
 
 std::string figures_of(const FolderEntry& entry) {
-  return fmt::format("{} springs\n{:.2g} x {:.2g} x {:.2g} m", entry.figures.springs, entry.figures.extent.x, entry.figures.extent.y,
+  return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs, entry.figures.extent.x, entry.figures.extent.y,
                      entry.figures.extent.z);
 }
 
@@ -123,7 +123,7 @@ void BrowserPanel::draw(Desk& desk) {
 void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
   const FolderEntry& entry = entries_[index];
   const float line = ImGui::GetTextLineHeight(), picture = width * Thumbnails::height / Thumbnails::width;
-  const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, picture + 3.3f * line};
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, picture + 3.5f * line};
   ImGui::PushID(static_cast<int>(index));
   const bool clicked = ImGui::InvisibleButton("card", size);
   const bool hovered = ImGui::IsItemHovered();
@@ -144,7 +144,7 @@ void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
   const std::string name = entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
   list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text), shortened(name, width - 2 * margin).c_str());
   if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, figures_of(entry).c_str());
-  if (hovered) tooltip(entry);
+  if (hovered && rests_here()) tooltip(entry);
   if (clicked && entry.robot) desk.scene.add({*entry.robot});
   if (clicked && !entry.robot) desk.toasts.say(Tone::error, entry.error);
 }

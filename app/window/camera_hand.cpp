@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace mercury::window {
 namespace {
@@ -68,6 +69,18 @@ void CameraHand::start(std::span<const render::Bounds> robots, float aspect) {
   field_of_view = orbit_.field_of_view;
   if (!all_of(robots).empty()) orbit_.frame(robots, aspect, margin);
   glide_ = 0;
+}
+
+CameraPlan CameraHand::plan() const {
+  CameraPlan plan{.mode = mode_, .field_of_view = field_of_view, .period = static_cast<double>(turn_period)};
+  if (mode_ == CameraMode::follow && robot_) plan.robot = std::to_string(*robot_);
+  if (mode_ == CameraMode::top) return plan;
+  plan.azimuth = orbit_.azimuth;
+  plan.elevation = orbit_.elevation;
+  if (mode_ != CameraMode::still) return plan;
+  plan.target = orbit_.target;
+  plan.distance = orbit_.distance;
+  return plan;
 }
 
 void CameraHand::glide_to(const render::Orbit& wanted, double dt, double lag) {

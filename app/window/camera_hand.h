@@ -35,6 +35,9 @@ class CameraHand {
   const render::Orbit& orbit() const { return orbit_; }
   void set_orbit(const render::Orbit& orbit);
 
+  // For a video that is to look alike.
+  CameraPlan plan() const;
+
   float turn_period = 20;    // of the turntable [s]
   float field_of_view = 0.6f;  // [rad]
   // Whether it still moves by itself.

@@ -58,7 +58,11 @@ void save_with_care(Desk& desk, const std::string& what, std::function<SaveResul
   const std::string question = result.files.size() == 1
                                    ? fmt::format("{} is there already.", result.files.front().string())
                                    : fmt::format("{} files are there already: {}", result.files.size(), list_of(result.files));
-  desk.dialogs.ask("Replace?", question, "Replace", [&desk, what, save] { tell(desk, what, save(true)); });
+  desk.dialogs.ask({.title = "Replace?",
+                    .text = question,
+                    .button = "Replace",
+                    .act = [&desk, what, save] { tell(desk, what, save(true)); },
+                    .refused = [&desk] { desk.dialogs.ask_files_again(); }});
 }
 
 }  // namespace mercury::window

@@ -3,29 +3,46 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/window/actions.h"
 #include "app/window/widgets.h"
 
 namespace mercury::window {
 
-void Dialogs::ask(std::string title, std::string question, std::string button, std::function<void()> act) {
-  ask_text(std::move(title), std::move(question), "", std::move(button), [act = std::move(act)](const std::string&) { act(); });
-  wants_text_ = false;
+void Dialogs::ask(Question question) {
+  question_ = std::move(question);
+  act_with_text_ = nullptr;
+  open_ = fresh_ = true;
+  accepted_ = refused_ = false;
 }
 
 void Dialogs::ask_text(std::string title, std::string question, std::string text, std::string button,
                        std::function<void(const std::string&)> act) {
-  title_ = std::move(title);
-  question_ = std::move(question);
+  ask({.title = std::move(title), .text = std::move(question), .button = std::move(button), .act = {}});
+  files_.forget();
   text_ = std::move(text);
-  button_ = std::move(button);
-  act_ = std::move(act);
-  wants_text_ = open_ = fresh_ = true;
-  accepted_ = false;
+  act_with_text_ = std::move(act);
+}
+
+void Dialogs::close() {
+  if (open_)
+    refused_ = true;
+  else
+    files_.close();
+}
+
+void Dialogs::press(const Press& press) {
+  if (files_.open() && !open_) files_.press(press);
+  if (open_ && is_enter(press)) accepted_ = true;
 }
 
 void Dialogs::draw(Observations& observations) {
+  files_.draw(observations);
+  draw_question(observations);
+}
+
+void Dialogs::draw_question(Observations& observations) {
   if (!open_ && !shown_) return;
-  const std::string id = title_ + "###dialog";
+  const std::string id = question_.title + "###dialog";
   if (open_ && fresh_) ImGui::OpenPopup(id.c_str());
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
@@ -36,38 +53,49 @@ void Dialogs::draw(Observations& observations) {
     return;
   }
   shown_ = open_;
-  if (!open_) {  // Esc
-    ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-    return;
-  }
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(question_.c_str());
+  ImGui::TextUnformatted(question_.text.c_str());
   ImGui::PopTextWrapPos();
-  bool accepted = accepted_ && !fresh_;
-  if (wants_text_) {
+  // What was typed before Enter counts.
+  bool accepted = accepted_ && !fresh_, other = false;
+  if (act_with_text_) {
     if (fresh_) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1);
     accepted |= text_field("##text", text_);
     observations.item("dialog.text");
   }
   fresh_ = false;
-  const float width = std::max(7 * text, ImGui::CalcTextSize(button_.c_str()).x + 2 * text);
+  const float width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
   ImGui::Dummy({0, 0.2f * text});
-  const float room = ImGui::GetContentRegionAvail().x - 2 * width - ImGui::GetStyle().ItemSpacing.x;
+  const float buttons = question_.other_button.empty() ? 2 : 3;
+  const float room = ImGui::GetContentRegionAvail().x - buttons * width - (buttons - 1) * ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
-  const bool refused = ImGui::Button("Cancel", {width, 0});
+  const bool refused = ImGui::Button("Cancel", {width, 0}) || refused_;
   observations.item("dialog.cancel");
   ImGui::SameLine();
-  accepted |= ImGui::Button(button_.c_str(), {width, 0});
+  if (!question_.other_button.empty()) {
+    other = ImGui::Button(question_.other_button.c_str(), {width, 0});
+    observations.item("dialog.other");
+    ImGui::SameLine();
+  }
+  accepted |= ImGui::Button(question_.button.c_str(), {width, 0});
   observations.item("dialog.accept");
-  if (accepted || refused) {
-    open_ = shown_ = accepted_ = false;
+  if (accepted || refused || other) {
+    open_ = shown_ = accepted_ = refused_ = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
-  // It may open the next dialog.
-  if (accepted) std::exchange(act_, nullptr)(text_);
+  // Any of them may open the next dialog, in the place of this one.
+  const Question asked = question_;
+  const auto with_text = act_with_text_;
+  if (refused && asked.refused) asked.refused();
+  if (refused) return;
+  if (other)
+    asked.other_act();
+  else if (accepted && with_text)
+    with_text(text_);
+  else if (accepted)
+    asked.act();
 }
 
 }  // namespace mercury::window

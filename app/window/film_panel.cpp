@@ -87,6 +87,9 @@ void FilmPanel::draw_group(Desk& desk) {
     options_.size = sizes[static_cast<std::size_t>(size_)];
     options_.frames_per_second = rate_;
     options_.quality = desk.preferences.quality;
+    ViewSettings view = desk.scene.view();
+    view.camera = desk.camera.plan();
+    desk.scene.set_view(view);
     group_ = desk.scene.film(options_);
     desk.observations.tell("filming", {{"file", options_.output}});
   }

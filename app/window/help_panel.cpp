@@ -47,8 +47,12 @@ void mouse() {
 void draw_help(bool& open, Observations& observations) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(0.96f * screen.x, 58 * text), std::min(0.98f * screen.y, 41.5f * text)}, ImGuiCond_Appearing);
+  const ImVec2 size{std::min(0.96f * screen.x, 58 * text), std::min(0.96f * screen.y, 41.5f * text)};
+  // The menu's line keeps windows from its place.
+  const float top = std::max((screen.y - size.y) / 2, ImGui::GetFrameHeight() + 0.2f * text);
+  ImGui::SetNextWindowPos({(screen.x - size.x) / 2, top}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize({size.x, std::min(size.y, screen.y - top - 0.2f * text)}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     observations.item("panel.Help", ImGui::GetWindowPos(),
                       {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});

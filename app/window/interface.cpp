@@ -1,10 +1,15 @@
 #include "app/window/interface.h"
 
 #include <epoxy/gl.h>
+// Only after epoxy, which brings OpenGL.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "app/window/embedded.h"
@@ -42,7 +47,7 @@ Interface::Interface(Window& window, const std::filesystem::path& layout_file)
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
-  ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+  ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
   ImGui_ImplOpenGL3_Init("#version 450");
 }
 
@@ -68,15 +73,50 @@ void Interface::build_fonts() {
   apply_theme(theme_, scale);
 }
 
-void Interface::begin_frame() {
+void Interface::feed(const InputEvent& event) {
+  GLFWwindow* window = window_.handle();
+  switch (event.kind) {
+    case InputEvent::Kind::move:
+      pointer_.x = static_cast<float>(event.x);
+      pointer_.y = static_cast<float>(event.y);
+      pointer_.inside = true;
+#if IMGUI_VERSION_NUM >= 18700
+      ImGui_ImplGlfw_CursorPosCallback(window, event.x, event.y);
+#endif
+      break;
+    case InputEvent::Kind::enter:
+      pointer_.inside = event.on;
+      ImGui_ImplGlfw_CursorEnterCallback(window, event.on);
+      break;
+    case InputEvent::Kind::focus: ImGui_ImplGlfw_WindowFocusCallback(window, event.on); break;
+    case InputEvent::Kind::button:
+      if (event.code >= 0 && event.code < static_cast<int>(pointer_.down.size()))
+        pointer_.down[static_cast<std::size_t>(event.code)] = event.action == GLFW_PRESS;
+      ImGui_ImplGlfw_MouseButtonCallback(window, event.code, event.action, event.mods);
+      break;
+    case InputEvent::Kind::scroll: ImGui_ImplGlfw_ScrollCallback(window, event.x, event.y); break;
+    case InputEvent::Kind::key: ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode, event.action, event.mods); break;
+    case InputEvent::Kind::character: ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code)); break;
+  }
+}
+
+void Interface::begin_frame(const std::vector<InputEvent>& events) {
   if (const float scale = window_.content_scale(); scale != screen_scale_) {
     screen_scale_ = scale;
     changed_ = true;
   }
   if (changed_) build_fonts();
   changed_ = false;
+  for (const InputEvent& event : events) feed(event);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+#if IMGUI_VERSION_NUM < 18700
+  // It asks GLFW, which tells where the pointer is by now.
+  ImGuiIO& io = ImGui::GetIO();
+  const bool held = std::find(pointer_.down.begin(), pointer_.down.end(), true) != pointer_.down.end();
+  io.MousePos = pointer_.inside || held ? ImVec2(pointer_.x, pointer_.y) : ImVec2(-FLT_MAX, -FLT_MAX);
+  std::copy(pointer_.down.begin(), pointer_.down.end(), io.MouseDown);
+#endif
   ImGui::NewFrame();
 }
 
@@ -84,6 +124,8 @@ void Interface::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
+
+void Interface::end_unseen() { ImGui::EndFrame(); }
 
 ImFont* large_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
 

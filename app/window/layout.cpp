@@ -53,9 +53,9 @@ void Column::draw_tabs(Desk& desk, std::string& open) {
       desk.observations.tell("panel", {{"name", open}});
     }
     ImGui::PopStyleColor();
-    // Below the tabs, so that it hides none.
+    // Below the tabs, so that it hides none; the open panel explains itself.
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    if (ImGui::IsItemHovered()) {
+    if (!on && ImGui::IsItemHovered()) {
       ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
                               {right_ ? 1.0f : 0.0f, 0});
       hint(panel.meaning);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/window/plot.h"
+#include "app/window/robot_files.h"
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
 
@@ -23,18 +24,6 @@ struct Curve {
 std::string name_of_robot(const LiveScene& scene, RobotId robot) {
   const DocumentRobot* found = scene.document().find(robot);
   return found ? found->body.name : "?";
-}
-
-void save_csv(Desk& desk, const char* title, const char* name, std::function<std::string()> csv) {
-  const std::filesystem::path folder = desk.preferences.save_folder;
-  desk.dialogs.ask_text(title, "File:", folder.empty() ? name : (folder / name).string(), "Save",
-                        [&desk, csv = std::move(csv)](const std::string& path) {
-                          if (path.empty()) return;
-                          const std::string text = csv();
-                          save_with_care(desk, "CSV", [&desk, path, text](bool overwrite) {
-                            return desk.scene.save_text(path, text, overwrite);
-                          });
-                        });
 }
 
 }  // namespace
@@ -91,7 +80,7 @@ void MeasurePanel::draw_plots(Desk& desk) {
 
 void MeasurePanel::draw_exports(Desk& desk) {
   if (ImGui::Button("Save as CSV...", {-1, 0}))
-    save_csv(desk, "Save measurements", "measurements.csv", [&desk] { return desk.scene.csv(chosen_robots(desk.scene)); });
+    save_csv(desk, "measurements", [&desk] { return desk.scene.csv(chosen_robots(desk.scene)); });
   desk.observations.item("measure.csv");
   hint("all quantities over time, of the selected robots, or of all");
 }
@@ -145,7 +134,7 @@ void RankingPanel::draw(Desk& desk, float aspect) {
         const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy, row.largest_strain};
         for (const double number : numbers) {
           ImGui::TableNextColumn();
-          ImGui::TextUnformatted(fmt::format("{:.3g}", number).c_str());
+          right_aligned(fmt::format("{:.3g}", number));
         }
         ImGui::PopID();
       }
@@ -153,7 +142,7 @@ void RankingPanel::draw(Desk& desk, float aspect) {
   }
   note("distance in m, speeds in m/s, energy in J; a click on a heading sorts");
   if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
-    save_csv(desk, "Save the ranking", "ranking.csv", [&desk] { return desk.scene.ranking_csv(); });
+    save_csv(desk, "ranking", [&desk] { return desk.scene.ranking_csv(); });
   desk.observations.item("ranking.csv");
 }
 

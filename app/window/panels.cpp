@@ -8,6 +8,7 @@
 
 #include "app/window/help_panel.h"
 #include "app/window/play_bar.h"
+#include "app/window/robot_files.h"
 #include "app/window/see_panel.h"
 #include "app/window/theme.h"
 #include "app/window/tune_panel.h"
@@ -23,6 +24,9 @@ void draw_see(Desk& desk) {
 }
 
 void copy_as_command(Desk& desk, const char* subcommand) {
+  ViewSettings view = desk.scene.view();
+  view.camera = desk.camera.plan();
+  desk.scene.set_view(view);
   const CommandText command = desk.scene.command(subcommand);
   ImGui::SetClipboardText(command.text.c_str());
   desk.observations.tell("copied", {{"text", command.text}});
@@ -55,7 +59,7 @@ Panels::Panels(Desk& desk, Window& window, PictureView& picture)
               {"Tune", "solver, environment, materials", [this] { draw_tune(desk_, materials_); }},
               {"Measure", "plots over time", [this] { measure_.draw(desk_); }},
               {"Film", "videos and pictures", [this] { film_.draw(desk_, [this] { screenshot_wanted_ = true; }); }},
-              {"Time", "where the computer's time goes",
+              {"Stats", "where the computer's time goes",
                [this] { performance_.draw(desk_.scene.moment(), picture_, desk_.scene.device_name(), window_.context().describe()); }}}) {}
 
 PictureArea Panels::draw_frame() {
@@ -162,7 +166,7 @@ void Panels::carry_out(const Command& command) {
     case Action::real_time: scene.set_speed(1); break;
     case Action::as_fast_as_it_goes: scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed); break;
     case Action::reset: scene.reset(); break;
-    case Action::new_random: robots_.generate(desk_); break;
+    case Action::new_random: robots_.random.generate(desk_); break;
     case Action::duplicate: scene.duplicate(selection); break;
     case Action::remove: scene.remove(selection); break;
     case Action::mutate: robots_.mutate(desk_); break;
@@ -176,8 +180,8 @@ void Panels::carry_out(const Command& command) {
       if (scene.can_redo()) desk_.toasts.say(Tone::news, "done again: " + scene.redo_name());
       scene.redo();
       break;
-    case Action::open: RobotsPanel::open(desk_); break;
-    case Action::save: RobotsPanel::save(desk_); break;
+    case Action::open: open_robots(desk_); break;
+    case Action::save: save_robots(desk_); break;
     case Action::frame:
     case Action::follow:
     case Action::turntable:
@@ -193,7 +197,7 @@ void Panels::carry_out(const Command& command) {
     case Action::screenshot: screenshot_wanted_ = true; break;
     case Action::record: film_.toggle(desk_); break;
     case Action::help: help_ = !help_; break;
-    case Action::quit: window_.close(); break;
+    case Action::quit: quit(); break;
   }
 }
 
@@ -238,11 +242,15 @@ void Panels::change_camera(Action action) {
   camera.follow(current ? desk_.scene.moment().robots->index_of(*current) : std::nullopt);
 }
 
+void Panels::quit() {
+  quit_with_care(desk_, [this] { quits_ = true; });
+}
+
 void Panels::escape() {
-  if (help_)
-    help_ = false;
-  else if (desk_.dialogs.open())
+  if (desk_.dialogs.open())
     desk_.dialogs.close();
+  else if (help_)
+    help_ = false;
   else
     desk_.scene.clear_selection();
 }

@@ -24,6 +24,9 @@ class Panels {
   // What lies over the picture.
   void draw_over(const PictureArea& area, const render::Camera& camera, double dt);
   void carry_out(const Command& command);
+  // Closes the window; where something would be lost, asks first.
+  void quit();
+  bool quits() const { return quits_; }
   void note(const FrameCost& cost) { performance_.note(cost); }
   // Background work of panels, for at most so long [s]; takes what it took.
   void work(double seconds);
@@ -32,7 +35,7 @@ class Panels {
   void show(const std::string& panel);
 
   bool take_screenshot_wish() { return std::exchange(screenshot_wanted_, false); }
-  Generation& generation() { return robots_.generation; }
+  Generation& generation() { return robots_.random.generation; }
   FilmPanel& film() { return film_; }
   const FilmPanel& film() const { return film_; }
 
@@ -55,7 +58,7 @@ class Panels {
   FilmPanel film_;
   ExplosionCard explosions_;
   Column left_, right_;
-  bool help_ = false, screenshot_wanted_ = false;
+  bool help_ = false, screenshot_wanted_ = false, quits_ = false;
   float aspect_ = 16.0f / 9;
 };
 

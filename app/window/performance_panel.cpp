@@ -21,9 +21,7 @@ void figure(const char* name, const std::string& value, const char* explanation)
   ImGui::TextUnformatted(name);
   hint(explanation);
   ImGui::TableNextColumn();
-  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
-  ImGui::TextUnformatted(value.c_str());
+  right_aligned(value);
 }
 
 std::string milliseconds(double seconds) { return fmt::format("{:.2f} ms", 1000 * seconds); }
@@ -48,7 +46,7 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
   if (begin_figures("physics")) {
     figure("springs evaluated", short_number(moment.springs_per_second) + "/s", "while it steps; the paper's measure of speed");
     figure("a step of all robots", milliseconds(moment.step_seconds), "wall time of one time step");
-    figure("gathering a moment", milliseconds(moment.telling_seconds),
+    figure("reading results", milliseconds(moment.telling_seconds),
            "reading positions, and what is coloured by, by the thread that simulates");
     figure("springs", short_number(static_cast<double>(moment.robots->springs)), "of all robots");
     figure("masses", short_number(static_cast<double>(moment.positions.size())), "of all robots");
@@ -82,7 +80,7 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
     drawn.push_back(1000 * costs_[i].picture);
   }
   const PlotLine lines[] = {{"frame", render::category_color(0), number, whole}, {"picture", render::category_color(1), number, drawn}};
-  plot("costs", {.title = "frame and picture", .unit = "ms", .x_title = "frames ago", .height = 8 * ImGui::GetFontSize()}, lines);
+  plot("costs", {.title = "frame and picture", .unit = "ms", .x_title = "frame, 0 = now", .height = 8 * ImGui::GetFontSize()}, lines);
   if (!picture.renderer().times().empty() && ImGui::CollapsingHeader("Parts of the picture")) {
     if (begin_figures("passes")) {
       for (const render::PassTime& pass : picture.renderer().times())

@@ -42,12 +42,35 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
     const Eigen::Vector3f p = camera.project(top, static_cast<int>(area.width()), static_cast<int>(area.height()));
     if (p.z() > camera.near) placed.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
   }
-  // Near ones lie over those behind.
-  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.depth > b.depth; });
+  // Near ones first; those behind go above what they would cover, where there is room, or under it.
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
+  struct Box {
+    ImVec2 low, high;
+    const std::string* text;
+  };
+  std::vector<Box> boxes;
   for (const Placed& label : placed) {
     const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
-    line({label.at.x - size.x / 2, label.at.y - size.y - 0.5f * ImGui::GetFontSize()}, *label.text);
+    Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin}, {label.at.x + size.x / 2, label.at.y - margin}, label.text};
+    // Not over the upper edge, for a robot that is seen.
+    if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
+    box.high.y = box.low.y + size.y;
+    const float wanted = box.low.y;
+    for (int attempts = 0; attempts < 4; ++attempts) {
+      const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const Box& other) {
+        return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin && box.low.y < other.high.y + margin &&
+               other.low.y < box.high.y + margin;
+      });
+      if (covered == boxes.end()) break;
+      box.low.y = covered->low.y - size.y - margin;
+      box.high.y = covered->low.y - margin;
+    }
+    if (box.low.y < area.low.y || wanted - box.low.y > 5 * text) box.low.y = wanted;
+    box.high.y = box.low.y + size.y;
+    boxes.push_back(box);
   }
+  for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) line(box->low, *box->text);
 }
 
 void draw_scale(const render::Legend& legend, ImVec2 low, ImVec2 high) {
@@ -119,13 +142,13 @@ render::Scene without_text(const render::Scene& scene) {
 }
 
 void draw_picture_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const PictureArea& area,
-                       const render::Camera& camera) {
+                       const render::Camera& camera, bool clock) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
   draw_labels(scene, bounds, area, camera);
   if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
-  if (!scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
+  if (clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.legend) draw_legend(*scene.legend, area);
   if (scene.scale_bar) draw_length(area, camera);
   list.PopClipRect();

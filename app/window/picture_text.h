@@ -9,8 +9,8 @@ namespace mercury::window {
 // The scene without its texts.
 render::Scene without_text(const render::Scene& scene);
 
-// The texts of the scene, over its picture. `bounds`: one box a body, in the picture.
+// The texts of the scene, over its picture, the clock where it is wanted. `bounds`: one box a body, in the picture.
 void draw_picture_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const PictureArea& area,
-                       const render::Camera& camera);
+                       const render::Camera& camera, bool clock);
 
 }  // namespace mercury::window

@@ -85,7 +85,7 @@ void draw_speed(Desk& desk) {
   const double achieved = scene.moment().achieved_speed;
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
-  ImGui::Text("achieved \xc3\x97 %s", scene.playing() ? factor_text(achieved).c_str() : "0");
+  ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
   ImGui::PopStyleColor();
   hint(late ? "the computer is too slow for the speed asked for" : "what the physics manages, over the last second");
 }
@@ -110,12 +110,15 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
   if (sign_button("##step", Sign::step, "one step of time (right arrow or .)")) scene.step();
   desk.observations.item("step");
   ImGui::SameLine(0, 1.2f * text);
+  // All of the line in the middle of the buttons' height.
+  const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   ImGui::PushFont(large_font());
+  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2);
   ImGui::TextUnformatted(time_text(scene.moment().time).c_str());
   ImGui::PopFont();
   hint(fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt).c_str());
   ImGui::SameLine();
-  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), 17.5f * text));
+  ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
   draw_speed(desk);
   const std::string rate = short_number(scene.moment().springs_per_second) + " springs/s";
   const std::string where = fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));

@@ -42,6 +42,7 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   take(document, "left_panel", preferences.left_panel);
   take(document, "right_panel", preferences.right_panel);
   take(document, "folder", preferences.folder);
+  take(document, "open_folder", preferences.open_folder);
   take(document, "save_folder", preferences.save_folder);
   take(document, "pause_on_explosion", preferences.pause_on_explosion);
   std::string quality;
@@ -69,6 +70,7 @@ void save(const Preferences& preferences, const std::filesystem::path& file) {
                       {"right_panel", preferences.right_panel},
                       {"quality", name_of(preferences.quality)},
                       {"folder", preferences.folder},
+                      {"open_folder", preferences.open_folder},
                       {"save_folder", preferences.save_folder},
                       {"pause_on_explosion", preferences.pause_on_explosion}};
   std::error_code ignored;

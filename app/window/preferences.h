@@ -17,7 +17,7 @@ struct Preferences {
   std::string left_panel = "Robots", right_panel = "See";
   render::Quality quality = render::Quality::automatic;
   std::string folder;             // shown by the browser last
-  std::string save_folder;
+  std::string open_folder, save_folder;  // where files were opened and saved last
   bool pause_on_explosion = false;
 };
 

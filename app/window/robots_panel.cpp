@@ -3,51 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 
+#include "app/window/robot_files.h"
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
 
 namespace mercury::window {
 namespace {
-
-bool whole_number(const char* name, const char* explanation, int& value, int low, int high, Desk& desk, const char* item) {
-  ImGui::PushID(name);
-  row(name, explanation);
-  const bool changed = ImGui::InputInt("##value", &value, 1, 10);
-  desk.observations.item(item);
-  ImGui::PopID();
-  value = std::clamp(value, low, high);
-  return changed;
-}
-
-// "~/robots" as the shell takes it.
-std::filesystem::path path_from(std::string text) {
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  if (const char* home = std::getenv("HOME"); home && text.starts_with("~/")) text = home + text.substr(1);
-  return text;
-}
-
-std::string joined(const std::filesystem::path& folder, const std::string& name) {
-  return folder.empty() ? name : (folder / name).string();
-}
-
-void save_one(Desk& desk, RobotId robot, const std::string& text) {
-  std::filesystem::path path = path_from(text);
-  if (path.empty()) return;
-  if (path.extension() != ".json" && path.extension() != ".cbor") path += ".json";
-  desk.preferences.save_folder = path.parent_path().string();
-  save_with_care(desk, "robot", [&desk, robot, path](bool overwrite) { return desk.scene.save(robot, path, overwrite); });
-}
-
-void save_many(Desk& desk, const std::vector<RobotId>& robots, const std::string& text) {
-  const std::filesystem::path folder = path_from(text);
-  if (folder.empty()) return;
-  desk.preferences.save_folder = folder.string();
-  save_with_care(desk, fmt::format("{} robots", robots.size()), [&desk, robots, folder](bool overwrite) {
-    return desk.scene.save_all(robots, folder, RobotFormat::json, overwrite);
-  });
-}
 
 void draw_work(Desk& desk) {
   for (const Work& work : desk.scene.work()) {
@@ -78,7 +41,7 @@ void RobotsPanel::draw(Desk& desk, float aspect) {
   draw_list(desk, aspect);
   draw_work(desk);
   draw_changes(desk);
-  draw_generation(desk);
+  random.draw(desk);
 }
 
 void RobotsPanel::draw_list(Desk& desk, float aspect) {
@@ -87,9 +50,11 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
   const std::size_t selected = scene.selection().size();
   heading(fmt::format("{} robot{}{}", entries.size(), entries.size() == 1 ? "" : "s",
                       selected ? fmt::format(", {} selected", selected) : "").c_str());
-  // Whole rows, and the heading.
+  // Whole rows, and the heading: as many as leave room for what is below.
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-  const float height = (std::clamp(static_cast<float>(entries.size()), 3.0f, 12.0f) + 1) * line + 2;
+  const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random.height();
+  const float most = std::max(5.0f, std::floor((ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - below) / line) - 1);
+  const float height = (std::clamp(static_cast<float>(entries.size()), 3.0f, most) + 1) * line + 2;
   if (!ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter, {0, height})) return;
   ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("springs", ImGuiTableColumnFlags_WidthFixed);
@@ -104,41 +69,55 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
       ImGui::PushID(static_cast<int>(entry.id));
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
-      if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
-      const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
-      if (ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick)) {
-        if (ImGui::IsMouseDoubleClicked(0))
-          frame_robots(desk, {entry.id}, aspect);
-        else if (ImGui::GetIO().KeyShift && anchor_ != 0) {
-          bool inside = false;
-          for (const RobotEntry& other : entries) {
-            const bool end = other.id == anchor_ || other.id == entry.id;
-            if (inside || end) scene.select(other.id, false);
-            if (end && anchor_ != entry.id) inside = !inside;
-          }
-        } else if (ImGui::GetIO().KeyCtrl)
-          scene.toggle_selected(entry.id);
-        else
-          scene.select(entry.id);
-        if (!ImGui::GetIO().KeyShift) anchor_ = entry.id;
-      }
-      if (entry.exploded) ImGui::PopStyleColor();
-      if (i < 20) desk.observations.item(fmt::format("robot.{}", i));
-      if (ImGui::IsItemHovered()) figures_of(entry);
-      ImGui::TableNextColumn();
-      ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-      ImGui::Text("%zu", entry.springs);
-      ImGui::PopStyleColor();
-      ImGui::TableNextColumn();
-      bool shown = !entry.hidden;
-      ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
-      if (ImGui::Checkbox("##shown", &shown)) scene.set_hidden(entry.id, !shown);
-      ImGui::PopStyleVar();
-      hint("whether it is drawn; it swims on either way");
+      draw_row(desk, entry, aspect);
       ImGui::PopID();
     }
   ImGui::EndTable();
+}
+
+void RobotsPanel::draw_row(Desk& desk, const RobotEntry& entry, float aspect) {
+  if (entry.selected) ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg1, ImGui::GetColorU32(ImGuiCol_Header));
+  const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
+  if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+  const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
+  if (ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick)) {
+    if (ImGui::IsMouseDoubleClicked(0))
+      frame_robots(desk, {entry.id}, aspect);
+    else
+      choose(desk, entry);
+  }
+  if (entry.exploded) ImGui::PopStyleColor();
+  desk.observations.item(fmt::format("robot.{}", ImGui::TableGetRowIndex() - 1));
+  if (ImGui::IsItemHovered() && rests_here()) figures_of(entry);
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  right_aligned(fmt::format("{}", entry.springs));
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  bool shown = !entry.hidden;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
+  if (ImGui::Checkbox("##shown", &shown)) desk.scene.set_hidden(entry.id, !shown);
+  ImGui::PopStyleVar();
+  hint("whether it is drawn; it swims on either way");
+}
+
+// As in other lists: Ctrl adds one or takes it away, Shift adds all from the one clicked last.
+void RobotsPanel::choose(Desk& desk, const RobotEntry& entry) {
+  LiveScene& scene = desk.scene;
+  if (ImGui::GetIO().KeyShift && anchor_ != 0) {
+    bool inside = false;
+    for (const RobotEntry& other : scene.entries()) {
+      const bool end = other.id == anchor_ || other.id == entry.id;
+      if (inside || end) scene.select(other.id, false);
+      if (end && anchor_ != entry.id) inside = !inside;
+    }
+    return;
+  }
+  if (ImGui::GetIO().KeyCtrl)
+    scene.toggle_selected(entry.id);
+  else
+    scene.select(entry.id);
+  anchor_ = entry.id;
 }
 
 void RobotsPanel::draw_changes(Desk& desk) {
@@ -158,12 +137,12 @@ void RobotsPanel::draw_changes(Desk& desk) {
   desk.observations.item("remove");
   hint("remove the selected robots (Delete)");
   ImGui::EndDisabled();
-  if (ImGui::Button("Open...", {width, 0})) open(desk);
+  if (ImGui::Button("Open...", {width, 0})) open_robots(desk);
   desk.observations.item("open");
   hint("robots from files or a folder (Ctrl O); or drop them on the window");
   ImGui::SameLine();
   ImGui::BeginDisabled(scene.entries().empty());
-  if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save(desk);
+  if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(desk);
   desk.observations.item("save");
   hint("the selected robots, or all where none is selected (Ctrl S)");
   ImGui::SameLine();
@@ -173,50 +152,6 @@ void RobotsPanel::draw_changes(Desk& desk) {
   ImGui::EndDisabled();
 }
 
-void RobotsPanel::draw_generation(Desk& desk) {
-  heading("Random robots");
-  int kind = static_cast<int>(generation.kind);
-  if (choice("kind", "voxel: patches of muscle, tissue and bone. Network: grown by a neural network", kind, {"voxel", "network"}))
-    generation.kind = static_cast<Generation::Kind>(kind);
-  auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
-  whole_number("count", "how many robots", count, 1, 4096, desk, "generate.count");
-  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, desk, "generate.seed");
-  generation.count = static_cast<std::size_t>(count);
-  generation.seed = static_cast<std::uint64_t>(seed);
-  if (generation.kind == Generation::Kind::voxel) {
-    RandomVoxelOptions& voxel = generation.voxel;
-    row("smallest", "voxels along x, y and z");
-    ImGui::InputInt3("##smallest", voxel.smallest.data());
-    row("largest", "voxels along x, y and z");
-    ImGui::InputInt3("##largest", voxel.largest.data());
-    for (std::size_t i = 0; i < 3; ++i) {
-      voxel.smallest[i] = std::clamp(voxel.smallest[i], 1, 24);
-      voxel.largest[i] = std::clamp(voxel.largest[i], voxel.smallest[i], 24);
-    }
-    auto air = static_cast<float>(100 * voxel.air);
-    if (slider("air", "share of the voxels that are empty", air, 30, {0, 90, "%.0f %%"})) voxel.air = std::clamp(static_cast<double>(air) / 100, 0.0, 0.95);
-    int mirror = static_cast<int>(voxel.mirror);
-    if (choice("symmetry", "halves that face each other along this axis", mirror, {"none", "x", "y", "z"})) voxel.mirror = static_cast<Mirror>(mirror);
-  } else {
-    auto points = static_cast<int>(generation.network.points);
-    whole_number("points", "that the body is grown from", points, 64, 8192, desk, "generate.points");
-    generation.network.points = static_cast<std::size_t>(points);
-    auto mirrored = static_cast<float>(100 * generation.network.mirrored);
-    if (slider("symmetry", "share of robots with alike halves", mirrored, 50, {0, 100, "%.0f %%"}))
-      generation.network.mirrored = std::clamp(static_cast<double>(mirrored) / 100, 0.0, 1.0);
-  }
-  ImGui::Checkbox("Instead of those there are", &replace_);
-  desk.observations.item("generate.replace");
-  if (ImGui::Button("Generate", {-1, 0})) generate(desk);
-  desk.observations.item("generate");
-  hint("and count the seed up (key N)");
-}
-
-void RobotsPanel::generate(Desk& desk) {
-  desk.scene.generate(generation, replace_);
-  ++generation.seed;
-}
-
 void RobotsPanel::mutate(Desk& desk) {
   if (desk.scene.selection().empty()) {
     desk.toasts.say(Tone::news, "select the robots to mutate first");
@@ -224,33 +159,6 @@ void RobotsPanel::mutate(Desk& desk) {
   }
   desk.scene.mutate(desk.scene.selection(), mutation_);
   ++mutation_.seed;
-}
-
-void RobotsPanel::save(Desk& desk) {
-  const std::vector<RobotId> robots = chosen_robots(desk.scene);
-  if (robots.empty()) {
-    desk.toasts.say(Tone::news, "there are no robots to save");
-    return;
-  }
-  if (robots.size() > 1) {
-    const std::string folder = desk.preferences.save_folder.empty() ? "robots" : desk.preferences.save_folder;
-    desk.dialogs.ask_text(fmt::format("Save {} robots", robots.size()), "Folder, one JSON file a robot:", folder, "Save",
-                          [&desk, robots](const std::string& text) { save_many(desk, robots, text); });
-    return;
-  }
-  const RobotId robot = robots.front();
-  std::string name;
-  for (const RobotEntry& entry : desk.scene.entries())
-    if (entry.id == robot) name = entry.file.empty() ? joined(desk.preferences.save_folder, file_name_of(entry.name) + ".json") : entry.file;
-  desk.dialogs.ask_text("Save a robot", "File, .json or .cbor:", name, "Save",
-                        [&desk, robot](const std::string& text) { save_one(desk, robot, text); });
-}
-
-void RobotsPanel::open(Desk& desk) {
-  desk.dialogs.ask_text("Open robots", "A robot file (.json, .cbor) or a folder of them:", desk.preferences.folder, "Open",
-                        [&desk](const std::string& text) {
-                          if (const std::filesystem::path path = path_from(text); !path.empty()) desk.scene.open({path});
-                        });
 }
 
 }  // namespace mercury::window

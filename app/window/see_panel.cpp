@@ -17,16 +17,26 @@ struct ColorChoice {
   ColorBy by;
   const char* meaning;
 };
-constexpr std::array<ColorChoice, 6> colorings{{
+constexpr std::array<ColorChoice, 8> colorings{{
     {ColorBy::material, "each material's own colour; muscles glow as they contract"},
     {ColorBy::activation, "how far the muscles are contracted"},
     {ColorBy::strain, "how far springs are stretched (red) or pressed together (blue)"},
     {ColorBy::force, "force of the springs: pulling (red) or pushing (blue)"},
     {ColorBy::speed, "speed of the masses"},
     {ColorBy::pressure, "pressure of the water on the skin"},
+    {ColorBy::energy, "elastic energy of the springs"},
+    {ColorBy::stiffness, "stiffness of the springs"},
 }};
 
+// As on the command line, the legend comes with numbers.
+void color(ViewSettings& view, ColorBy by) {
+  view.color = by;
+  view.scale.reset();
+  view.shown.legend = by != ColorBy::material;
+}
+
 bool is_ocean(const Environment& environment) { return std::holds_alternative<Ocean>(environment); }
+bool is_land(const Environment& environment) { return std::holds_alternative<Land>(environment); }
 bool has_gravity(const Environment& environment) {
   const Vec3 g = gravity_of(environment);
   return g.x != 0 || g.y != 0 || g.z != 0;
@@ -43,17 +53,16 @@ std::string capital(std::string_view text) {
 bool color_section(ViewSettings& view, const Environment& environment, Observations& observations) {
   heading("Colour by");
   bool changed = false;
-  const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
   for (std::size_t i = 0; i < colorings.size(); ++i) {
-    if (i % 3 != 0) ImGui::SameLine();
+    if (i % 4 != 0) ImGui::SameLine(0, gap);
     const bool offered = is_offered(colorings[i].by, environment), on = view.color == colorings[i].by;
     ImGui::BeginDisabled(!offered);
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
     if (on) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
     const std::string name(name_of(colorings[i].by));
     if (ImGui::Button(capital(name).c_str(), {width, 0}) && !on) {
-      view.color = colorings[i].by;
-      view.scale.reset();
+      color(view, colorings[i].by);
       changed = true;
     }
     if (on) ImGui::PopStyleColor(2);
@@ -100,7 +109,7 @@ bool show_section(ViewSettings& view, const Environment& environment, Observatio
     ImGui::TableNextColumn();
     changed |= check("Names", "name, distance and rank above each robot (key L)", shown.labels, "labels", observations);
     changed |= check("Legend", "what the colours mean (key K)", shown.legend, "legend", observations);
-    changed |= check("Clock", "simulated time, and its speed", shown.clock, "clock", observations);
+    changed |= check("Clock", "simulated time, in videos and where the panels are hidden", shown.clock, "clock", observations);
     changed |= check("Scale bar", "a length in metres", shown.scale_bar, "scale_bar", observations);
     ImGui::EndTable();
   }
@@ -118,6 +127,9 @@ bool show_section(ViewSettings& view, const Environment& environment, Observatio
     changed |= check("Velocity", "of each centre of mass", shown.arrows.velocity, "velocity", observations);
     ImGui::BeginDisabled(!has_gravity(environment) && !shown.arrows.gravity);
     changed |= check("Gravity", "at each centre of mass, where there is gravity", shown.arrows.gravity, "gravity", observations);
+    ImGui::EndDisabled();
+    ImGui::BeginDisabled(!is_land(environment) && !shown.arrows.contact);
+    changed |= check("Contact", "of the floor with each mass on it; only on land", shown.arrows.contact, "contact", observations);
     ImGui::EndDisabled();
     ImGui::EndTable();
   }
@@ -217,8 +229,7 @@ bool color_by_number(ViewSettings& view, int number, const Environment& environm
   if (number < 1 || number > static_cast<int>(colorings.size())) return false;
   const ColorBy by = colorings[static_cast<std::size_t>(number - 1)].by;
   if (!is_offered(by, environment)) return false;
-  view.color = by;
-  view.scale.reset();
+  color(view, by);
   return true;
 }
 

@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double frame_time = 1.0 / 60;  // at least, where the display sets no pace [s]
 constexpr double idle_time = 0.2;        // between looks at what goes on while nothing moves [s]
+constexpr double unseen_share = 4;       // of the time without a picture to that of drawing one, while it catches up with the user
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -56,7 +57,7 @@ class Viewer {
   void remember();
   void fill_scene();
   void frame(double dt);
-  void listen();
+  void listen(const std::vector<InputEvent>& events);
   void draw_picture(const PictureArea& area, double dt);
   void finish_picture(const PictureArea& area);
   void take_screenshot();
@@ -89,7 +90,10 @@ class Viewer {
   render::Camera shown_;           // the picture was drawn with
   PictureArea area_{{0, 0}, {16, 9}};
   FrameCost cost_;
+  Clock::time_point seen_;         // the last picture
+  double seeing_ = 0;              // time that it took [s]
   std::int64_t frames_ = 0;
+  std::uint64_t told_input_ = 0;
   double told_ = -1;
   std::size_t told_robots_ = 0;
 };
@@ -108,7 +112,10 @@ Viewer::Viewer(ViewerOptions options)
 Viewer::~Viewer() {
   if (folder_.empty()) return;
   Messages untold;
-  save_remembered(remembered_path(), {.view = scene_.view(),
+  ViewSettings view = scene_.view();
+  view.camera = camera_.plan();
+  view.camera.robot.clear();  // of this scene
+  save_remembered(remembered_path(), {.view = view,
                                       .generation = panels_.generation(),
                                       .pause_on_explosion = preferences_.pause_on_explosion,
                                       .folder = preferences_.folder}, untold);
@@ -138,9 +145,13 @@ void Viewer::fill_scene() {
 
 int Viewer::run() {
   auto last = Clock::now();
-  while (!window_.asked_to_close() && !interrupted()) {
+  while (!interrupted() && !panels_.quits()) {
+    if (window_.asked_to_close()) {
+      window_.stay_open();
+      panels_.quit();
+    }
     const double spent = since(last);
-    window_.poll(anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
+    window_.poll(window_.input().behind() ? 0 : anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
     const double dt = since(last);
     last = Clock::now();
     if (window_.take_activity()) redraw_ = std::max(redraw_, 3);
@@ -154,17 +165,22 @@ bool Viewer::anything_moves() const {
          panels_.busy() || panels_.film().busy() || screenshot_.under_way() || !scene_.work().empty() || hands_.busy() || picture_.coarse();
 }
 
-void Viewer::listen() {
+void Viewer::listen(const std::vector<InputEvent>& events) {
   if (const auto files = window_.take_dropped_files(); !files.empty()) {
     scene_.open(files);
     observations_.tell("dropped", {{"files", files.size()}});
   }
   const bool typing = ImGui::GetIO().WantTextInput;
-  for (const Press& press : window_.take_presses()) {
-    if (is_enter(press) && dialogs_.open()) dialogs_.accept();
+  for (const Press& press : presses_of(events)) {
     const std::optional<Command> command = command_of(press);
+    if (dialogs_.open()) {
+      if (command && command->action == Action::deselect)
+        panels_.carry_out(*command);
+      else
+        dialogs_.press(press);
+      continue;
+    }
     if (!command) continue;
-    if (dialogs_.open() && command->action != Action::deselect && command->action != Action::quit) continue;
     if (typing && (!press.control || command->action == Action::undo || command->action == Action::redo || command->action == Action::select_all) &&
         command->action != Action::help)
       continue;
@@ -173,7 +189,8 @@ void Viewer::listen() {
 }
 
 void Viewer::frame(double dt) {
-  listen();
+  const std::vector<InputEvent> events = window_.input().take();
+  listen(events);
   const auto begin = Clock::now();
   scene_.frame(area_.aspect());
   for (const Message& message : scene_.take_messages()) toasts_.say(tone_of(message.severity), message.text);
@@ -182,15 +199,23 @@ void Viewer::frame(double dt) {
   cost_.thumbnails = since(begin) - cost_.scene;
   interface_.set_looks(scene_.view().theme, preferences_.text_scale);
   const auto panels_begin = Clock::now();
-  interface_.begin_frame();
+  interface_.begin_frame(events);
   area_ = panels_.draw_frame();
   hands_.work(desk_, area_, shown_);
   panels_.draw_over(area_, shown_, dt);
-  draw_picture_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_);
+  // The play bar has a clock of its own.
+  draw_picture_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_, !preferences_.panels);
   hands_.draw(desk_, area_, shown_);
   cost_.panels = since(panels_begin);
-  draw_picture(area_, dt);
-  finish_picture(area_);
+  if (window_.input().behind() && since(seen_) < unseen_share * seeing_) {
+    interface_.end_unseen();
+  } else {
+    const auto drawing = Clock::now();
+    draw_picture(area_, dt);
+    finish_picture(area_);
+    seen_ = Clock::now();
+    seeing_ = since(drawing);
+  }
   cost_.whole = dt;
   panels_.note(cost_);
   tell(dt);
@@ -275,7 +300,10 @@ void Viewer::tell(double dt) {
     observations_.tell("robots", {{"count", robots}, {"names", names}});
     told_robots_ = robots;
   }
-  if (since(start_) - told_ < 0.2) return;
+  // Five times a second, and when all that was pressed was taken.
+  const bool caught_up = !window_.input().behind() && window_.input().taken() != told_input_;
+  if (since(start_) - told_ < 0.2 && !caught_up) return;
+  told_input_ = window_.input().taken();
   told_ = since(start_);
   std::vector<std::array<float, 2>> where;  // the middle of each robot in the window
   for (const render::Bounds& box : scene_.picture().bounds()) {
@@ -286,6 +314,7 @@ void Viewer::tell(double dt) {
                                {"where", where},
                                {"distance", camera_.orbit().distance},
                                {"azimuth", camera_.orbit().azimuth},
+                               {"input", window_.input().taken()},
                                {"steps", scene_.moment().steps},
                                {"time", scene_.moment().time},
                                {"playing", scene_.playing()},

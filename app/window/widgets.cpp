@@ -10,24 +10,37 @@
 namespace mercury::window {
 namespace {
 
-constexpr float name_share = 0.40f;  // of a row's width
+constexpr float name_share = 0.42f;  // of a row's width
+constexpr double rest = 0.4;         // of the pointer, before an explanation is shown [s]
+constexpr const char* text_of_reset = "back to the default";
 
-// A button at the row's end, as wide as it is high. Takes room from the item before it.
-bool reset_button(const char* id, bool differs) {
-  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-  const float side = ImGui::GetFrameHeight();
-  if (!differs) {
-    ImGui::Dummy({side, side});
-    return false;
+// The name of a row; where the value differs from the standard, a button behind it that is true when it was clicked. The
+// next item is as wide as the rest of the row.
+bool row_with_reset(const char* name, const char* text, bool differs) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
+  const float side = 0.75f * ImGui::GetFrameHeight();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shortened(name, differs ? names - side - 0.3f * ImGui::GetFontSize() : names).c_str());
+  hint(text);
+  bool clicked = false;
+  if (differs) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left + names - side - 0.3f * ImGui::GetFontSize());
+    const float top = ImGui::GetCursorPosY();
+    ImGui::SetCursorPosY(top + (ImGui::GetFrameHeight() - side) / 2);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+    clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
+    ImGui::PopStyleVar();
+    hint(text_of_reset);
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(top);
+  } else {
+    ImGui::SameLine();
   }
-  ImGui::PushID(id);
-  const bool clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
-  ImGui::PopID();
-  hint("back to the default");
+  ImGui::SetCursorPosX(left + names);
+  ImGui::SetNextItemWidth(width - names);
   return clicked;
 }
-
-float room_for_reset() { return ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x; }
 
 }  // namespace
 
@@ -42,8 +55,20 @@ void heading(const char* text) {
   ImGui::Dummy({0, 0.1f * ImGui::GetFontSize()});
 }
 
+// A pointer on its way to somewhere else wants no explanations.
+bool rests_here() {
+  static ImVec2 place;
+  static double since = 0;
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  if (corner.x != place.x || corner.y != place.y || ImGui::IsMouseDown(0)) {
+    place = corner;
+    since = ImGui::GetTime();
+  }
+  return ImGui::GetTime() - since > rest;
+}
+
 void hint(const char* text) {
-  if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !rests_here()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
   ImGui::TextUnformatted(text);
@@ -51,14 +76,12 @@ void hint(const char* text) {
   ImGui::EndTooltip();
 }
 
-void row(const char* name, const char* text) {
-  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shortened(name, name_share * width).c_str());
-  hint(text);
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(left + name_share * width);
-  ImGui::SetNextItemWidth((1 - name_share) * width);
+void row(const char* name, const char* text) { row_with_reset(name, text, false); }
+
+void right_aligned(const std::string& text) {
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
+  ImGui::TextUnformatted(text.c_str());
 }
 
 void note(const char* text) {
@@ -82,14 +105,13 @@ bool toggle(const char* text, bool on) {
 
 bool slider(const char* name, const char* text, float& value, float standard, const Amount& amount) {
   ImGui::PushID(name);
-  row(name, text);
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - room_for_reset());
+  const bool reset = row_with_reset(name, text, value != standard);
   ImGuiSliderFlags flags = ImGuiSliderFlags_NoRoundToFormat;
   if (amount.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   float edited = value;
   bool changed = ImGui::SliderFloat("##value", &edited, amount.low, amount.high, amount.format, flags);
   hint("drag, or Ctrl-click to type");
-  if (reset_button("one", value != standard)) {
+  if (reset) {
     edited = standard;
     changed = true;
   }
@@ -100,12 +122,11 @@ bool slider(const char* name, const char* text, float& value, float standard, co
 
 bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, const Amount& amount) {
   ImGui::PushID(name);
-  row(name, text);
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - room_for_reset());
+  const bool reset = row_with_reset(name, text, value != standard);
   float edited[3] = {value.x, value.y, value.z};
   bool changed = ImGui::DragFloat3("##value", edited, (amount.high - amount.low) / 400, amount.low, amount.high, amount.format);
   hint("x, y and z: drag sideways, or Ctrl-click to type");
-  if (reset_button("three", value != standard)) {
+  if (reset) {
     edited[0] = standard.x, edited[1] = standard.y, edited[2] = standard.z;
     changed = true;
   }

@@ -19,11 +19,17 @@ void heading(const char* text);
 // the name.
 void row(const char* name, const char* hint = nullptr);
 
-// The text in a tooltip of the item that was just put.
+// Whether the pointer has rested for a while on the item that was just put. Asked of one that is hovered.
+bool rests_here();
+
+// The text in a tooltip of the item that was just put, when the pointer rests there.
 void hint(const char* text);
 
 // Text that is of less weight, wrapped at the panel's edge.
 void note(const char* text);
+
+// At the right edge of what is left of a row or table cell.
+void right_aligned(const std::string& text);
 
 // As wide as its text, lit while it is on. True when it was clicked.
 bool toggle(const char* text, bool on);
@@ -33,7 +39,8 @@ struct Amount {
   const char* format;       // as "%.2f s"
   bool logarithmic = false;
 };
-// A slider in a row with a button that puts it back to `standard`, shown where it differs. True when the value changed.
+// A slider in a row; beside the name a button that puts it back to `standard`, shown where it differs. True when the value
+// changed.
 bool slider(const char* name, const char* hint, float& value, float standard, const Amount& amount);
 // Three of them.
 bool slider(const char* name, const char* hint, Vec3& value, Vec3 standard, const Amount& amount);

@@ -79,23 +79,38 @@ Window::~Window() {
   glfwTerminate();
 }
 
+void Window::push(const InputEvent& event) {
+  active_ = true;
+  input_.push(event);
+}
+
 void Window::listen() {
+  using Kind = InputEvent::Kind;
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* handle, int key, int scancode, int action, int mods) {
-    Window& self = window_of(handle);
-    self.active_ = true;
-    self.repeating_ = action == GLFW_REPEAT;
-    if (action == GLFW_RELEASE) return;
     const bool control = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
     const char* name = glfwGetKeyName(key, scancode);
-    if (name && !control) return;  // comes as a character
-    Press press{.key = key, .control = control, .shift = (mods & GLFW_MOD_SHIFT) != 0, .repeated = self.repeating_};
-    if (name && !name[1]) press.character = static_cast<unsigned char>(name[0]);
-    self.presses_.push_back(press);
+    const char32_t letter = name && !name[1] ? static_cast<unsigned char>(name[0]) : 0;
+    window_of(handle).push({.kind = Kind::key, .code = key, .scancode = scancode, .action = action, .mods = mods,
+                            .name = letter, .types = name && !control});
   });
   glfwSetCharCallback(window_, [](GLFWwindow* handle, unsigned character) {
-    Window& self = window_of(handle);
-    if (character != ' ') self.presses_.push_back({.character = character, .repeated = self.repeating_});
+    window_of(handle).push({.kind = Kind::character, .code = static_cast<int>(character)});
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* handle, int button, int action, int mods) {
+    window_of(handle).push({.kind = Kind::button, .code = button, .action = action, .mods = mods});
+  });
+  glfwSetScrollCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    window_of(handle).push({.kind = Kind::scroll, .x = x, .y = y});
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    window_of(handle).push({.kind = Kind::move, .x = x, .y = y});
+  });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* handle, int entered) {
+    window_of(handle).push({.kind = Kind::enter, .on = entered != 0});
+  });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* handle, int focused) {
+    window_of(handle).push({.kind = Kind::focus, .on = focused != 0});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* handle, int count, const char** paths) {
     Window& self = window_of(handle);
@@ -103,16 +118,29 @@ void Window::listen() {
     self.dropped_.insert(self.dropped_.end(), paths, paths + count);
   });
   const auto active = [](GLFWwindow* handle, auto...) { window_of(handle).active_ = true; };
-  glfwSetMouseButtonCallback(window_, active);
-  glfwSetScrollCallback(window_, active);
-  glfwSetCursorPosCallback(window_, active);
   glfwSetFramebufferSizeCallback(window_, active);
   glfwSetWindowRefreshCallback(window_, active);
-  glfwSetWindowFocusCallback(window_, active);
+}
+
+std::vector<Press> presses_of(const std::vector<InputEvent>& events) {
+  std::vector<Press> presses;
+  bool repeated = false;
+  for (const InputEvent& event : events) {
+    const bool control = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
+    if (event.kind == InputEvent::Kind::key) repeated = event.action == GLFW_REPEAT;
+    if (event.kind == InputEvent::Kind::key && event.action != GLFW_RELEASE && !event.types)
+      presses.push_back({.character = event.name, .key = event.code, .control = control,
+                         .shift = (event.mods & GLFW_MOD_SHIFT) != 0, .repeated = repeated});
+    // Space goes by its key.
+    if (event.kind == InputEvent::Kind::character && event.code != ' ')
+      presses.push_back({.character = static_cast<char32_t>(event.code), .repeated = repeated});
+  }
+  return presses;
 }
 
 bool Window::asked_to_close() const { return glfwWindowShouldClose(window_); }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::stay_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
 
 void Window::poll(double wait) {
   if (wait > 0)
@@ -159,7 +187,6 @@ void Window::toggle_full_screen() {
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
-std::vector<Press> Window::take_presses() { return std::exchange(presses_, {}); }
 std::vector<std::filesystem::path> Window::take_dropped_files() { return std::exchange(dropped_, {}); }
 bool Window::take_activity() { return std::exchange(active_, false); }
 

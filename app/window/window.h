@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/window/input_queue.h"
 #include "render/context.h"
 
 struct GLFWwindow;
@@ -31,6 +32,9 @@ struct WindowSize {
   int width = 1280, height = 720;  // in screen coordinates
 };
 
+// The keys among events.
+std::vector<Press> presses_of(const std::vector<InputEvent>& events);
+
 // Everything that has to do with the system's windows. One at a time, used from one thread alone.
 class Window {
  public:
@@ -45,6 +49,7 @@ class Window {
 
   bool asked_to_close() const;
   void close();
+  void stay_open();  // whatever it was asked
 
   // Waits for something to happen, at most so long [s], then takes in what did. 0 = does not wait.
   void poll(double wait);
@@ -56,21 +61,23 @@ class Window {
   void set_title(const std::string& title);
   void toggle_full_screen();
 
+  // Of mouse and keyboard, since it was opened.
+  InputQueue& input() { return input_; }
+  const InputQueue& input() const { return input_; }
   // Handed out once.
-  std::vector<Press> take_presses();
   std::vector<std::filesystem::path> take_dropped_files();
   // Whether anything came from the user since the last call.
   bool take_activity();
 
  private:
   void listen();
+  void push(const InputEvent& event);
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<render::Context> context_;
-  std::vector<Press> presses_;
+  InputQueue input_;
   std::vector<std::filesystem::path> dropped_;
   bool active_ = true;
-  bool repeating_ = false;
   struct { int x, y, width, height; } windowed_{0, 0, 0, 0};  // before full screen
 };
 

@@ -47,6 +47,18 @@ TEST(Coloring, ForceFollowsHooksLawFromThePresentRestLength) {
   EXPECT_NEAR(values.spring[0], 50 * (1.25 - 1.1), 1e-4);
 }
 
+TEST(Coloring, EnergyIsThatOfHookesLaw) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  const ColorValues values = Coloring(simulation, ColorBy::energy).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  EXPECT_NEAR(values.spring[0], 1000 * 50 * 0.15 * 0.15 / 2, 1e-2);
+  EXPECT_EQ(values.mass, (std::vector<float>(2, values.spring[0])));  // the mean of its springs
+}
+
+TEST(Coloring, StiffnessIsTheMaterialsTimesThatOfTheEnvironment) {
+  const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device}, std::vector<Robot>{pair()});
+  EXPECT_NEAR(Coloring(simulation, ColorBy::stiffness).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], 150, 1e-4);
+}
+
 TEST(Coloring, ActivationIsTheContraction) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
   EXPECT_NEAR(Coloring(simulation, ColorBy::activation).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], -10, 1e-4);

@@ -44,7 +44,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
   }
   ViewSettings view() {
     ViewSettings wanted;
-    wanted.color = static_cast<ColorBy>(below(6));
+    wanted.color = static_cast<ColorBy>(below(8));
     wanted.shown = {.skin = below(2) == 0, .springs = below(2) == 0, .path = below(2) == 0, .labels = below(2) == 0, .legend = below(2) == 0};
     wanted.shown.arrows = {.drag = below(2) == 0, .velocity = below(2) == 0};
     if (below(4) == 0) wanted.grid = Grid{2, 1};

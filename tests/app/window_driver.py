@@ -2,6 +2,8 @@
 
 What happened is read from the file that --report writes; nothing waits for a fixed time, everything for a deadline.
 """
+import ctypes
+import ctypes.util
 import json
 import os
 import shutil
@@ -31,6 +33,62 @@ class Display:
     def close(self):
         self.server.terminate()
         self.server.wait()
+
+
+class Fingers:
+    """Mouse and keyboard of a display, as quick as the display takes them: counts what they press."""
+
+    def __init__(self, display):
+        self.x11 = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
+        self.xtest = ctypes.CDLL(ctypes.util.find_library("Xtst") or "libXtst.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.x11.XStringToKeysym.restype = ctypes.c_ulong
+        self.x11.XKeysymToKeycode.argtypes = [ctypes.c_void_p, ctypes.c_ulong]
+        self.x11.XkbKeycodeToKeysym.restype = ctypes.c_ulong
+        self.x11.XkbKeycodeToKeysym.argtypes = [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_uint, ctypes.c_uint]
+        self.display = ctypes.c_void_p(self.x11.XOpenDisplay(display.name.encode()))
+        if not self.display:
+            raise RuntimeError(f"no display {display.name}")
+        self.pressed = 0
+
+    def close(self):
+        self.x11.XCloseDisplay(self.display)
+
+    def flush(self):
+        self.x11.XFlush(self.display)
+
+    def move(self, x, y):
+        self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, 0)
+
+    def button(self, number, down):
+        self.xtest.XTestFakeButtonEvent(self.display, number, int(down), 0)
+        self.pressed += bool(down)
+
+    def click(self, number):
+        self.button(number, True)
+        self.button(number, False)
+
+    def hold(self, key, down):
+        code = self.x11.XKeysymToKeycode(self.display, self.x11.XStringToKeysym(key.encode()))
+        assert code, f"no key {key}"
+        # GLFW takes two presses of a key in the same millisecond for one that came twice.
+        self.xtest.XTestFakeKeyEvent(self.display, code, int(down), 2 if down else 0)
+        self.pressed += bool(down)
+
+    def key(self, name):
+        """ "a", "plus", "ctrl+z" """
+        *held, key = name.split("+")
+        held = [{"ctrl": "Control_L", "shift": "Shift_L"}[name] for name in held]
+        symbol = self.x11.XStringToKeysym(key.encode())
+        code = self.x11.XKeysymToKeycode(self.display, symbol)
+        if self.x11.XkbKeycodeToKeysym(self.display, code, 0, 0) != symbol and "Shift_L" not in held:
+            held.append("Shift_L")
+        for modifier in held:
+            self.hold(modifier, True)
+        self.hold(key, True)
+        self.hold(key, False)
+        for modifier in reversed(held):
+            self.hold(modifier, False)
 
 
 class Window:
@@ -74,13 +132,13 @@ class Window:
             else:
                 self.events.append(event)
 
-    def until(self, what, found):
+    def until(self, what, found, may_end=False):
         deadline = time.monotonic() + PATIENCE
         while True:
             self.look()
             if result := found():
                 return result
-            if self.process.poll() is not None:
+            if self.process.poll() is not None and not may_end:
                 raise AssertionError(f"the window ended with {self.process.returncode} before {what}: {self.said()}")
             if time.monotonic() > deadline:
                 raise AssertionError(f"no {what}; last: {self.events[-3:]}")
@@ -98,6 +156,11 @@ class Window:
     def frame(self, accept=lambda frame: True, since=None):
         """The next frame told of, or the next that is accepted."""
         return self.wait("frame", self.mark() if since is None else since, accept)
+
+    def pressed(self):
+        """Buttons and keys that it has taken in, by the last frame told of."""
+        self.look()
+        return next((event["input"] for event in reversed(self.events) if event["event"] == "frame"), 0)
 
     def said(self):
         self.messages.flush()
@@ -161,12 +224,24 @@ class Window:
         self.look()
         return [event["text"] for event in self.events if event["event"] == "gl"]
 
-    def close(self):
+    def kill(self):
         if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self.messages.close()
+
+    def close(self):
+        """Quits, whatever would be lost; the exit status."""
+        if self.process.poll() is None:
+            since = self.mark()
             self.key("ctrl+q")
             try:
+                self.until("end", lambda: self.process.poll() is not None or any(e["event"] == "asks" for e in self.events[since:]),
+                           may_end=True)
+                if self.process.poll() is None:
+                    self.key("Return")
                 self.process.wait(PATIENCE)
-            except subprocess.TimeoutExpired:
+            except (AssertionError, subprocess.TimeoutExpired):
                 self.process.kill()
                 self.process.wait()
         self.messages.close()
