@@ -20,13 +20,19 @@ std::string advice_for(const ExplodedRobot& robot) {
                      robot.spring->b, robot.spring->figures.material_name, advice);
 }
 
-void ask_for_repro(Desk& desk, RobotId robot) {
-  desk.dialogs.ask_text("Save what explodes", "Folder for the robot and its configuration, for mercury run:",
-                        desk.preferences.save_folder.empty() ? "repro" : desk.preferences.save_folder, "Save",
-                        [&desk, robot](const std::string& folder) {
-                          if (!folder.empty())
-                            save_with_care(desk, "repro", [&desk, robot, folder](bool overwrite) { return desk.scene.save_repro(robot, folder, overwrite); });
-                        });
+void ask_for_repro(Desk& desk, const ExplodedRobot& robot) {
+  desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+                          .title = "Save what explodes, for mercury run",
+                          .button = "Save here",
+                          .extensions = {".json", ".toml"},
+                          .folder = desk.preferences.save_folder,
+                          .name = "repro",
+                          .formats = {}},
+                         [&desk, id = robot.robot](const FileAnswer& answer) {
+                           save_with_care(desk, "repro", [&desk, id, folder = answer.paths.front()](bool overwrite) {
+                             return desk.scene.save_repro(id, folder, overwrite);
+                           });
+                         });
 }
 
 }  // namespace
@@ -107,7 +113,7 @@ void ExplosionCard::draw_buttons(Desk& desk, const ExplodedRobot& robot, const P
   }
   desk.observations.item("explosion.show");
   ImGui::SameLine();
-  if (ImGui::Button("Save repro...")) ask_for_repro(desk, robot.robot);
+  if (ImGui::Button("Save repro...")) ask_for_repro(desk, robot);
   desk.observations.item("explosion.repro");
   ImGui::SameLine();
   if (ImGui::Button("Reset")) desk.scene.reset();
