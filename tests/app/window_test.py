@@ -301,8 +301,9 @@ class RandomHands:
     def open(self):
         # Far down, so that what is saved at random stays in the scratch folder however often "Up" is pressed.
         folder = scratch().joinpath(*"abcdefghijklmnop")
-        window = Window(PROGRAM, self.display, folder, str(SAMPLES / "eel.json"), str(SAMPLES / "fish.json"), "--fresh",
-                        size="x".join(map(str, self.SIZE)))
+        folder.mkdir(parents=True)
+        robots = [str(shutil.copy(SAMPLES / name, folder)) for name in ("eel.json", "fish.json")]  # they may be replaced
+        window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)))
         self.test.addCleanup(window.kill)
         return window
 
