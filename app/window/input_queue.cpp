@@ -17,14 +17,15 @@ void InputQueue::push(const InputEvent& event) {
 
 std::vector<InputEvent> InputQueue::take() {
   std::vector<InputEvent> events;
-  bool typed = false;
+  bool typed = false, scrolled = false;
   while (!waiting_.empty()) {
     const InputEvent event = waiting_.front();
-    if (event.kind == Kind::button && typed) break;
+    if ((event.kind == Kind::button && typed) || (event.kind == Kind::move && scrolled)) break;
     waiting_.pop_front();
     events.push_back(event);
     const bool press = event.action == GLFW_PRESS, of_key = event.kind == Kind::key, of_button = event.kind == Kind::button;
     typed = typed || of_key || event.kind == Kind::character;
+    scrolled = scrolled || event.kind == Kind::scroll;
     if (event.kind == Kind::scroll || ((of_key || of_button) && press)) ++taken_;
     if (of_button || (of_key && !event.types && event.action != GLFW_RELEASE)) break;
   }

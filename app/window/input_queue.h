@@ -18,8 +18,8 @@ struct InputEvent {
 };
 
 // A slow frame loses nothing: what is pressed is seen where and in the order in which it was pressed. A frame takes the
-// way of the pointer, and then either one press or release of a button, or what is typed; a key that types nothing ends
-// it, as it may open what the next ones are meant for.
+// way of the pointer, and then either one press or release of a button, or turns of the wheel, or what is typed; a key
+// that types nothing ends it, as it may open what the next ones are meant for.
 class InputQueue {
  public:
   void push(const InputEvent& event);

@@ -53,9 +53,11 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
   for (const Placed& label : placed) {
     const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
     Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin}, {label.at.x + size.x / 2, label.at.y - margin}, label.text};
-    // Not over the upper edge, for a robot that is seen.
+    // Not over an edge, for a robot that is seen.
     if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
-    box.high.y = box.low.y + size.y;
+    if (label.at.x > area.low.x && label.at.x < area.high.x)
+      box.low.x = std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
+    box.high = {box.low.x + size.x, box.low.y + size.y};
     const float wanted = box.low.y;
     for (int attempts = 0; attempts < 4; ++attempts) {
       const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const Box& other) {

@@ -113,7 +113,7 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
   // All of the line in the middle of the buttons' height.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   ImGui::PushFont(large_font());
-  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2);
+  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 - ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
   ImGui::TextUnformatted(time_text(scene.moment().time).c_str());
   ImGui::PopFont();
   hint(fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt).c_str());

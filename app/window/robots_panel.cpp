@@ -80,12 +80,13 @@ void RobotsPanel::draw_row(Desk& desk, const RobotEntry& entry, float aspect) {
   const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
   if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
   const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
-  if (ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick)) {
-    if (ImGui::IsMouseDoubleClicked(0))
-      frame_robots(desk, {entry.id}, aspect);
-    else
-      choose(desk, entry);
-  }
+  if (entry.selected) ImGui::PushStyleColor(ImGuiCol_Header, IM_COL32_BLACK_TRANS);  // all of the row has the colour
+  const bool clicked = ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick);
+  if (entry.selected) ImGui::PopStyleColor();
+  if (clicked && ImGui::IsMouseDoubleClicked(0))
+    frame_robots(desk, {entry.id}, aspect);
+  else if (clicked)
+    choose(desk, entry);
   if (entry.exploded) ImGui::PopStyleColor();
   desk.observations.item(fmt::format("robot.{}", ImGui::TableGetRowIndex() - 1));
   if (ImGui::IsItemHovered() && rests_here()) figures_of(entry);

@@ -125,6 +125,16 @@ TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
   EXPECT_EQ(queue.taken(), 1u);
 }
 
+TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
+  InputQueue queue;
+  for (const InputEvent& event : {moved(1), InputEvent{.kind = Kind::scroll, .y = 1}, InputEvent{.kind = Kind::scroll, .y = 1}, moved(2)})
+    queue.push(event);
+  const std::vector<InputEvent> turned = queue.take();
+  ASSERT_EQ(turned.size(), 3u);
+  EXPECT_EQ(turned[0].x, 1);
+  EXPECT_EQ(queue.take().size(), 1u);
+}
+
 TEST(InputQueue, WordsComeAtOnceButWhatFollowsACommandWaitsForIt) {
   InputQueue queue;
   for (const char32_t c : {U'e', U'e', U'l'}) {

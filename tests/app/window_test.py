@@ -288,7 +288,7 @@ class RandomHands:
     KEYS = ["space", "period", "Right", "plus", "minus", "asterisk", "0", "f", "r", "n", "d", "h", "s", "l", "k", "b", "t", "z",
             "g", "m", "p", "v", "1", "2", "3", "4", "5", "6", "7", "8", "9", "F1", "question", "Escape", "Escape", "Delete",
             "BackSpace", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+o", "ctrl+s", "Tab", "Return", "Up", "Down", "Left", "Home",
-            "Next", "slash", "e", "l"]
+            "Next", "e", "l"]  # no slash: it would lead out of the scratch folder
     SIZE = (640, 400)
     AHEAD = 100  # presses that may wait in the window
 
@@ -299,8 +299,9 @@ class RandomHands:
         self.fingers = Fingers(self.display)
 
     def open(self):
-        # Far down, so that what is saved at random stays in the scratch folder however often "Up" is pressed.
-        folder = scratch().joinpath(*"abcdefghijklmnop")
+        # Far down: however often "Up" is pressed, what is saved at random stays in the scratch folder.
+        self.top = scratch()
+        folder = self.top.joinpath(*["down"] * 400)
         folder.mkdir(parents=True)
         robots = [str(shutil.copy(SAMPLES / name, folder)) for name in ("eel.json", "fish.json")]  # they may be replaced
         window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)))
@@ -324,6 +325,8 @@ class RandomHands:
             self.wait(window, 0)
             self.test.assertEqual(window.pressed(), self.fingers.pressed)
             self.test.assertEqual(window.complaints(), [])
+            for depth in range(100):
+                self.test.assertEqual(os.listdir(self.top.joinpath(*["down"] * depth)), ["down"], "saved too near the root")
         except AssertionError as failure:
             raise AssertionError(f"seed {self.seed}, last done: {self.last[-60:]}\n{window.said()}") from failure
         finally:
