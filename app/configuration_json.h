@@ -11,4 +11,10 @@ namespace mercury {
 // "damping": 0.1, "environment": "ocean", "density": 1000, ...}; vectors as [x, y, z].
 nlohmann::ordered_json json_of(const Configuration& configuration);
 
+// The reverse: a parameter that is missing has its default. Throws InputError for what is no configuration.
+Configuration configuration_from(const nlohmann::ordered_json& json);
+
+// The number whose shortest decimal gives this float again: 0.2, not 0.20000000298023224.
+double shortest(float value);
+
 }  // namespace mercury

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "app/option_values.h"
+#include "app/repro.h"
 #include "app/trajectory_layout.h"
 #include "robots/file.h"
 #include "sim/error.h"
@@ -39,12 +40,20 @@ void RobotOptions::add_to(CLI::App& command) {
   nn_.add_to(command);
 }
 
-std::optional<std::filesystem::path> RobotOptions::recording() const {
-  const auto found = std::find_if(paths_.begin(), paths_.end(), [](const auto& path) { return is_trajectory_name(path); });
+// A file of a kind that is given without others.
+std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const std::filesystem::path&), const char* why) const {
+  const auto found = std::find_if(paths_.begin(), paths_.end(), [&](const auto& path) { return is_such(path); });
   if (found == paths_.end()) return std::nullopt;
-  if (paths_.size() > 1 || !random_.empty())
-    throw InputError(*found, "a recording is played alone; give it without other robots");
+  if (paths_.size() > 1 || !random_.empty()) throw InputError(*found, why);
   return *found;
+}
+
+std::optional<std::filesystem::path> RobotOptions::recording() const {
+  return alone(is_trajectory_name, "a recording is played alone; give it without other robots");
+}
+
+std::optional<std::filesystem::path> RobotOptions::repro() const {
+  return alone(is_repro_name, "a repro has a time of its own; give it without other robots");
 }
 
 std::vector<Robot> RobotOptions::load() const {
@@ -60,6 +69,8 @@ std::vector<Robot> RobotOptions::load() const {
 std::vector<Robot> RobotOptions::load_files() const {
   if (const auto file = recording())
     throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
+  if (const auto file = repro())
+    throw InputError(file->string(), "is a repro; mercury run and mercury view show it, here give robots");
   if (paths_.empty()) return {};
   return load_robots(files());
 }

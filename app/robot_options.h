@@ -27,6 +27,9 @@ class RobotOptions {
   // The trajectory file, if that is what was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> recording() const;
 
+  // The *.repro file, if that is what was given. Throws InputError if robots were given with it.
+  std::optional<std::filesystem::path> repro() const;
+
   // The same in parts: robots of the files alone, the files' names, and what is to be made at random.
   std::vector<Robot> load_files() const;
   std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
@@ -45,6 +48,7 @@ class RobotOptions {
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
 
  private:
+  std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
   RandomRobots random_from(const std::string& request) const;
 
   std::vector<std::string> paths_;   // files and folders

@@ -16,6 +16,7 @@
 #include "app/progress.h"
 #include "app/recorder.h"
 #include "app/report.h"
+#include "app/repro.h"
 #include "app/robot_options.h"
 #include "app/simulation_options.h"
 #include "app/stepping.h"
@@ -101,18 +102,21 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulat
                                                      .deflate = options.compress ? 1 : 0});
 }
 
-RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder) {
+RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder, ReproChanges* changes = nullptr) {
   Stepper stepper(simulation);
   Observer observer(simulation);
-  Progress progress("simulating", "steps", steps, quiet);
+  const std::int64_t first = simulation.steps();
+  Progress progress("simulating", "steps", steps - first, quiet);
   const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
   bool on = true;
   while (on && simulation.steps() < steps) {
+    if (changes) changes->make(simulation);
     const std::int64_t sample = std::min(steps, (simulation.steps() / period + 1) * period);
-    on = stepper.advance_to(recorder ? std::min(sample, recorder->next_step()) : sample);
+    const std::int64_t stop = changes ? std::min(sample, changes->next_step()) : sample;
+    on = stepper.advance_to(recorder ? std::min(stop, recorder->next_step()) : stop);
     if (recorder && on) recorder->observe();
     if (simulation.steps() == sample || !on) observer.observe();
-    progress.update(simulation.steps());
+    progress.update(simulation.steps() - first);
   }
   return {.configuration = simulation.configuration(),
           .device = simulation.device_name(),
@@ -131,19 +135,7 @@ void require_writable(const std::string& option, const std::filesystem::path& fi
     throw InputError(option, file.string() + " cannot be written: " + std::strerror(errno));
 }
 
-int run(const RunOptions& options) {
-  if (!options.csv.empty()) require_writable("--csv", options.csv);
-  options.simulation.configuration();  // errors in options come before those in files
-  const std::int64_t steps = options.simulation.steps();
-  const std::vector<Robot> robots = options.robots.load();
-  std::vector<std::string> notes;
-  Simulation simulation(options.simulation.configuration(robots, notes), robots);
-  for (const auto& several : {notes, simulation.notes()})
-    for (const std::string& note : several) fmt::print(stderr, "mercury: {}\n", note);
-
-  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
-  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
-  if (recorder) recorder->finish();
+int tell(const RunOptions& options, const RunReport& report) {
   if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
   fmt::print("{}", options.json ? json_of(report) : table_of(report));
 
@@ -156,6 +148,39 @@ int run(const RunOptions& options) {
     return 1;
   }
   return options.strict && exploded > 0 ? 1 : 0;
+}
+
+// Until the robot has exploded, or so long from the repro's start as --seconds says.
+int run_repro(const RunOptions& options, const std::filesystem::path& file) {
+  const Device device = options.simulation.configuration().device;
+  if (options.simulation.configuration() != Configuration{.device = device})
+    throw InputError(file.string(), "brings its own configuration; of the options for it give --device, --threads and --seconds alone");
+  if (!options.record.empty() || options.every) throw InputError("--record", "is not for a repro; give robots");
+  const Repro repro = load_repro(file);
+  Simulation simulation = start_of(repro, device);
+  if (simulation.device_name() != repro.device_name)
+    fmt::print(stderr, "mercury: {} was seen on {}, this is {}: it may go another way\n", file.string(), repro.device_name, simulation.device_name());
+  ReproChanges changes(repro);
+  const double seconds = options.simulation.seconds(0);
+  const std::int64_t last = seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
+  return tell(options, simulate(simulation, last, options.quiet, nullptr, &changes));
+}
+
+int run(const RunOptions& options) {
+  if (!options.csv.empty()) require_writable("--csv", options.csv);
+  if (const auto file = options.robots.repro()) return run_repro(options, *file);
+  options.simulation.configuration();  // errors in options come before those in files
+  const std::int64_t steps = options.simulation.steps();
+  const std::vector<Robot> robots = options.robots.load();
+  std::vector<std::string> notes;
+  Simulation simulation(options.simulation.configuration(robots, notes), robots);
+  for (const auto& several : {notes, simulation.notes()})
+    for (const std::string& note : several) fmt::print(stderr, "mercury: {}\n", note);
+
+  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
+  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
+  if (recorder) recorder->finish();
+  return tell(options, report);
 }
 
 }  // namespace
@@ -180,6 +205,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run robots/eel.json --record eel.h5 --every 10\n"
+      "  mercury run eel.repro        (of an explosion that was seen in the window)\n"
       "  mercury run robots/ --environment land --solver xpbd --dt 0.005 --json > land.json");
   command->callback([options, choose] { choose([options] { return run(*options); }); });
 }

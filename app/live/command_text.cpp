@@ -264,10 +264,4 @@ std::string toml_of(const OptionValues& options, const std::string& comment) {
   return text;
 }
 
-std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment) {
-  OptionValues options = options_of(configuration);
-  options.emplace_back("--seconds", fmt::format("{}", seconds));
-  return toml_of(options, comment);
-}
-
 }  // namespace mercury

@@ -31,7 +31,5 @@ std::string shell_quoted(const std::string& word);
 
 // Options as a file for --config.
 std::string toml_of(const OptionValues& options, const std::string& comment);
-// A configuration, and how long to simulate, as a file for --config.
-std::string configuration_toml(const Configuration& configuration, double seconds, const std::string& comment);
 
 }  // namespace mercury

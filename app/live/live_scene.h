@@ -81,7 +81,7 @@ class LiveScene {
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
   void add(std::vector<Robot> robots, bool unsaved = true);     // `unsaved`: they are kept nowhere else
-  void open(const std::vector<std::filesystem::path>& paths);   // files and folders, recordings for their robots; in the background
+  void open(const std::vector<std::filesystem::path>& paths);   // files and folders, recordings for their robots, or one repro; in the background
   void generate(const Generation& generation, bool replace = false);  // in the background; replace = instead of all
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);
@@ -157,7 +157,8 @@ class LiveScene {
   std::vector<ExplodedRobot> exploded() const;  // at the moment, those that are hidden left out
   std::vector<Explosion> take_explosions();     // since the last call
   void pause_on_explosion(bool pause);
-  // NAME.json and NAME.toml in a folder, for mercury run NAME.json --config NAME.toml.
+  // NAME.repro in a folder: robot, configuration, a state of some seconds ago, and pulls and changes since. mercury run
+  // and mercury view make it explode again, at the same step and bit for bit on the same kind of device.
   SaveResult save_repro(RobotId robot, const std::filesystem::path& folder, bool overwrite = false);
 
  private:

@@ -135,21 +135,10 @@ std::unique_ptr<GroupFilm> LiveScene::film(const GroupFilmOptions& options) cons
 SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool overwrite) {
   const DocumentRobot* found = parts_->document.find(robot);
   if (!found) return failed("the robot is no longer there");
-  const Moment& moment = *parts_->moment;
-  const auto index = moment.robots->index_of(robot);
-  const Telemetry telemetry = index ? moment.telemetry[*index] : Telemetry{};
-  const double dt = parts_->document.configuration.dt;
-  const double seconds = (telemetry.exploded ? telemetry.exploded_at : moment.time) + 10 * dt;
-  const std::string name = file_name_of(found->body.name);
-  std::string comment = fmt::format("mercury run {}.json --config {}.toml", name, name);
-  if (telemetry.exploded) comment += fmt::format("\n{} exploded at {} s", name, telemetry.exploded_at);
-  if (telemetry.exploded && telemetry.first_bad_spring != no_spring)
-    comment += fmt::format("; first bad spring: {}", telemetry.first_bad_spring);
-  comment += "\nPulls by hand, and changes of parameters or materials on the way, are not part of it.";
   try {
-    return save_files({{folder / (name + ".json"), serialize_robot(whole_robot(*found), RobotFormat::json)},
-                       {folder / (name + ".toml"), configuration_toml(parts_->document.configuration, seconds, comment)}},
-                      overwrite);
+    const std::optional<Repro> repro = parts_->physics.repro(robot);
+    if (!repro) return failed(found->body.name + " has not exploded since time began");
+    return save_files({{folder / (file_name_of(found->body.name) + ".repro"), serialize_repro(*repro)}}, overwrite);
   } catch (const std::exception& error) {
     return failed(error.what());
   }

@@ -67,6 +67,7 @@ struct LiveScene::Parts {
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                         const std::function<bool(DocumentRobot&)>& change);
   RobotId append(Robot robot, RobotSource source);
+  void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void put_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
   void send_pull() {

@@ -24,6 +24,12 @@ struct OpenedRobot {
   Robot robot;
 };
 
+struct Opened {
+  std::vector<OpenedRobot> robots;
+  std::shared_ptr<const Repro> repro;  // alone, in place of all
+  fs::path repro_file;
+};
+
 // Files, and those in folders by name; what is no robot's file is told when it is read.
 std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& messages) {
   std::vector<fs::path> files;
@@ -48,21 +54,27 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
 }
 
 // A recording's robots, at rest.
-void read_recording(const fs::path& file, std::vector<OpenedRobot>& opened, Messages& messages) {
+void read_recording(const fs::path& file, Opened& opened, Messages& messages) {
   const TrajectoryReader recording(file);
-  for (const RecordedRobot& recorded : recording.robots()) opened.push_back({"", recorded.robot});
+  for (const RecordedRobot& recorded : recording.robots()) opened.robots.push_back({"", recorded.robot});
   messages.add(Severity::note, fmt::format("{}: the recording's {}, at rest; mercury render plays it", file.string(),
                                            robots_counted(recording.robots().size())));
 }
 
-void read_file(const fs::path& file, std::vector<OpenedRobot>& opened, Messages& messages) {
+void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
+  if (is_repro_name(file)) {
+    if (!alone) throw InputError(file.string(), "is a repro, which has a time of its own; open it alone");
+    opened.repro = std::make_shared<const Repro>(load_repro(file));
+    opened.repro_file = file;
+    return;
+  }
   if (is_trajectory_name(file.string())) {
     read_recording(file, opened, messages);
     return;
   }
   if (file.extension() == ".toml")
     throw InputError(file.string(), "holds options, not robots; give it to mercury view --config");
-  opened.push_back({file.string(), load_robot(file)});
+  opened.robots.push_back({file.string(), load_robot(file)});
 }
 
 // What one of many files is no use for, one line each; of many the first ones.
@@ -73,14 +85,14 @@ void tell_failures(const std::vector<std::string>& failures, Messages& messages)
   if (told < failures.size()) messages.add(Severity::error, fmt::format("and {} more files cannot be used", failures.size() - told));
 }
 
-std::vector<OpenedRobot> read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
-  std::vector<OpenedRobot> opened;
+Opened read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
+  Opened opened;
   std::vector<std::string> failures;
   std::int64_t done = 0;
   for (const fs::path& file : files) {
     if (control.cancelled()) break;
     try {
-      read_file(file, opened, messages);
+      read_file(file, files.size() == 1, opened, messages);
     } catch (const InputError& error) {
       failures.emplace_back(error.what());
     }
@@ -185,15 +197,30 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
   const std::string name = paths.size() == 1 ? "opening " + paths.front().filename().string()
                                              : fmt::format("opening {} files", paths.size());
   parts.background.begin(name, 0, [&parts, paths](WorkControl& control) -> Background::Finish {
-    auto opened = std::make_shared<std::vector<OpenedRobot>>(
-        read_robots(files_of(paths, parts.messages), control, parts.messages));
+    auto opened = std::make_shared<Opened>(read_robots(files_of(paths, parts.messages), control, parts.messages));
     return [&parts, opened] {
-      if (opened->empty()) return;
-      parts.edit("open " + robots_counted(opened->size()));
-      for (OpenedRobot& robot : *opened) parts.append(std::move(robot.robot), {.file = robot.file});
+      if (opened->repro) parts.replay(opened->repro, opened->repro_file);
+      if (opened->robots.empty()) return;
+      parts.edit("open " + robots_counted(opened->robots.size()));
+      for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
       parts.told();
     };
   });
+}
+
+void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const fs::path& file) {
+  edit("open " + file.filename().string());
+  document.robots.clear();
+  const Device device = document.configuration.device;
+  document.configuration = repro->configuration;
+  document.configuration.device = device;
+  const RobotId id = append(repro->robot, {});
+  saved[id] = {"", document.robots.back().body};
+  physics.set_repro(document.robots.back().body, document.configuration, repro);
+  say(Severity::note, fmt::format("{} explodes at {:.4g} s; here it is {:.4g} s. What was changed on the way happens again until you change something.",
+                                  document.robots.back().body.name, repro->exploded_at, time_of(repro->clock)));
+  if (repro->device_name != physics.device_name())
+    say(Severity::warning, fmt::format("it was seen on {}; here it may go another way", repro->device_name));
 }
 
 void LiveScene::generate(const Generation& generation, bool replace) {

@@ -48,6 +48,7 @@ struct LivePull {
   std::uint16_t mass = 0;
   Vec3 target;           // [m]
   float stiffness = 50;  // [N/m]
+  friend bool operator==(const LivePull&, const LivePull&) = default;
 };
 
 struct Moment {

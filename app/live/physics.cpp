@@ -34,7 +34,10 @@ void order(auto& parts, Change change) {
 }  // namespace
 
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
-  order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::move(robots), configuration); });
+  order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::move(robots), configuration, nullptr); });
+}
+void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro) {
+  order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::vector{robot}, configuration, std::move(repro)); });
 }
 void Physics::set_view(const ViewSettings& settings) {
   order(*parts_, [&](Orders& orders) { orders.view = settings; });
@@ -85,6 +88,15 @@ std::shared_ptr<const Moment> Physics::newest() {
 std::vector<Explosion> Physics::take_explosions() {
   const std::lock_guard lock(parts_->mutex);
   return std::exchange(parts_->explosions, {});
+}
+
+std::optional<Repro> Physics::repro(RobotId robot) const {
+  std::function<Repro()> repro;
+  {
+    const std::lock_guard lock(parts_->mutex);
+    if (const auto found = parts_->repros.find(robot); found != parts_->repros.end()) repro = found->second;
+  }
+  return repro ? std::optional(repro()) : std::nullopt;
 }
 
 const Measurements& Physics::measurements() const { return parts_->measurements; }

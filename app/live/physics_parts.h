@@ -3,12 +3,15 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <thread>
 #include <utility>
 
+#include "app/live/histories.h"
 #include "app/live/moment_pool.h"
 #include "app/live/pace.h"
 #include "app/live/physics.h"
@@ -18,7 +21,12 @@ namespace mercury {
 
 // What is asked for and not yet carried out.
 struct Orders {
-  std::optional<std::pair<std::vector<LiveRobot>, Configuration>> scene;
+  struct Scene {
+    std::vector<LiveRobot> robots;
+    Configuration configuration;
+    std::shared_ptr<const Repro> repro;  // to start from; or nothing
+  };
+  std::optional<Scene> scene;
   std::optional<ViewSettings> view;
   std::optional<std::vector<LivePull>> pulls;
   std::optional<bool> playing, pause_on_explosion;
@@ -42,6 +50,7 @@ struct Physics::Parts {
   Orders orders;
   std::shared_ptr<const Moment> moment;
   std::vector<Explosion> explosions;
+  std::map<RobotId, std::function<Repro()>> repros;  // of robots that exploded
   bool looked_at = true;  // newest() was called since the last moment
   std::uint64_t tickets = 0, tickets_done = 0;
 
@@ -58,6 +67,9 @@ struct Physics::Parts {
   std::vector<LivePull> pulls;
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
+  Histories histories;
+  std::shared_ptr<const Repro> replayed;  // what is made to happen again; or nothing
+  std::size_t next_change = 0;            // of it
   std::set<std::string> told_notes;
   Pace pace;
   SpeedGauge gauge;
@@ -73,13 +85,17 @@ struct Physics::Parts {
   bool take_orders(Orders& taken);
   void carry_out(Orders& taken);
   void guarded(auto work);
-  bool set_scene(const std::vector<LiveRobot>& robots, const Configuration& configuration);
+  bool set_scene(const Orders::Scene& scene);
   void start_over();
+  void begin_time();
+  void begin_replay();
+  void make_changes();
+  std::int64_t next_change_step() const;
   void watch();
   void begin_pace();
   void advance();
   void take_steps(std::int64_t count);
-  void note_explosions(bool stop);
+  void note_explosions(bool now);
   void tell();
 };
 

@@ -38,32 +38,38 @@ void Physics::Parts::take_steps(std::int64_t count) {
   const std::int64_t target = simulation.steps() + count;
   double spent = 0;
   while (simulation.steps() < target) {
+    make_changes();
     const std::int64_t sample = std::max(measurements.next_step(), simulation.steps() + 1);
-    const std::int64_t stop = std::min(target, sample);
+    const std::int64_t stop = std::min({target, sample, next_change_step()});
     const double start = wall_now();
     simulation.step(stop - simulation.steps());
     spent += wall_now() - start;
     if (stop != sample && stop != target) continue;
     telemetry = simulation.telemetry();
     measurements.observe(simulation.time(), simulation.steps(), telemetry);
-    note_explosions(stop_at_explosion);
+    note_explosions(true);
     if (!playing && steps_left == 0) break;  // stopped by an explosion
   }
+  histories.stepped(spent, simulation, *population.robots());
   const double each = spent / static_cast<double>(count);
   step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
   dirty = true;
 }
 
-void Physics::Parts::note_explosions(bool stop) {
+// `now`: in the steps just made, not by robots that came back as they were.
+void Physics::Parts::note_explosions(bool now) {
   const LiveRobots& robots = *population.robots();
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (!telemetry[i].exploded || !exploded.insert(robots.robots[i].id).second) continue;
-    if (stop) {
+    std::function<Repro()> repro;
+    if (now) repro = histories.repro(simulation, robots, i, telemetry[i]);
+    if (now && stop_at_explosion) {
       playing = false;
       steps_left = 0;
       ++stops;
     }
     const std::lock_guard lock(mutex);
+    if (repro) repros[robots.robots[i].id] = std::move(repro);
     explosions.push_back({robots.robots[i].id, telemetry[i].exploded_at, telemetry[i].first_bad_spring});
   }
 }

@@ -61,22 +61,14 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
-  const bool other_dt = taken.scene && taken.scene->second.dt != simulation.configuration().dt;
-  const bool others = taken.scene && set_scene(taken.scene->first, taken.scene->second);
+  const bool other_dt = taken.scene && taken.scene->configuration.dt != simulation.configuration().dt;
+  const bool others = taken.scene && set_scene(*taken.scene);
   if (taken.view) view = *taken.view;
   if (taken.view || others) watch();
-  if (taken.reset) {
-    simulation.reset();
-    population.forget_departed();
-    telemetry = simulation.telemetry();
-    exploded.clear();
-    steps_left = 0;
-    ++resets;
-    measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
-    measurements.observe(0, 0, telemetry);
-  }
+  if (taken.reset || (taken.scene && replayed)) begin_time();
   if (taken.pulls) pulls = std::move(*taken.pulls);
   if (taken.pulls || taken.scene) simulation.set_pulls(population.pulls_of(pulls));
+  if (taken.pulls || taken.scene || taken.reset) histories.follow(simulation, *population.robots(), pulls);
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
@@ -84,8 +76,29 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (taken.playing || taken.speed || taken.reset || others || other_dt) begin_pace();
 }
 
+// All from the start: at rest at time 0, or where what is made to happen again begins.
+void Physics::Parts::begin_time() {
+  simulation.reset();
+  population.forget_departed();
+  exploded.clear();
+  steps_left = 0;
+  ++resets;
+  histories.restart();
+  {
+    const std::lock_guard lock(mutex);
+    repros.clear();
+  }
+  if (replayed) begin_replay();
+  telemetry = simulation.telemetry();
+  const double time = simulation.time();
+  measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration().dt, telemetry);
+  measurements.observe(time, simulation.steps(), telemetry);
+}
+
 // Whether there are other robots now, or another kind of environment.
-bool Physics::Parts::set_scene(const std::vector<LiveRobot>& robots, const Configuration& configuration) {
+bool Physics::Parts::set_scene(const Orders::Scene& scene) {
+  const auto& [robots, configuration, repro] = scene;
+  replayed = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool other_dt = configuration.dt != simulation.configuration().dt;
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
@@ -119,6 +132,8 @@ void Physics::Parts::start_over() {
   population.start_over();
   telemetry.clear();
   exploded.clear();
+  histories.restart();
+  replayed.reset();
   ++resets;
   measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
 }

@@ -11,10 +11,10 @@ const DocumentRobot* SceneDocument::find(RobotId id) const {
   return found == robots.end() ? nullptr : &*found;
 }
 
-Robot whole_robot(const DocumentRobot& robot) {
-  Robot whole = *robot.body.robot;
-  whole.name = robot.body.name;
-  const auto now = materials_of(robot.body), before = materials_of(*robot.body.robot);
+Robot whole_robot(const LiveRobot& robot) {
+  Robot whole = *robot.robot;
+  whole.name = robot.name;
+  const auto now = materials_of(robot), before = materials_of(*robot.robot);
   if (std::ranges::equal(now, before)) return whole;
   if (whole.materials.empty())
     for (std::size_t id = 0; id < now.size(); ++id)

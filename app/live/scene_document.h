@@ -58,7 +58,8 @@ struct SceneDocument {
 };
 
 // The robot with its present name and materials, as it is saved.
-Robot whole_robot(const DocumentRobot& robot);
+Robot whole_robot(const LiveRobot& robot);
+inline Robot whole_robot(const DocumentRobot& robot) { return whole_robot(robot.body); }
 
 // What was before and after, and the names of the changes. The oldest are forgotten where robots that are no longer in
 // the scene would fill the memory.

@@ -22,9 +22,9 @@ std::string advice_for(const ExplodedRobot& robot) {
 
 void ask_for_repro(Desk& desk, const ExplodedRobot& robot) {
   desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
-                          .title = "Save what explodes, for mercury run",
+                          .title = "Save what explodes, to see it again",
                           .button = "Save here",
-                          .extensions = {".json", ".toml"},
+                          .extensions = {".repro"},
                           .folder = desk.preferences.save_folder,
                           .name = "repro",
                           .formats = {}},

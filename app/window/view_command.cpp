@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/option_values.h"
+#include "app/repro.h"
 #include "app/robot_options.h"
 #include "app/simulation_options.h"
 #include "app/view_options.h"
@@ -54,6 +55,11 @@ int view(const ViewCommandOptions& options) {
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
     // There are none for simple water: those that swim.
     if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
+    return window::run_viewer(std::move(viewer));
+  }
+  if (const auto file = options.robots.repro()) {
+    load_repro(*file);  // for what is wrong with it
+    viewer.files = {*file};
     return window::run_viewer(std::move(viewer));
   }
   // Files are looked at here for what is wrong with them and where the robots live; the window reads them again.

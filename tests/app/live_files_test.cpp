@@ -222,30 +222,6 @@ TEST_F(LiveFiles, TheCommandSaysWhatItCannotSay) {
   EXPECT_EQ(same.robots[1].materials[1].frequency, 2 * default_materials()[1].frequency);
 }
 
-TEST_F(LiveFiles, AnExplosionCanBeSeenAgainByRun) {
-  LiveSceneOptions options = test::on_cpu();
-  options.configuration.dt = 0.75;
-  options.configuration.damping = 0.25;
-  LiveScene scene(options);
-  scene.pause_on_explosion(true);
-  test::make_robots(scene, 1);
-  scene.step(2000);
-  scene.wait_until_done();
-  const auto explosions = scene.take_explosions();
-  ASSERT_THAT(explosions, SizeIs(1));
-  ASSERT_TRUE(scene.entries()[0].exploded);
-  EXPECT_LT(scene.moment().steps, 2000);
-  const SaveResult result = scene.save_repro(test::ids_of(scene)[0], folder_ / "repro");
-  ASSERT_TRUE(result.ok()) << result.message;
-  const test::Outcome run = test::mercury({"run", path("repro/voxel-5-0.json"), "--config", path("repro/voxel-5-0.toml"), "--json", "--quiet"});
-  ASSERT_EQ(run.status, 0) << run.messages;
-  const auto report = nlohmann::json::parse(run.output);
-  EXPECT_TRUE(report["robots"][0]["exploded"]);
-  EXPECT_DOUBLE_EQ(report["robots"][0]["exploded_at"], explosions[0].time);
-  EXPECT_EQ(report["robots"][0]["first_bad_spring"], explosions[0].first_bad_spring);
-  EXPECT_EQ(scene.save_repro(test::ids_of(scene)[0], folder_ / "repro").outcome, SaveResult::Outcome::exists);
-}
-
 TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);

@@ -1,0 +1,149 @@
+#include "app/live/histories.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "app/live/scene_document.h"
+
+namespace mercury {
+namespace {
+
+std::vector<Pull> pulls_of(RobotId robot, const std::vector<LivePull>& all) {
+  std::vector<Pull> pulls;
+  for (const LivePull& pull : all)
+    if (pull.robot == robot) pulls.push_back({.mass = pull.mass, .target = pull.target, .stiffness = pull.stiffness});
+  return pulls;
+}
+
+bool same(const Pull& a, const Pull& b) { return a.mass == b.mass && a.target == b.target && a.stiffness == b.stiffness; }
+
+}  // namespace
+
+void Histories::restart() {
+  tracks_.clear();
+  events_.clear();
+  first_event_ = sealed_ = 0;
+  copied_.reset();
+  since_ = 0;
+}
+
+// As a slider or a hand makes them, many changes of one kind come between two steps: the last one counts.
+void Histories::add(Event event) {
+  copied_.reset();
+  if (!events_.empty() && first_event_ + events_.size() > sealed_) {
+    Event& last = events_.back();
+    const bool same_kind = last.configuration.has_value() == event.configuration.has_value() &&
+                           last.pulls.has_value() == event.pulls.has_value() &&
+                           (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
+    if (last.step == event.step && same_kind && !event.configuration) {
+      last = std::move(event);
+      return;
+    }
+  }
+  events_.push_back(std::move(event));
+}
+
+void Histories::follow(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePull>& pulls) {
+  const std::int64_t step = simulation.steps();
+  if (!tracks_.empty() && simulation.configuration() != configuration_) add({.step = step, .configuration = simulation.configuration()});
+  configuration_ = simulation.configuration();
+  std::map<RobotId, Track> tracks;
+  std::vector<std::size_t> fresh;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const LiveRobot& robot = robots.robots[i];
+    const auto known = tracks_.find(robot.id);
+    Track& track = tracks[robot.id];
+    if (known != tracks_.end() && known->second.robot == robot.robot) {
+      track = std::move(known->second);
+      if (track.materials != robot.materials) add({.step = step, .materials = std::pair{robot.id, robot.materials}});
+    } else {
+      fresh.push_back(i);
+    }
+    track.robot = robot.robot;
+    track.materials = robot.materials;
+  }
+  tracks_ = std::move(tracks);
+  if (pulls != pulls_ && !tracks_.empty()) add({.step = step, .pulls = pulls});
+  pulls_ = pulls;
+  for (const std::size_t i : fresh) {
+    Track& track = tracks_.at(robots.robots[i].id);
+    track.older = track.newer = start(simulation, i, track.materials);
+  }
+  if (!fresh.empty()) sealed_ = first_event_ + events_.size();
+  forget_events();
+}
+
+std::shared_ptr<const Histories::Start> Histories::start(const Simulation& simulation, std::size_t index,
+                                                         const Materials& materials) const {
+  return std::make_shared<const Start>(Start{.clock = simulation.clock(),
+                                             .configuration = simulation.configuration(),
+                                             .materials = materials,
+                                             .state = simulation.state(index),
+                                             .pulls = pulls_,
+                                             .next = first_event_ + events_.size()});
+}
+
+void Histories::stepped(double seconds, const Simulation& simulation, const LiveRobots& robots) {
+  since_ += seconds;
+  if (since_ < period || simulation.mass_count() > most_masses) return;
+  since_ = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const auto track = tracks_.find(robots.robots[i].id);
+    if (track == tracks_.end()) continue;
+    track->second.older = std::move(track->second.newer);
+    track->second.newer = start(simulation, i, track->second.materials);
+  }
+  sealed_ = first_event_ + events_.size();
+  forget_events();
+}
+
+void Histories::forget_events() {
+  std::uint64_t needed = first_event_ + events_.size();
+  for (const auto& [id, track] : tracks_) needed = std::min(needed, track.older->next);
+  if (needed > first_event_) copied_.reset();
+  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(needed - first_event_));
+  first_event_ = needed;
+}
+
+std::function<Repro()> Histories::repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
+                                        const Telemetry& telemetry) {
+  const LiveRobot& robot = robots.robots[index];
+  const auto found = tracks_.find(robot.id);
+  if (found == tracks_.end() || found->second.robot != robot.robot) return {};
+  if (!copied_) copied_ = std::make_shared<const std::vector<Event>>(events_);
+  const auto& start = found->second.older;
+  return [record = Record{robot, start, copied_, start->next - first_event_, telemetry, simulation.steps(),
+                          simulation.device_name()}] { return record.repro(); };
+}
+
+Repro Histories::Record::repro() const {
+  LiveRobot then = robot;
+  then.materials = start->materials;
+  Repro repro{.robot = whole_robot(then),
+              .configuration = start->configuration,
+              .clock = start->clock,
+              .state = start->state,
+              .pulls = pulls_of(robot.id, start->pulls),
+              .exploded_at = telemetry.exploded_at,
+              .first_bad_spring = telemetry.first_bad_spring,
+              .last_step = last_step,
+              .device_name = device_name};
+  std::vector<Pull> pulls = repro.pulls;
+  for (std::size_t i = first_event; i < events->size(); ++i) {
+    const Event& event = (*events)[i];
+    ReproChange change{.step = event.step, .configuration = event.configuration};
+    if (event.materials && event.materials->first == robot.id) {
+      then.materials = event.materials->second;
+      const auto table = materials_of(then);
+      change.materials.emplace(table.begin(), table.end());
+    }
+    if (event.pulls) {
+      std::vector<Pull> now = pulls_of(robot.id, *event.pulls);
+      if (!std::ranges::equal(now, pulls, same)) change.pulls = pulls = std::move(now);
+    }
+    if (change.configuration || change.materials || change.pulls) repro.changes.push_back(std::move(change));
+  }
+  return repro;
+}
+
+}  // namespace mercury
