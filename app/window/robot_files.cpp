@@ -64,7 +64,7 @@ void open_robots(Desk& desk) {
   desk.dialogs.ask_files({.kind = FileQuestion::Kind::open,
                           .title = "Open robots",
                           .button = "Open",
-                          .extensions = robot_extensions,
+                          .extensions = {".json", ".cbor", ".repro", ".h5"},
                           .folder = desk.preferences.open_folder,
                           .name = "",
                           .formats = {}},
