@@ -15,8 +15,8 @@ using Random = std::mt19937_64;
 
 class Voxels {
  public:
-  Voxels(int n, double holes) : n_(n), solid_(static_cast<std::size_t>(n * n * n)) {
-    Random random(1);
+  Voxels(int n, double holes, std::uint64_t seed) : n_(n), solid_(static_cast<std::size_t>(n * n * n)) {
+    Random random(seed);
     for (std::size_t i = 0; i < solid_.size(); ++i) solid_[i] = static_cast<double>(random() >> 11) * 0x1p-53 >= holes;
   }
 
@@ -104,8 +104,8 @@ class Voxels {
 
 }  // namespace
 
-Robot lattice(int n) { return Voxels(n, 0).robot(); }
-Robot lattice_with_holes(int n, double share) { return Voxels(n, share).robot(); }
+Robot lattice(int n) { return Voxels(n, 0, 1).robot(); }
+Robot lattice_with_holes(int n, double share, std::uint64_t seed) { return Voxels(n, share, seed).robot(); }
 
 Robot scrambled(const Robot& robot, std::uint64_t seed) {
   std::vector<std::uint16_t> place(robot.masses.size());

@@ -11,8 +11,9 @@ namespace mercury::bench {
 // n = 10: 1,331 masses, 14,230 springs, 1,200 faces.
 Robot lattice(int n);
 
-// The same without a share of its voxels, as grown bodies are: what no voxel needs is left out.
-Robot lattice_with_holes(int n, double share);
+// The same without a share of its voxels, as grown bodies are: what no voxel needs is left out. Another seed leaves out
+// others.
+Robot lattice_with_holes(int n, double share, std::uint64_t seed = 1);
 
 // The same with masses numbered in any order, so that nothing follows one another.
 Robot scrambled(const Robot& robot, std::uint64_t seed = 3);

@@ -1,7 +1,9 @@
 // Springs evaluated a second on one core, everything that a step does included: every instruction set of this machine
-// against the plain loop, in turns within one run, the best of many short turns (others may use the machine).
+// against the plain loop, and small robots against large ones, in turns within one run, the best of many short turns
+// (others may use the machine).
 //
-//   bench_cpu_springs [SECONDS] [FILTER]     time for each line; only lines that hold FILTER
+//   bench_cpu_springs [SECONDS] [FILTER] [KERNEL]     time for each line; only lines that hold FILTER (and the first, which
+//                                                   ratios refer to); only the kernel of this name
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,10 +12,12 @@
 #include <ctime>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
+#include "robots/random_voxel.h"
 #include "sim/cpu/backend.h"
 
 namespace mercury::bench {
@@ -34,76 +38,175 @@ double seconds_of(const std::function<void()>& work) {
   return core_seconds() - start;
 }
 
-struct Subject {
+struct Crowd {
   std::string name;
+  std::vector<Robot> robots;
+  std::int64_t steps_a_call = 0;  // 0 = as many as a turn is long
+
+  double springs() const {
+    double sum = 0;
+    for (const Robot& robot : robots) sum += static_cast<double>(robot.springs.size());
+    return sum;
+  }
+};
+
+struct Subject {
   std::function<void(std::int64_t)> step;
   double best = 1e9;  // seconds of one turn
 };
 
-struct Body {
-  std::string name;
-  Robot robot;
-  std::size_t copies = 1;
-};
-
-Subject plain(const Body& body, const Configuration& configuration) {
+Subject plain(const Crowd& crowd, const Configuration& configuration) {
   auto loops = std::make_shared<std::vector<PlainLoop>>();
-  for (std::size_t i = 0; i < body.copies; ++i) loops->emplace_back(body.robot, configuration);
-  return {"plain", [loops](std::int64_t steps) {
-            for (PlainLoop& loop : *loops) loop.step(steps);
-          }};
+  for (const Robot& robot : crowd.robots) loops->emplace_back(robot, configuration);
+  return {[loops](std::int64_t steps) {
+    for (PlainLoop& loop : *loops) loop.step(steps);
+  }};
 }
 
-Subject vectorised(const Body& body, const Configuration& configuration, const cpu::Kernel& kernel) {
+Subject vectorised(const Crowd& crowd, const Configuration& configuration, const cpu::Kernel& kernel) {
   std::shared_ptr<Backend> backend = cpu::make_backend({.threads = 1}, kernel);
-  const std::vector<const Robot*> robots(body.copies, &body.robot);
+  std::vector<const Robot*> robots;
+  for (const Robot& robot : crowd.robots) robots.push_back(&robot);
   backend->load(robots, configuration);
   auto clock = std::make_shared<Clock>(Clock{.dt = configuration.dt});
-  return {std::string(kernel.name), [backend, clock](std::int64_t steps) {
-            backend->step(*clock, steps);
-            clock->step += steps;
-          }};
+  return {[backend, clock](std::int64_t steps) {
+    backend->step(*clock, steps);
+    clock->step += steps;
+  }};
 }
 
-void compare(const Body& body, const Configuration& configuration, double seconds, const char* filter) {
-  const std::string name = body.name + ", " + std::string(name_of(configuration.solver)) + ", " +
-                           std::string(name_of(configuration.environment));
-  if (std::strstr(name.c_str(), filter) == nullptr) return;
-  std::vector<Subject> subjects{plain(body, configuration)};
-  for (const cpu::Kernel& kernel : cpu::kernels()) subjects.push_back(vectorised(body, configuration, kernel));
-  const double springs = static_cast<double>(body.robot.springs.size() * body.copies);
-  const auto steps = std::max<std::int64_t>(4, static_cast<std::int64_t>(6e5 / springs));
-  for (Subject& subject : subjects) subject.step(200);
-  const auto end = Time::now() + std::chrono::duration<double>(seconds);
-  while (Time::now() < end)
+// A crowd and those that step it in turns.
+struct Line {
+  const Crowd& crowd;
+  std::int64_t steps_a_call, calls;  // of a turn
+  std::vector<Subject> subjects;     // the plain loop, then a kernel each
+
+  Line(const Crowd& robots, const Configuration& configuration, const std::vector<cpu::Kernel>& kernels) : crowd(robots) {
+    constexpr double springs_a_turn = 1.5e6;
+    const auto steps = std::max<std::int64_t>(4, static_cast<std::int64_t>(springs_a_turn / crowd.springs()));
+    steps_a_call = crowd.steps_a_call == 0 ? steps : crowd.steps_a_call;
+    calls = std::max<std::int64_t>(1, steps / steps_a_call);
+    subjects.push_back(plain(crowd, configuration));
+    for (const cpu::Kernel& kernel : kernels) subjects.push_back(vectorised(crowd, configuration, kernel));
+    for (Subject& subject : subjects) subject.step(200);
+  }
+
+  void take_turns() {
     for (Subject& subject : subjects)
-      subject.best = std::min(subject.best, seconds_of([&] { subject.step(steps); }));
-  std::printf("%-42s", name.c_str());
-  for (const Subject& subject : subjects)
-    std::printf("  %s %.2e (%.2fx)", subject.name.c_str(), springs * static_cast<double>(steps) / subject.best,
-                subjects.front().best / subject.best);
+      subject.best = std::min(subject.best, seconds_of([&] {
+        for (std::int64_t call = 0; call < calls; ++call) subject.step(steps_a_call);
+      }));
+  }
+  double rate(const Subject& subject) const {
+    return crowd.springs() * static_cast<double>(steps_a_call * calls) / subject.best;
+  }
+};
+
+void compare(const std::vector<Crowd>& crowds, const Configuration& configuration, double seconds, const char* filter,
+             const std::vector<cpu::Kernel>& kernels) {
+  const std::string what = std::string(name_of(configuration.solver)) + ", " + std::string(name_of(configuration.environment));
+  std::vector<Line> lines;
+  for (const Crowd& crowd : crowds) {
+    const bool wanted = std::strstr((crowd.name + ", " + what).c_str(), filter) != nullptr;
+    if (wanted || &crowd == &crowds.front()) lines.emplace_back(crowd, configuration, kernels);
+  }
+  if (lines.size() == 1 && std::strstr((crowds.front().name + ", " + what).c_str(), filter) == nullptr) return;
+  const auto end = Time::now() + std::chrono::duration<double>(seconds * static_cast<double>(lines.size()));
+  while (Time::now() < end)
+    for (Line& line : lines) line.take_turns();
+
+  std::printf("\n%-40s %9s", what.c_str(), "plain");
+  for (const cpu::Kernel& kernel : kernels) std::printf("  %8s /plain /large", std::string(kernel.name).c_str());
   std::printf("\n");
+  for (const Line& line : lines) {
+    std::printf("%-40s  %.2e", line.crowd.name.c_str(), line.rate(line.subjects.front()));
+    for (std::size_t i = 1; i < line.subjects.size(); ++i)
+      std::printf("  %.2e  %5.2f  %5.2f", line.rate(line.subjects[i]),
+                  line.rate(line.subjects[i]) / line.rate(line.subjects.front()),
+                  line.rate(line.subjects[i]) / lines.front().rate(lines.front().subjects[i]));
+    std::printf("\n");
+  }
   std::fflush(stdout);
 }
 
-void run(double seconds, const char* filter) {
-  const Robot large = lattice(10);
-  const std::vector<Body> bodies = {{"1331 masses", large},
-                                    {"1331 masses x8", large, 8},
-                                    {"216 masses x16", lattice(5), 16},
-                                    {"27 masses x64", lattice(2), 64},
-                                    {"1331 masses, scrambled", scrambled(large)},
-                                    {"10 voxels, 30 % holes", lattice_with_holes(10, 0.3)},
-                                    {"5 voxels, 30 % holes x16", lattice_with_holes(5, 0.3), 16}};
-  for (const Body& body : bodies)
-    for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
-        compare(body, {.solver = solver, .environment = environment_named(environment)}, seconds, filter);
+std::vector<Robot> with_holes(int n, std::size_t count) {
+  std::vector<Robot> robots;
+  for (std::uint64_t seed = 1; seed <= count; ++seed) robots.push_back(lattice_with_holes(n, 0.3, seed));
+  return robots;
+}
+
+// Each with a table of its own: the defaults, more or less stiff.
+std::vector<Robot> with_own_tables(std::vector<Robot> robots) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::span<const Material> defaults = materials_of(robots[i]);
+    robots[i].materials.assign(defaults.begin(), defaults.end());
+    for (Material& material : robots[i].materials) {
+      material.stiffness *= 1 + 0.001f * static_cast<float>(i);
+      material.frequency *= 1 + 0.001f * static_cast<float>(i);
+    }
+  }
+  return robots;
+}
+
+std::vector<Robot> scrambled_each(std::vector<Robot> robots) {
+  for (std::size_t i = 0; i < robots.size(); ++i) robots[i] = scrambled(robots[i], i);
+  return robots;
+}
+
+// Set down on the floor, as the simulation does on land.
+std::vector<Robot> voxel_robots(std::array<int, 3> smallest, std::array<int, 3> largest, std::size_t count) {
+  std::vector<Robot> robots = random_voxel_robots({.smallest = smallest, .largest = largest}, 1, count);
+  for (Robot& robot : robots) {
+    const float lowest = std::ranges::min(robot.masses, {}, &Vec3::z).z;
+    for (Vec3& mass : robot.masses) mass.z -= lowest;
+  }
+  return robots;
+}
+
+std::vector<Crowd> crowds() {
+  const auto copies = [](int n, std::size_t count) { return std::vector<Robot>(count, lattice(n)); };
+  return {{"1 of 1331 masses", copies(10, 1)},
+          {"8 of 1331 masses", copies(10, 8)},
+          {"16 of 512 masses", copies(7, 16)},
+          {"16 of 216 masses", copies(5, 16)},
+          {"32 of 125 masses", copies(4, 32)},
+          {"32 of 64 masses", copies(3, 32)},
+          {"64 of 27 masses", copies(2, 64)},
+          {"256 of 8 masses", copies(1, 256)},
+          {"64 of 27 masses, calls of 1 step", copies(2, 64), 1},
+          {"64 of 27 masses, calls of 4 steps", copies(2, 64), 4},
+          {"64 of 27 masses, own tables", with_own_tables(copies(2, 64))},
+          {"16 of 216 masses, calls of 4 steps", copies(5, 16), 4},
+          {"16 of 216 masses, own tables", with_own_tables(copies(5, 16))},
+          {"mixed: 1 of 10^3, 30 % air", with_holes(10, 1)},
+          {"mixed: 16 of 7^3, 30 % air", with_holes(7, 16)},
+          {"mixed: 32 of 5^3, 30 % air", with_holes(5, 32)},
+          {"mixed: 64 of 4^3, 30 % air", with_holes(4, 64)},
+          {"mixed: 64 of 3^3, 30 % air", with_holes(3, 64)},
+          {"mixed: 64 of 2^3, 30 % air", with_holes(2, 64)},
+          {"mixed: random voxel robots, 1 of 10^3", voxel_robots({10, 10, 10}, {10, 10, 10}, 1)},
+          {"mixed: random voxel robots, 64", voxel_robots({4, 3, 3}, {7, 5, 4}, 64)},
+          {"mixed: the same, calls of 4 steps", voxel_robots({4, 3, 3}, {7, 5, 4}, 64), 4},
+          {"mixed: the same, own tables", with_own_tables(voxel_robots({4, 3, 3}, {7, 5, 4}, 64))},
+          {"scrambled: 1 of 1331 masses", scrambled_each(copies(10, 1))},
+          {"scrambled: 16 of 216 masses", scrambled_each(copies(5, 16))},
+          {"scrambled: 64 of 27 masses", scrambled_each(copies(2, 64))},
+          {"scrambled: random voxel robots, 64", scrambled_each(voxel_robots({4, 3, 3}, {7, 5, 4}, 64))}};
+}
+
+void run(double seconds, const char* filter, const char* kernel_name) {
+  std::vector<cpu::Kernel> kernels;
+  for (const cpu::Kernel& kernel : cpu::kernels())
+    if (*kernel_name == 0 || kernel.name == kernel_name) kernels.push_back(kernel);
+  const std::vector<Crowd> all = crowds();
+  for (const Solver solver : {Solver::force, Solver::xpbd})
+    for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
+      compare(all, {.solver = solver, .environment = environment_named(environment)}, seconds, filter, kernels);
 }
 
 }  // namespace
 }  // namespace mercury::bench
 
 int main(int argc, char** argv) {
-  mercury::bench::run(argc > 1 ? std::atof(argv[1]) : 2.0, argc > 2 ? argv[2] : "");
+  mercury::bench::run(argc > 1 ? std::atof(argv[1]) : 1.0, argc > 2 ? argv[2] : "", argc > 3 ? argv[3] : "");
 }
