@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
+#include <utility>
 
 namespace mercury {
 namespace {
@@ -25,6 +27,17 @@ FacePair pair_of(const Face& first, const Face& second, std::uint32_t key) {
   for (const std::uint16_t d : corners(second))
     if (!on_edge(d)) return {a, b, c, d};
   return {a, b, c, a};
+}
+
+FacePair told_by_place(FacePair pair, const Robot& robot) {
+  const auto place = [&](std::uint16_t mass) {
+    const Vec3 x = robot.masses[mass];
+    return std::tuple(x.z, x.y, x.x, mass);
+  };
+  if (pair.d == pair.a) return pair;
+  if (place(pair.c) < place(pair.a)) std::swap(pair.a, pair.c);
+  if (place(pair.d) < place(pair.b)) std::swap(pair.b, pair.d);
+  return pair;
 }
 
 struct Candidate {
@@ -59,7 +72,7 @@ std::vector<FacePair> pair_faces(const Robot& robot) {
   for (const auto& [apart, face, key] : candidates_of(robot)) {
     if (matched[face] || matched[face + apart]) continue;
     matched[face] = matched[face + apart] = 1;
-    pairs.push_back(pair_of(robot.faces[face], robot.faces[face + apart], key));
+    pairs.push_back(told_by_place(pair_of(robot.faces[face], robot.faces[face + apart], key), robot));
   }
   for (std::size_t f = 0; f < robot.faces.size(); ++f)
     if (!matched[f]) pairs.push_back({robot.faces[f].a, robot.faces[f].b, robot.faces[f].c, robot.faces[f].a});

@@ -16,7 +16,8 @@ struct FacePair {
 };
 
 // Every face once. A face may be told from another corner or the other way around than in the robot; its force is the
-// same.
+// same. Pairs of two faces are told by where their masses are at rest (z first, then y, then x): a before c, b before d;
+// so a pair of another robot in the same place is told the same way.
 std::vector<FacePair> pair_faces(const Robot& robot);
 
 }  // namespace mercury

@@ -8,11 +8,13 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <optional>
 
 #include "sim/cpu/backend.h"
 #include "sim/cpu/pack.h"
+#include "sim/cpu/party.h"
 #include "sim/cpu/telemetry.h"
 
 namespace mercury {
@@ -36,13 +38,14 @@ class CpuBackend final : public Backend {
   std::vector<std::string> notes() const override { return {}; }
 
   std::size_t robots_at_once() const override {
-    const bool together = !bodies_.empty() && fits_in_lockstep(bodies_.front(), configuration_);
+    const bool together = !bodies_.empty() && fits_in_party(bodies_.front(), configuration_);
     return static_cast<std::size_t>(arena_.max_concurrency()) * (together ? kernel_.lanes : 1);
   }
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return busy_seconds_; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
+    packs_.clear();
     bodies_.clear();
     bodies_.resize(robots.size());
     for_each_body([&](std::size_t i) {
@@ -56,18 +59,24 @@ class CpuBackend final : public Backend {
   void configure(const Configuration& configuration) override {
     configuration_ = configuration;
     setting_ = setting_of(configuration);
+    unpack();
     for_each_body([&](std::size_t i) { update_laws(bodies_[i], configuration_); });
-    packs_.clear();
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
     const auto start = std::chrono::steady_clock::now();
-    if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
+    std::atomic<std::size_t> broken = 0;
     arena_.execute([&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, packs_.size(),
-                                [&](std::size_t i) { advance(kernel_, packs_[i], bodies_, setting_, clock, steps); });
+      if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
+      oneapi::tbb::parallel_for(std::size_t{0}, packs_.size(), [&](std::size_t i) {
+        broken += advance(kernel_, packs_[i], bodies_, setting_, clock, steps);
+      });
     });
-    if (std::ranges::any_of(packs_, &Pack::broken)) packs_.clear();
+    broken_ += broken;
+    // Groups that were broken up are made anew of those that are whole, but not at every explosion.
+    std::size_t groups = 0;
+    for (const Pack& pack : packs_) groups += pack.groups.size();
+    if (16 * broken_ > groups) unpack();
     busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -78,6 +87,7 @@ class CpuBackend final : public Backend {
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
+    if (bodies_[robot].residence.group) cpu::store(*bodies_[robot].residence.group);
     set_state(bodies_[robot], positions, velocities);
   }
 
@@ -98,17 +108,17 @@ class CpuBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) packs_.clear();
+    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) unpack();
     bodies_[robot].status = status;
   }
 
   void write_materials(std::span<const Material> tables) override {
     for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });
-    packs_.clear();
+    for (Pack& pack : packs_) pack.laws_are_stale = true;
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     replace_table(robot, table);
-    packs_.clear();
+    for (Pack& pack : packs_) pack.laws_are_stale = true;
   }
 
   void set_pulls(std::span<const Pull> pulls) override {
@@ -130,6 +140,13 @@ class CpuBackend final : public Backend {
     });
   }
 
+  // Robots are shared out anew before the next step.
+  void unpack() {
+    cpu::store(packs_);
+    packs_.clear();
+    broken_ = 0;
+  }
+
   void replace_table(std::size_t robot, std::span<const Material> table) {
     std::ranges::copy(table, bodies_[robot].materials.begin());
     update_laws(bodies_[robot], configuration_);
@@ -140,6 +157,7 @@ class CpuBackend final : public Backend {
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
   std::vector<Pack> packs_;  // empty = to be made before the next step
+  std::size_t broken_ = 0;   // groups of theirs
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;

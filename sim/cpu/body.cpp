@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/cpu/lockstep.h"
+#include "sim/cpu/build.h"
 
 namespace mercury::cpu {
 
@@ -14,7 +14,9 @@ Body make_body(const Robot& robot, std::size_t lanes) {
   body.places = arrange(robot, lanes);
   body.build_key = build_key(robot);
   body.springs = plan_springs(robot, body.places);
-  body.faces = plan_faces(robot, body.places);
+  body.face_pairs = pair_faces(robot);
+  body.faces = plan_faces(body.face_pairs, body.places);
+  body.cells = cells_of(robot);
   body.near_pairs = NearPairs(robot, body.places);
   body.materials.assign(max_materials, {});
   std::ranges::copy(materials_of(robot), body.materials.begin());
@@ -40,24 +42,18 @@ void clear(Sums& sums) {
   std::ranges::fill(sums.rows, 0);
 }
 
-std::array<float, max_materials> hardness_of(const Body& body, const Configuration& configuration) {
+void update_laws(Body& body, const Configuration& configuration) {
+  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
-  std::array<float, max_materials> hardness;
   for (std::size_t id = 0; id < max_materials; ++id) {
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
-    hardness[id] = configuration.solver == Solver::force
+    body.hardness[id] = configuration.solver == Solver::force
                        ? static_cast<float>(stiffness) * body.scale.force
                        : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
   }
-  hardness[air] = configuration.solver == Solver::force ? 0 : std::numeric_limits<float>::infinity();
-  return hardness;
-}
-
-void update_laws(Body& body, const Configuration& configuration) {
-  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
-  const std::array<float, max_materials> hardness = hardness_of(body, configuration);
+  body.hardness[air] = configuration.solver == Solver::force ? 0 : std::numeric_limits<float>::infinity();
   SpringPlan& springs = body.springs;
-  for (std::size_t i = 0; i < springs.hardness.size(); ++i) springs.hardness[i] = hardness[springs.material[i]];
+  for (std::size_t i = 0; i < springs.hardness.size(); ++i) springs.hardness[i] = body.hardness[springs.material[i]];
 
   const std::vector<std::uint32_t> at = springs_at_masses(*body.robot);
   for (std::size_t mass = 0; mass < at.size(); ++mass) {
@@ -65,6 +61,11 @@ void update_laws(Body& body, const Configuration& configuration) {
     body.splits[place] = static_cast<float>(at[mass]) / body.scale.correction;
     body.x_rows[4 * place + 3] = body.splits[place];
   }
+}
+
+void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {
+  SpringPlan& springs = body.springs;
+  for (std::size_t i = 0; i < springs.factor.size(); ++i) springs.factor[i] = factors[springs.material[i]];
 }
 
 void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities) {

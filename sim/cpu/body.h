@@ -7,6 +7,7 @@
 
 #include "sim/backend.h"
 #include "sim/cpu/aligned.h"
+#include "sim/cpu/cells.h"
 #include "sim/cpu/near_pairs.h"
 #include "sim/cpu/places.h"
 #include "sim/cpu/spring_plan.h"
@@ -36,17 +37,36 @@ struct Sums {
 };
 void clear(Sums& sums);
 
+struct Lockstep;
+
+// Where the state of a body is that is stepped in a group's lane.
+struct Residence {
+  Lockstep* group = nullptr;                 // nullptr = in the body itself
+  const float *x = nullptr, *v = nullptr;    // [seat][x, y, z][lane], from its own lane on
+  const std::uint32_t* seats = nullptr;      // by mass
+  std::size_t lanes = 1;
+
+  Vec3 at(const float* values, std::size_t mass) const {
+    const float* const first = values + 3 * lanes * seats[mass];
+    return {first[0], first[lanes], first[2 * lanes]};
+  }
+};
+
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  std::uint64_t build_key = 0;       // sim/cpu/lockstep.h
+  std::uint64_t build_key = 0;       // sim/cpu/build.h
+  std::vector<FacePair> face_pairs;
+  std::vector<Cell> cells;           // sim/cpu/cells.h
   Places places;
   SpringPlan springs;
   std::vector<std::uint32_t> faces;  // plan_faces()
   NearPairs near_pairs;
   std::vector<Material> materials;   // max_materials elements
   FixedPointScale scale;
+  std::array<float, max_materials> hardness{};  // stiffness or compliance of each material in units; none of air
 
+  Residence residence;               // while it is elsewhere, x and v are anything
   Triples<float> x, v;               // during XPBD's springs: the prediction and v + dt F
   Aligned<float> x_rows, v_rows;     // the same four to a place, for masses that are collected one by one; the fourth
                                      // of x is the number of springs at the mass
@@ -60,8 +80,8 @@ struct Body {
   RobotStatus status;
   std::vector<Pull> pulls;
 
-  Vec3 position(std::size_t mass) const { return at(x, places.of_mass[mass]); }
-  Vec3 velocity(std::size_t mass) const { return at(v, places.of_mass[mass]); }
+  Vec3 position(std::size_t mass) const { return residence.group ? residence.at(residence.x, mass) : at(x, places.of_mass[mass]); }
+  Vec3 velocity(std::size_t mass) const { return residence.group ? residence.at(residence.v, mass) : at(v, places.of_mass[mass]); }
   static Vec3 at(const Triples<float>& values, std::size_t place) {
     return {values.x[place], values.y[place], values.z[place]};
   }
@@ -70,12 +90,13 @@ struct Body {
 // A body for kernels of so many lanes, its state not set yet.
 Body make_body(const Robot& robot, std::size_t lanes);
 
-// Stiffness or compliance of each material under a configuration, in the body's units; so that air gives no force.
-std::array<float, max_materials> hardness_of(const Body& body, const Configuration& configuration);
-
 // What depends on materials and configuration.
 void update_laws(Body& body, const Configuration& configuration);
 
+// Has the body's springs read these factors, by material.
+void set_factors(Body& body, const std::array<FactorId, max_materials>& factors);
+
+// The body must not reside in a group.
 void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities);
 
 }  // namespace mercury::cpu

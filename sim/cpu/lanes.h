@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "sim/material.h"
+#include "sim/cpu/muscles.h"
 #include "sim/vec3.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -108,8 +108,8 @@ HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, int
 HWY_INLINE void store_aligned(Words a, std::uint32_t* to) { hn::Store(a.v, words, to); }
 HWY_INLINE void store(Integers a, std::int32_t* to) { hn::StoreU(a.v, integers, to); }
 // table[id] for each lane's id where the mask holds, elsewhere 0 or table[id].
-HWY_INLINE Lanes look_up(const float* table, const MaterialId* ids, Mask wanted) {
-  const auto narrow = hn::LoadU(hn::Rebind<MaterialId, decltype(integers)>(), ids);
+HWY_INLINE Lanes look_up(const float* table, const FactorId* ids, Mask wanted) {
+  const auto narrow = hn::LoadU(hn::Rebind<FactorId, decltype(integers)>(), ids);
   const auto index = hn::PromoteTo(integers, narrow);
   // An x86 gather leaves unwanted lanes as they were, so it waits for the last use of the register. Only a mask that is
   // no constant makes the compiler clear the register first.

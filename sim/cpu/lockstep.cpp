@@ -1,23 +1,28 @@
 #include "sim/cpu/lockstep.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
 #include "sim/cpu/step.h"
 
 namespace mercury::cpu {
 namespace {
 
-bool same_ends(const Spring& a, const Spring& b) { return a.a == b.a && a.b == b.b; }
-
-std::size_t member_of(const Lockstep& group, std::size_t lane) {
-  return group.bodies[lane < group.bodies.size() ? lane : 0];
+Vec3 at(const Lockstep& group, const Aligned<float>& values, std::size_t first) {
+  return {values[first], values[first + group.lanes], values[first + 2 * group.lanes]};
+}
+void put(const Lockstep& group, Aligned<float>& values, std::size_t first, Vec3 value) {
+  values[first] = value.x;
+  values[first + group.lanes] = value.y;
+  values[first + 2 * group.lanes] = value.z;
+}
+void push(Lockstep& group, std::size_t first, Vec3 units) {
+  add_units(group.sums[first], units.x);
+  add_units(group.sums[first + group.lanes], units.y);
+  add_units(group.sums[first + 2 * group.lanes], units.z);
 }
 
-Vec3 at(const Lockstep& group, const Aligned<float>& values, std::size_t mass, std::size_t lane) {
-  const float* const first = values.data() + 3 * mass * group.lanes + lane;
-  return {first[0], first[group.lanes], first[2 * group.lanes]};
-}
+std::size_t member_of(const Lockstep& group, std::size_t lane) { return lane < group.bodies.size() ? lane : 0; }
 
 std::vector<std::uint64_t> present_lists(const Lockstep& group) {
   std::vector<std::uint64_t> lists;
@@ -25,111 +30,127 @@ std::vector<std::uint64_t> present_lists(const Lockstep& group) {
   return lists;
 }
 
-void fill_springs(Lockstep& group, std::span<const Body> bodies, const Configuration& configuration) {
-  for (std::size_t lane = 0; lane < group.lanes; ++lane) {
-    const Body& body = bodies[member_of(group, lane)];
-    const std::array<float, max_materials> hardness = hardness_of(body, configuration);
-    std::size_t slot = lane;
-    for (const std::uint32_t s : group.build->springs) {
-      const Spring& spring = body.robot->springs[s];
-      group.rest_length[slot] = spring.rest_length;
-      group.material[slot] = spring.material;
-      group.hardness[slot] = hardness[spring.material];
-      slot += group.lanes;
-    }
-  }
-}
-
 }  // namespace
 
-Build build_of(const Robot& robot) {
-  Build build;
-  build.joints.resize(robot.masses.size());
-  build.springs.resize(robot.springs.size());
-  std::iota(build.springs.begin(), build.springs.end(), 0u);
-  const auto ends = [&](std::uint32_t s) { return std::minmax(robot.springs[s].a, robot.springs[s].b); };
-  std::ranges::stable_sort(build.springs, [&](std::uint32_t s, std::uint32_t t) { return ends(s) < ends(t); });
-  for (const std::uint32_t s : build.springs) {
-    const auto [owner, partner] = std::pair<std::uint32_t, std::uint32_t>(ends(s));
-    build.partners.push_back(partner);
-    ++build.joints[owner].owned;
-    ++build.joints[owner].springs;
-    ++build.joints[partner].springs;
-  }
-  build.faces = pair_faces(robot);
-  return build;
-}
-
-std::uint64_t build_key(const Robot& robot) {
-  std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
-  const auto take = [&](std::uint64_t value) { key = (key ^ value) * 0x100000001b3u; };  // as FNV-1a takes bytes
-  for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);
-  for (const Face& face : robot.faces) take(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
-  return key;
-}
-
-bool same_build(const Robot& a, const Robot& b) {
-  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) && a.faces == b.faces;
-}
-
-std::size_t footprint_in_lockstep(const Robot& robot, std::size_t lanes) {
-  return lanes * (robot.springs.size() * (2 * sizeof(float) + sizeof(MaterialId)) + robot.masses.size() * 9 * sizeof(float));
-}
-
-Lockstep make_lockstep(std::shared_ptr<const Build> build, std::span<const Body> bodies, std::vector<std::size_t> members,
-                       const Configuration& configuration) {
+Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts) {
   Lockstep group;
   group.lanes = bodies[members.front()].places.lanes;
-  group.build = std::move(build);
+  group.build = std::move(assembly.build);
   group.bodies = std::move(members);
-  const std::size_t springs = group.build->springs.size() * group.lanes, masses = group.build->joints.size() * 3 * group.lanes;
-  group.rest_length.resize(springs);
-  group.hardness.resize(springs);
-  group.material.resize(springs);
-  fill_springs(group, bodies, configuration);
-  for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(masses);
-  group.sums.resize(masses);
-  if (std::holds_alternative<Land>(configuration.environment)) group.listed_x.resize(masses);
-  for (std::size_t lane = 0; lane < group.lanes; ++lane) {
-    const Body& body = bodies[member_of(group, lane)];
-    group.force_scale.push_back(body.scale.force);
-    group.correction_scale.push_back(body.scale.correction);
-    group.squared_stretch_limit.push_back(body.measures.squared_stretch_limit());
-    group.contact_distance.push_back(body.measures.contact_distance());
+  for (std::size_t lane = 0; lane < group.lanes; ++lane) group.seatings.push_back(assembly.seatings[member_of(group, lane)]);
+  const std::size_t slots = group.build->partners.size() * group.lanes, seats = group.build->joints.size() * group.lanes;
+  group.rest_length.resize(slots);
+  group.hardness.resize(slots);
+  group.factor.resize(slots);
+  group.face_scale.resize(group.build->faces.size() * group.lanes);
+  group.splits.resize(seats);
+  for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * seats);
+  group.sums.resize(3 * seats);
+  for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance})
+    of_lanes->resize(group.lanes);
+  std::vector<bool> taken(seats);
+  for (std::size_t lane = 0; lane < group.lanes; ++lane)
+    for (const std::uint32_t seat : group.seatings[lane]->seats) taken[seat * group.lanes + lane] = true;
+  for (std::uint32_t i = 0; i < seats; ++i)
+    if (!taken[i])
+      group.stand_ins.push_back({i / static_cast<std::uint32_t>(group.lanes), i % static_cast<std::uint32_t>(group.lanes)});
+  if (contacts) {
+    group.listed_x.resize(3 * seats);
+    group.is_mass.assign(seats, 1.0f);
+    for (const auto [seat, lane] : group.stand_ins) group.is_mass[seat * group.lanes + lane] = 0;
   }
   return group;
 }
 
-void load(Lockstep& group, std::span<Body> bodies) {
-  group.members.resize(group.lanes);
+void take_laws(Lockstep& group, std::span<const Body> bodies,
+               std::span<const std::array<FactorId, max_materials>> factors) {
+  constexpr float third = 1.0f / 3.0f;
+  std::ranges::fill(group.rest_length, 0.0f);
+  std::ranges::fill(group.factor, FactorId{0});
+  std::ranges::fill(group.face_scale, 0.0f);
+  std::ranges::fill(group.splits, 0.0f);
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
-    Body& body = bodies[member_of(group, lane)];
-    group.members[lane] = &body;
-    std::size_t at = lane;
-    for (std::size_t mass = 0; mass < group.build->joints.size(); ++mass) {
-      const Vec3 x = body.position(mass), v = body.velocity(mass);
-      for (const auto& [position, velocity] : {std::pair(x.x, v.x), std::pair(x.y, v.y), std::pair(x.z, v.z)}) {
-        group.x[at] = position;
-        group.v[at] = velocity;
-        at += group.lanes;
-      }
+    const std::size_t member = member_of(group, lane);
+    const Body& body = bodies[group.bodies[member]];
+    const Seating& seating = *group.seatings[lane];
+    for (std::size_t slot = lane; slot < group.hardness.size(); slot += group.lanes) group.hardness[slot] = body.hardness[air];
+    for (std::size_t s = 0; s < seating.slots.size(); ++s) {
+      const Spring& spring = body.robot->springs[s];
+      const std::size_t slot = seating.slots[s] * group.lanes + lane;
+      group.rest_length[slot] = spring.rest_length;
+      group.hardness[slot] = body.hardness[spring.material];
+      group.factor[slot] = factors[member][spring.material];
+    }
+    for (const std::uint32_t pair : seating.faces) group.face_scale[pair * group.lanes + lane] = third * body.scale.force;
+    for (std::size_t mass = 0; mass < seating.seats.size(); ++mass)
+      group.splits[seating.seats[mass] * group.lanes + lane] = body.splits[body.places.of_mass[mass]];
+    group.force_scale[lane] = body.scale.force;
+    group.correction_scale[lane] = body.scale.correction;
+    group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();
+    group.contact_distance[lane] = body.measures.contact_distance();
+  }
+}
+
+void load(Lockstep& group, std::span<Body> bodies) {
+  group.members.clear();
+  for (std::size_t lane = 0; lane < group.lanes; ++lane) {
+    Body& body = bodies[group.bodies[member_of(group, lane)]];
+    group.members.push_back(&body);
+    const std::vector<std::uint32_t>& seats = group.seatings[lane]->seats;
+    for (std::size_t mass = 0; mass < seats.size(); ++mass) {
+      const std::size_t first = group.first_of(seats[mass], lane);
+      put(group, group.x, first, body.position(mass));
+      put(group, group.v, first, body.velocity(mass));
     }
   }
+  for (std::size_t lane = 0; lane < group.bodies.size(); ++lane)
+    group.members[lane]->residence = {&group, group.x.data() + lane, group.v.data() + lane, group.seatings[lane]->seats.data(), group.lanes};
   group.compact = false;
+  group.steps_since_settled = std::numeric_limits<std::int64_t>::max() / 2;
   if (group.lists != present_lists(group)) group.lists.clear();
 }
 
-void store(const Lockstep& group, std::span<Body> bodies) {
-  const std::size_t masses = group.build->joints.size();
-  std::vector<Vec3> positions(masses), velocities(masses);
+void store(Lockstep& group) {
+  if (!group.resident()) return;
+  std::vector<Vec3> positions, velocities;
   for (std::size_t lane = 0; lane < group.bodies.size(); ++lane) {
+    Body& body = *group.members[lane];
+    const std::size_t masses = body.robot->masses.size();
+    positions.resize(masses);
+    velocities.resize(masses);
     for (std::size_t mass = 0; mass < masses; ++mass) {
-      positions[mass] = at(group, group.x, mass, lane);
-      velocities[mass] = at(group, group.v, mass, lane);
+      positions[mass] = body.position(mass);
+      velocities[mass] = body.velocity(mass);
     }
-    Body& body = bodies[group.bodies[lane]];
+    body.residence = {};
     set_state(body, positions, velocities);
     body.written = false;
+  }
+}
+
+void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead) {
+  constexpr std::int64_t most_steps = 64;
+  group.steps_since_settled += steps_ahead;
+  if (group.steps_since_settled <= most_steps) return;
+  group.steps_since_settled = steps_ahead;
+  for (const auto [seat, lane] : group.stand_ins) {
+    put(group, group.x, group.first_of(seat, lane), at(group, group.x, group.first_of(group.seatings[lane]->seats[0], lane)));
+    put(group, group.v, group.first_of(seat, lane), {});
+  }
+}
+
+void take_pulls(Lockstep& group) {
+  group.pulls.clear();
+  for (std::size_t lane = 0; lane < group.lanes; ++lane)
+    for (const Pull& pull : group.members[lane]->pulls)
+      group.pulls.push_back({group.first_of(group.seatings[lane]->seats[pull.mass], lane), pull.target,
+                             pull.stiffness * group.members[lane]->scale.force});
+}
+
+void add_pulls(Lockstep& group) {
+  for (const auto& [first, target, stiffness] : group.pulls) {
+    const Vec3 units = stiffness * (target - at(group, group.x, first));
+    if (fits(units)) push(group, first, units);
   }
 }
 
@@ -137,12 +158,13 @@ void list_near_pairs(Lockstep& group, std::uint32_t lanes) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     if ((lanes >> lane & 1) == 0) continue;
     Body& body = *group.members[lane];
-    for (std::size_t mass = 0; mass < group.build->joints.size(); ++mass) {
-      const std::size_t place = body.places.of_mass[mass];
-      const std::size_t first = 3 * mass * group.lanes + lane;
-      body.x.x[place] = group.listed_x[first] = group.x[first];
-      body.x.y[place] = group.listed_x[first + group.lanes] = group.x[first + group.lanes];
-      body.x.z[place] = group.listed_x[first + 2 * group.lanes] = group.x[first + 2 * group.lanes];
+    for (std::size_t mass = 0; mass < body.robot->masses.size(); ++mass) {
+      const std::size_t place = body.places.of_mass[mass], first = group.first_of(group.seatings[lane]->seats[mass], lane);
+      const Vec3 x = at(group, group.x, first);
+      put(group, group.listed_x, first, x);
+      body.x.x[place] = x.x;
+      body.x.y[place] = x.y;
+      body.x.z[place] = x.z;
     }
     body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
   }
@@ -152,14 +174,11 @@ void list_near_pairs(Lockstep& group, std::uint32_t lanes) {
 void add_contacts(Lockstep& group, float stiffness) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const Body& body = *group.members[lane];
+    const std::vector<std::uint32_t>& seats = group.seatings[lane]->seats;
+    const auto first = [&](std::uint32_t place) { return group.first_of(seats[body.places.mass_at[place]], lane); };
     for_each_contact(
-        body, stiffness, [&](std::uint32_t place) { return at(group, group.x, body.places.mass_at[place], lane); },
-        [&](std::uint32_t place, Vec3 units) {
-          std::int32_t* const first = group.sums.data() + 3 * body.places.mass_at[place] * group.lanes + lane;
-          add_units(first[0], units.x);
-          add_units(first[group.lanes], units.y);
-          add_units(first[2 * group.lanes], units.z);
-        });
+        body, stiffness, [&](std::uint32_t place) { return at(group, group.x, first(place)); },
+        [&](std::uint32_t place, Vec3 units) { push(group, first(place), units); });
   }
 }
 

@@ -1,9 +1,9 @@
-// Robots of one build, one a lane: what a vector loads of a mass or a spring then is that of as many robots, side by side,
-// and no lane is empty. Small robots are stepped like this where there are enough that are built alike.
+// Small robots side by side, one a lane: what a vector loads of a mass or a spring then is that of as many robots, and few
+// lanes are empty. The robots of a group are of one build, or of builds that have most in common (sim/cpu/build.h).
 //
-// A group is stepped as long as all goes well in it. If a robot of it explodes, the steps since the last checkpoint are
-// made again one robot after the other (sim/cpu/stepper.h), where all that an explosion asks for is done; both ways give
-// the same bits.
+// A group keeps its robots' state from call to call. It is stepped as long as all goes well in it. If a robot of it
+// explodes, the steps since the last checkpoint are made again one robot after the other (sim/cpu/stepper.h), where all
+// that an explosion asks for is done; both ways give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -12,63 +12,76 @@
 #include <vector>
 
 #include "sim/cpu/body.h"
-#include "sim/face_pairs.h"
+#include "sim/cpu/build.h"
 
 namespace mercury::cpu {
-
-// What robots of one group share: which masses are joined. Springs stand by owner, the mass with the lower index.
-struct Build {
-  struct Joint {
-    std::uint32_t owned = 0;   // springs that the mass owns
-    std::uint32_t springs = 0;  // springs at the mass
-  };
-  std::vector<Joint> joints;            // one a mass
-  std::vector<std::uint32_t> springs;   // indices in Robot::springs
-  std::vector<std::uint32_t> partners;  // masses, one a spring
-  std::vector<FacePair> faces;
-};
-
-Build build_of(const Robot& robot);
-
-// Equal for robots of the same build, and seldom for others.
-std::uint64_t build_key(const Robot& robot);
-bool same_build(const Robot& a, const Robot& b);
 
 struct Lockstep {
   std::shared_ptr<const Build> build;
   std::size_t lanes = 1;
   std::vector<std::size_t> bodies;  // one a lane; lanes that are left do what the first does
-  std::vector<Body*> members;       // of every lane, from load() on
+  // Of every lane.
+  std::vector<std::shared_ptr<const Seating>> seatings;
+  std::vector<Body*> members;       // from load() on
 
-  // Of each spring of the build, a lane.
+  // [slot][lane], as in SpringPlan; no force where a robot has no spring
   Aligned<float> rest_length, hardness;
-  Aligned<MaterialId> material;
+  Aligned<FactorId> factor;
+  // [pair of faces][lane]: units in a newton, of a third; 0 where a robot has no such faces
+  Aligned<float> face_scale;
+  // [seat][lane]: number of springs at the mass over the scale of corrections
+  Aligned<float> splits;
 
-  // [mass][x, y, z][lane]
+  // [seat][x, y, z][lane]
   Aligned<float> x, v;           // during XPBD's springs: the prediction and v + dt F
   Aligned<std::int32_t> sums;    // what acts on the masses, in units; zero between steps
   Aligned<float> checkpoint_x, checkpoint_v;
   // Where the masses were when their robot's near pairs were listed, and which of its lists that was, by lane.
   Aligned<float> listed_x;
   std::vector<std::uint64_t> lists;  // empty = none
+  Aligned<float> is_mass;            // [seat][lane]: 1, or 0 for a stand-in
+
+  // A stand-in moves like a free mass, and is brought back to its robot's first mass now and then.
+  struct StandIn {
+    std::uint32_t seat = 0, lane = 0;
+  };
+  std::vector<StandIn> stand_ins;
+  std::int64_t steps_since_settled = 0;
+
+  struct LanePull {
+    std::size_t first = 0;  // of x
+    Vec3 target;            // [m]
+    float stiffness = 0;    // [units/m]
+  };
+  std::vector<LanePull> pulls;
 
   // Of each lane's robot.
   Aligned<float> force_scale, correction_scale;  // FixedPointScale
   Aligned<float> squared_stretch_limit;
   Aligned<float> contact_distance;
   bool compact = false;  // no two masses of a robot are farther apart than its springs may be long
+
+  bool resident() const { return !members.empty() && members.front()->residence.group == this; }
+  std::size_t first_of(std::uint32_t seat, std::size_t lane) const { return 3 * lanes * seat + lane; }
 };
 
-// Bytes that a step of a group touches.
-std::size_t footprint_in_lockstep(const Robot& robot, std::size_t lanes);
+// A group of 1 to as many bodies as they have lanes, without laws or state.
+Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts);
 
-// A group of 1 to `lanes` bodies of this build, made for the present laws of the bodies.
-Lockstep make_lockstep(std::shared_ptr<const Build> build, std::span<const Body> bodies, std::vector<std::size_t> members,
-                       const Configuration& configuration);
+// Takes the bodies' laws as they stand; `factors`, by lane, are those of their materials.
+void take_laws(Lockstep& group, std::span<const Body> bodies,
+               std::span<const std::array<FactorId, max_materials>> factors);
 
-// Takes the bodies' states; gives them back.
+// Takes the bodies' states, which reside here from then on; gives them back.
 void load(Lockstep& group, std::span<Body> bodies);
-void store(const Lockstep& group, std::span<Body> bodies);
+void store(Lockstep& group);
+
+// Brings stand-ins back where they wander too far.
+void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead);
+
+// Takes the members' pulls; adds their forces.
+void take_pulls(Lockstep& group);
+void add_pulls(Lockstep& group);
 
 // Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes' contacts.
 void list_near_pairs(Lockstep& group, std::uint32_t lanes);

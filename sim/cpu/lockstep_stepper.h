@@ -20,6 +20,7 @@ class LockstepStepper {
 
   // False if a robot may have exploded.
   bool step(Solver solver, const float* factors) {
+    if (!group_.pulls.empty()) add_pulls(group_);
     if constexpr (Hooks::has_contacts)
       if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) touch();
     if (!add_faces()) return false;
@@ -78,21 +79,30 @@ class LockstepStepper {
   Mask strayed() const {
     float* const listed = group_.listed_x.data();
     const Lanes reach = Lanes(list_reach) * load_aligned(group_.contact_distance.data());
-    const Lanes3 common = at(x_, 0) - at(listed, 0);
+    alignas(64) float now[3 * lane_count], then[3 * lane_count];
+    for (std::size_t lane = 0; lane < lane_count; ++lane)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t first = group_.first_of(group_.seatings[lane]->seats[0], lane) + axis * lane_count;
+        now[axis * lane_count + lane] = x_[first];
+        then[axis * lane_count + lane] = listed[first];
+      }
+    const Lanes3 common = at(now, 0) - at(then, 0);
     Lanes farthest_squared = 0.0f;
-    for (std::size_t mass = 0; mass < joints_.size(); ++mass)
-      farthest_squared = larger(farthest_squared, squared_length(at(x_, mass) - at(listed, mass) - common));
+    for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
+      const Lanes is_mass = load_aligned(group_.is_mass.data() + mass * lane_count);
+      farthest_squared = larger(farthest_squared, is_mass * squared_length(at(x_, mass) - at(listed, mass) - common));
+    }
     return farthest_squared > reach * reach;
   }
 
   // False if a face's force is out of range.
   bool add_faces() {
     if constexpr (Hooks::has_faces) {
-      const Lanes scale = Lanes(1.0f / 3.0f) * force_scale_;
+      const float* scale = group_.face_scale.data();
       Integers largest_force = no_integers();
       for (const auto& [a, b, c, d] : group_.build->faces) {
         const Lanes3 xa = at(x_, a), shared = at(v_, a) + at(v_, c);
-        const FaceForces f = face_forces(hooks_, scale, at(x_, b) - xa, at(x_, c) - xa, at(x_, d) - xa,
+        const FaceForces f = face_forces(hooks_, load_aligned(scale), at(x_, b) - xa, at(x_, c) - xa, at(x_, d) - xa,
                                          shared + at(v_, b), shared + at(v_, d));
         largest_force = larger(largest_force, f.largest_component());
         const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
@@ -100,6 +110,7 @@ class LockstepStepper {
         add_to(b, on_b);
         add_to(c, on_both);
         add_to(d, on_d);
+        scale += lane_count;
       }
       return largest(largest_force) < mercury::bits_of(face_limit_units);
     }
@@ -115,22 +126,22 @@ class LockstepStepper {
   // only `checked` finds.
   template <bool xpbd, bool checked, class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
-    SlotLaw<xpbd, checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.material.data(), 0.0f};
+    SlotLaw<xpbd, checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.factor.data(), 0.0f};
+    const float* const splits = group_.splits.data();
     const std::uint32_t* partner = group_.build->partners.data();
     std::size_t mass = 0;
-    for (const auto& [owned, springs] : joints_) {
+    for (const auto& [owned, slots] : joints_) {
       const Lanes3 own = at(x_, mass);
-      const Lanes splits = xpbd ? per_correction_ * Lanes(static_cast<float>(springs)) : Lanes(0.0f);
+      const Lanes own_splits = xpbd ? load_aligned(splits + mass * lane_count) : Lanes(0.0f);
       Integers3 sum{no_integers(), no_integers(), no_integers()};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
-        const Lanes partner_splits =
-            xpbd ? per_correction_ * Lanes(static_cast<float>(joints_[*partner].springs)) : Lanes(0.0f);
-        const Integers3 f = law(own - at(x_, *partner), splits + partner_splits);
+        const Lanes partner_splits = xpbd ? load_aligned(splits + *partner * lane_count) : Lanes(0.0f);
+        const Integers3 f = law(own - at(x_, *partner), own_splits + partner_splits);
         sum = sum - f;
         add_to(*partner, f);
       }
-      // The sum holds rounding_magic_bits once for each spring that the mass is partner in, less those that it owns.
-      const Integers magic = integers_of(Words((2 * owned - springs) * std::uint32_t{rounding_magic_bits}));
+      // The sum holds rounding_magic_bits once for each slot that the seat is partner in, less those that it owns.
+      const Integers magic = integers_of(Words((2 * owned - slots) * std::uint32_t{rounding_magic_bits}));
       finish(mass, take(mass) + sum + Integers3{magic, magic, magic});
       ++mass;
     }
@@ -172,12 +183,12 @@ class LockstepStepper {
 };
 
 // Kernel::advance_together.
-inline bool advance_together(Lockstep& group, const StepSetting& setting, const float* factors, std::int64_t steps) {
+inline bool advance_together(Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
   return std::visit(
       [&](const auto& hooks) {
         LockstepStepper stepper(group, hooks, setting);
-        for (std::int64_t n = 0; n < steps; ++n, factors += max_materials)
-          if (!stepper.step(setting.solver, factors)) return false;
+        for (std::int64_t n = 0; n < steps; ++n)
+          if (!stepper.step(setting.solver, factors.of_step(n))) return false;
         return true;
       },
       setting.hooks);

@@ -4,7 +4,6 @@
 #include <tuple>
 #include <utility>
 
-#include "sim/face_pairs.h"
 #include "sim/fixed_point.h"
 
 namespace mercury::cpu {
@@ -33,6 +32,7 @@ class Planner {
       append_rows(block);
     }
     plan_.hardness.resize(plan_.rest_length.size());
+    plan_.factor.resize(plan_.rest_length.size());
   }
 
   SpringPlan take() { return std::move(plan_); }
@@ -163,8 +163,7 @@ class Planner {
 
 SpringPlan plan_springs(const Robot& robot, const Places& places) { return Planner(robot, places).take(); }
 
-std::vector<std::uint32_t> plan_faces(const Robot& robot, const Places& places) {
-  const std::vector<FacePair> pairs = pair_faces(robot);
+std::vector<std::uint32_t> plan_faces(std::span<const FacePair> pairs, const Places& places) {
   std::vector<std::uint32_t> corners;
   for (std::size_t first = 0; first < pairs.size(); first += places.lanes)
     for (const auto corner : {&FacePair::a, &FacePair::b, &FacePair::c, &FacePair::d})

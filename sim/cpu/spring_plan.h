@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "sim/cpu/aligned.h"
+#include "sim/cpu/muscles.h"
 #include "sim/cpu/places.h"
+#include "sim/face_pairs.h"
 #include "sim/robot.h"
 
 namespace mercury::cpu {
@@ -35,9 +37,11 @@ struct SpringPlan {
 
   // Of each slot, a lane; material air and rest length 0 where there is no spring.
   Aligned<float> rest_length;
-  Aligned<MaterialId> material;
+  std::vector<MaterialId> material;
   // Stiffness or compliance of the present configuration, in units; so that no force comes of an empty lane.
   Aligned<float> hardness;
+  // Its place among the muscles that it is stepped with.
+  Aligned<FactorId> factor;
 
   // The integers of the sums carry rounding_magic_bits (sim/fixed_point.h) once for every lane that was added; these,
   // one a place, take them out again.
@@ -50,6 +54,6 @@ SpringPlan plan_springs(const Robot& robot, const Places& places);
 
 // For every pair of faces its corners a, b, c, d: all lanes' a, then b and so on, each four times the place. The last
 // block is filled up with pairs that have no area.
-std::vector<std::uint32_t> plan_faces(const Robot& robot, const Places& places);
+std::vector<std::uint32_t> plan_faces(std::span<const FacePair> pairs, const Places& places);
 
 }  // namespace mercury::cpu

@@ -12,7 +12,7 @@ struct SlotLaw {
   const float* factors;
   const float* rest_length;
   const float* hardness;
-  const MaterialId* material;
+  const FactorId* factor;
   Lanes longest;
 
   // The contribution to the partners in units, plus rounding_magic_bits. `d` points from partner to owner.
@@ -21,7 +21,7 @@ struct SlotLaw {
     const Lanes rest = load_aligned(rest_length);
     const Mask real = rest > 0.0f;
     if constexpr (checked) longest = select((squared > longest) & real, squared, longest);
-    const Lanes length = rest * look_up(factors, material, real);
+    const Lanes length = rest * look_up(factors, factor, real);
     Lanes per_distance;
     if constexpr (xpbd)
       per_distance = mercury::xpbd(squared, length, splits, load_aligned(hardness));
@@ -29,7 +29,7 @@ struct SlotLaw {
       per_distance = hooke(squared, length, load_aligned(hardness));
     rest_length += lane_count;
     hardness += lane_count;
-    material += lane_count;
+    factor += lane_count;
     return {to_fixed_plus_magic(per_distance, d.x), to_fixed_plus_magic(per_distance, d.y),
             to_fixed_plus_magic(per_distance, d.z)};
   }
@@ -45,7 +45,7 @@ bool add_springs(Body& body, const float* factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !spring_rows;
   const Arrays arrays(body);
   const SpringPlan& plan = body.springs;
-  SlotLaw<xpbd, checked> law{factors, plan.rest_length.data(), plan.hardness.data(), plan.material.data(), 0.0f};
+  SlotLaw<xpbd, checked> law{factors, plan.rest_length.data(), plan.hardness.data(), plan.factor.data(), 0.0f};
   const Run* run = plan.runs.data();
   const std::uint32_t* partners = plan.partners.data();
   std::size_t place = 0;

@@ -16,6 +16,13 @@ struct ContactLaw {
 
 using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
 
+// L(t) / L0 of every muscle, step after step.
+struct Factors {
+  const float* first = nullptr;
+  std::size_t muscles = 0;
+  const float* of_step(std::int64_t step) const { return first + static_cast<std::size_t>(step) * muscles; }
+};
+
 struct StepSetting {
   Solver solver = Solver::force;
   AnyHooks hooks = OceanHooks(Ocean{});

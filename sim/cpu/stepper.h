@@ -116,21 +116,21 @@ class Stepper {
 };
 
 template <class Hooks, bool spring_rows>
-std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& setting, const float* factors, std::int64_t steps) {
+std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& setting, Factors factors, std::int64_t steps) {
   Stepper<Hooks, spring_rows> stepper(body, hooks, setting);
-  for (std::int64_t n = 0; n < steps; ++n, factors += max_materials)
-    if (!stepper.step(setting.solver, factors)) return n;
+  for (std::int64_t n = 0; n < steps; ++n)
+    if (!stepper.step(setting.solver, factors.of_step(n))) return n;
   return steps;
 }
 
 template <class Hooks>
-std::int64_t advance_in(const Hooks& hooks, Body& body, const StepSetting& setting, const float* factors, std::int64_t steps) {
+std::int64_t advance_in(const Hooks& hooks, Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
   return body.springs.has_rows() ? advance_body<Hooks, true>(body, hooks, setting, factors, steps)
                                  : advance_body<Hooks, false>(body, hooks, setting, factors, steps);
 }
 
 // Kernel::advance.
-inline std::int64_t advance(Body& body, const StepSetting& setting, const float* factors, std::int64_t steps) {
+inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
   if (const auto* ocean = std::get_if<OceanHooks>(&setting.hooks)) return advance_in(*ocean, body, setting, factors, steps);
   if (const auto* simple = std::get_if<OceanSimpleHooks>(&setting.hooks)) return advance_in(*simple, body, setting, factors, steps);
   return advance_in(std::get<LandHooks>(setting.hooks), body, setting, factors, steps);

@@ -1,0 +1,97 @@
+#include "sim/cpu/build.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace mercury::cpu {
+namespace {
+
+// One robot's spring or pair of faces between certain seats; `copy` counts those of the robot between the same.
+struct Claim {
+  std::uint64_t seats = 0;
+  std::uint32_t copy = 0, sitter = 0, item = 0;
+
+  auto order() const { return std::pair(seats, copy); }
+};
+
+// Sorts claims of which each sitter's stand together, and counts copies.
+void sort(std::vector<Claim>& claims) {
+  std::ranges::stable_sort(claims, {}, [](const Claim& c) { return std::pair(c.seats, c.sitter); });
+  for (std::size_t i = 1; i < claims.size(); ++i)
+    if (claims[i].seats == claims[i - 1].seats && claims[i].sitter == claims[i - 1].sitter)
+      claims[i].copy = claims[i - 1].copy + 1;
+  std::ranges::stable_sort(claims, {}, &Claim::order);
+}
+
+// Calls visit(claim, number) with the same number for claims on the same seats by different sitters, and
+// start(claim) before each new number.
+template <class Start, class Visit>
+void for_each(std::vector<Claim>& claims, const Start& start, const Visit& visit) {
+  sort(claims);
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    if (i == 0 || claims[i].order() != claims[i - 1].order()) {
+      start(claims[i]);
+      ++number;
+    }
+    visit(claims[i], number - 1);
+  }
+}
+
+bool same_ends(const Spring& a, const Spring& b) { return a.a == b.a && a.b == b.b; }
+
+}  // namespace
+
+Assembly assemble(std::span<const Sitter> sitters, std::size_t seats) {
+  Build build;
+  build.joints.resize(seats);
+  std::vector<Seating> seatings(sitters.size());
+  std::vector<Claim> springs, faces;
+  for (std::uint32_t s = 0; s < sitters.size(); ++s) {
+    const std::vector<std::uint32_t>& seat = sitters[s].seats;
+    const std::vector<Spring>& own = sitters[s].robot->springs;
+    seatings[s] = {seat, std::vector<std::uint32_t>(own.size()), std::vector<std::uint32_t>(sitters[s].faces.size())};
+    for (std::uint32_t i = 0; i < own.size(); ++i) {
+      const auto [owner, partner] = std::minmax(seat[own[i].a], seat[own[i].b]);
+      springs.push_back({std::uint64_t{owner} << 16 | partner, 0, s, i});
+    }
+    for (std::uint32_t i = 0; i < sitters[s].faces.size(); ++i) {
+      const FacePair& p = sitters[s].faces[i];
+      faces.push_back({(std::uint64_t{seat[p.a]} << 16 | seat[p.b]) << 32 | std::uint64_t{seat[p.c]} << 16 | seat[p.d], 0, s, i});
+    }
+  }
+  for_each(
+      springs,
+      [&](const Claim& claim) {
+        const auto owner = static_cast<std::uint32_t>(claim.seats >> 16), partner = static_cast<std::uint32_t>(claim.seats & 0xffff);
+        build.partners.push_back(partner);
+        ++build.joints[owner].owned;
+        ++build.joints[owner].slots;
+        ++build.joints[partner].slots;
+      },
+      [&](const Claim& claim, std::uint32_t slot) { seatings[claim.sitter].slots[claim.item] = slot; });
+  for_each(
+      faces,
+      [&](const Claim& claim) {
+        const auto corner = [&](int n) { return static_cast<std::uint16_t>(claim.seats >> (48 - 16 * n)); };
+        build.faces.push_back({corner(0), corner(1), corner(2), corner(3)});
+      },
+      [&](const Claim& claim, std::uint32_t pair) { seatings[claim.sitter].faces[claim.item] = pair; });
+  Assembly assembly{std::make_shared<const Build>(std::move(build)), {}};
+  for (Seating& seating : seatings) assembly.seatings.push_back(std::make_shared<const Seating>(std::move(seating)));
+  return assembly;
+}
+
+std::uint64_t build_key(const Robot& robot) {
+  std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
+  const auto take = [&](std::uint64_t value) { key = (key ^ value) * 0x100000001b3u; };  // as FNV-1a takes bytes
+  for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);
+  for (const Face& face : robot.faces) take(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
+  return key;
+}
+
+bool same_build(const Robot& a, const Robot& b) {
+  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) && a.faces == b.faces;
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,41 @@
+#include "sim/cpu/cells.h"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+
+#include "sim/springs.h"
+
+namespace mercury::cpu {
+
+std::vector<Cell> cells_of(const Robot& robot) {
+  if (robot.springs.empty()) return {};
+  float shortest_squared = squared_length(robot.masses[robot.springs[0].b] - robot.masses[robot.springs[0].a]);
+  for (const Spring& spring : robot.springs)
+    shortest_squared = std::min(shortest_squared, squared_length(robot.masses[spring.b] - robot.masses[spring.a]));
+  Vec3 low = robot.masses[0];
+  for (const Vec3 x : robot.masses) low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+
+  constexpr std::size_t across = most_cells_across;
+  const float per_metre = 1 / std::sqrt(shortest_squared);
+  std::bitset<across * across * across> taken;
+  std::vector<Cell> cells;
+  cells.reserve(robot.masses.size());
+  for (const Vec3 x : robot.masses) {
+    std::array<std::size_t, 3> at{};
+    const std::array<float, 3> way{x.x - low.x, x.y - low.y, x.z - low.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float cell = std::round(way[axis] * per_metre);
+      if (!(cell < static_cast<float>(across))) return {};
+      at[axis] = static_cast<std::size_t>(cell);
+    }
+    const std::size_t index = at[0] + across * (at[1] + across * at[2]);
+    if (taken[index]) return {};
+    taken[index] = true;
+    cells.push_back({static_cast<std::uint8_t>(at[0]), static_cast<std::uint8_t>(at[1]), static_cast<std::uint8_t>(at[2])});
+  }
+  return cells;
+}
+
+}  // namespace mercury::cpu

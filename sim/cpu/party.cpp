@@ -1,0 +1,187 @@
+#include "sim/cpu/party.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace mercury::cpu {
+namespace {
+
+using Group = std::vector<std::size_t>;
+
+std::size_t footprint(std::size_t slots, std::size_t seats, std::size_t lanes) {
+  return lanes * (slots * (2 * sizeof(float) + sizeof(FactorId)) + seats * 9 * sizeof(float));
+}
+
+bool alike(const Body& a, const Body& b) {
+  return a.build_key == b.build_key && same_build(*a.robot, *b.robot) && a.face_pairs == b.face_pairs;
+}
+
+// Groups of as many robots of one build as there are lanes, or nearly; the others are left.
+std::vector<Group> alike_groups(std::span<const Body> bodies, Group& left) {
+  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i].build_key; });
+  std::vector<Group> groups;
+  Group others;
+  for (auto first = left.begin(); first != left.end();) {
+    const std::size_t lanes = bodies[*first].places.lanes;
+    auto last = first + 1;
+    while (last != left.end() && static_cast<std::size_t>(last - first) < lanes && alike(bodies[*first], bodies[*last])) ++last;
+    if (4 * static_cast<std::size_t>(last - first) >= 3 * lanes)
+      groups.emplace_back(first, last);
+    else
+      others.insert(others.end(), first, last);
+    first = last;
+  }
+  left = std::move(others);
+  return groups;
+}
+
+// How many robots of a group have a mass in each cell.
+class Crowd {
+ public:
+  Crowd() : count_(std::size_t{across} * across * across) {}
+
+  void add(const Body& body) {
+    for (const Cell c : body.cells)
+      if (count_[index(c)]++ == 0) ++cells_;
+  }
+  // Cells that a robot shares with the others, less those that it or they would leave empty.
+  double likeness(const Body& body) const {
+    std::size_t shared = 0;
+    for (const Cell c : body.cells) shared += count_[index(c)] != 0;
+    const auto common = static_cast<double>(shared);
+    return common - (static_cast<double>(body.cells.size()) - common) - 0.5 * (static_cast<double>(cells_) - common);
+  }
+  // Numbers the cells in use: z slowest, then y.
+  std::size_t number(std::vector<std::uint32_t>& seat_of_cell) const {
+    std::uint32_t seats = 0;
+    seat_of_cell.resize(count_.size());
+    for (std::size_t i = 0; i < count_.size(); ++i)
+      if (count_[i] != 0) seat_of_cell[i] = seats++;
+    return seats;
+  }
+  static std::size_t index(Cell c) { return c.x + across * (c.y + across * std::size_t{c.z}); }
+
+ private:
+  static constexpr std::size_t across = most_cells_across;
+  std::vector<std::uint8_t> count_;
+  std::size_t cells_ = 0;
+};
+
+// Groups of robots with masses in much the same cells: to the largest robot left those that are most like it.
+std::vector<Group> similar_groups(std::span<const Body> bodies, Group& left) {
+  Group candidates, others;
+  for (const std::size_t i : left) (bodies[i].cells.empty() ? others : candidates).push_back(i);
+  std::ranges::stable_sort(candidates, std::greater{}, [&](std::size_t i) { return bodies[i].cells.size(); });
+  constexpr std::size_t most_compared = 64;
+  Group compared;  // the largest left
+  std::size_t next = 0;
+  std::vector<Group> groups;
+  while (true) {
+    Crowd crowd;
+    Group group;
+    const auto take = [&](Group::iterator chosen) {
+      crowd.add(bodies[*chosen]);
+      group.push_back(*chosen);
+      compared.erase(chosen);
+    };
+    const auto refill = [&] {
+      while (compared.size() < most_compared && next < candidates.size()) compared.push_back(candidates[next++]);
+      return !compared.empty();
+    };
+    if (!refill()) break;
+    take(compared.begin());
+    while (group.size() < bodies[group.front()].places.lanes && refill())
+      take(std::ranges::max_element(compared, {}, [&](std::size_t i) { return crowd.likeness(bodies[i]); }));
+    groups.push_back(std::move(group));
+  }
+  left = std::move(others);
+  return groups;
+}
+
+Party party_of_alike(std::span<const Body> bodies, Group group) {
+  const Body& first = bodies[group.front()];
+  std::vector<std::uint32_t> seats(first.robot->masses.size());
+  std::iota(seats.begin(), seats.end(), 0u);
+  const Sitter sitter{first.robot, first.face_pairs, seats};
+  Party party{std::move(group), assemble({&sitter, 1}, seats.size())};
+  party.assembly.seatings.resize(party.bodies.size(), party.assembly.seatings.front());
+  return party;
+}
+
+Party party_of_similar(std::span<const Body> bodies, Group group) {
+  Crowd crowd;
+  for (const std::size_t i : group) crowd.add(bodies[i]);
+  std::vector<std::uint32_t> seat_of_cell;
+  const std::size_t seats = crowd.number(seat_of_cell);
+  std::vector<Sitter> sitters;
+  for (const std::size_t i : group) {
+    sitters.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
+    for (const Cell c : bodies[i].cells) sitters.back().seats.push_back(seat_of_cell[Crowd::index(c)]);
+  }
+  return {std::move(group), assemble(sitters, seats)};
+}
+
+// What a step costs, in full slots of a run; measured.
+double cost_together(const Build& build, bool faces) {
+  return static_cast<double>(build.partners.size()) + 3.2 * static_cast<double>(build.joints.size()) +
+         (faces ? 5.0 * static_cast<double>(build.faces.size()) : 0.0);
+}
+double cost_alone(const Body& body, bool faces) {
+  const SpringPlan& plan = body.springs;
+  const auto lanes = static_cast<double>(body.places.lanes);
+  const double a_block = plan.has_rows() && faces ? 6 : plan.has_rows() || faces ? 5 : 3;
+  return 8 + static_cast<double>(plan.runs.size()) + 2.4 * static_cast<double>(plan.partners.size()) / lanes +
+         a_block * static_cast<double>(body.places.blocks()) +
+         (faces ? 9.0 * static_cast<double>(body.faces.size()) / (4 * lanes) : 0.0);
+}
+
+bool pays(std::span<const Body> bodies, const Party& party, const Configuration& configuration) {
+  const bool faces = std::holds_alternative<Ocean>(configuration.environment);
+  double alone = 0;
+  for (const std::size_t i : party.bodies) alone += cost_alone(bodies[i], faces);
+  return footprint(*party.assembly.build, bodies[party.bodies.front()].places.lanes) <= cache_share &&
+         cost_together(*party.assembly.build, faces) < 0.95 * alone;
+}
+
+}  // namespace
+
+std::size_t footprint(const Build& build, std::size_t lanes) {
+  return footprint(build.partners.size(), build.joints.size(), lanes);
+}
+
+std::size_t footprint(const Body& body) {
+  return body.springs.rest_length.size() * 10 + body.springs.partners.size() * 4 + body.faces.size() * 4 +
+         body.places.padded() * 128;
+}
+
+// Contacts pick masses lane by lane, which only pays where positions and sums of a group are in the nearest cache.
+bool fits_in_party(const Body& body, const Configuration& configuration) {
+  constexpr std::size_t nearest_cache_share = 24 * 1024;  // [bytes]
+  const Land* const land = std::get_if<Land>(&configuration.environment);
+  const std::size_t masses = body.robot->masses.size(), lanes = body.places.lanes;
+  return body.status.exploded_step < 0 && footprint(body.robot->springs.size(), masses, lanes) <= cache_share &&
+         (land == nullptr || !land->self_collision || masses * lanes * 3 * (sizeof(float) + sizeof(std::int32_t)) <= nearest_cache_share);
+}
+
+std::vector<Party> find_parties(std::span<const Body> bodies, std::size_t threads, const Configuration& configuration) {
+  Group left;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (fits_in_party(bodies[i], configuration)) left.push_back(i);
+  std::vector<Group> groups = alike_groups(bodies, left);
+  const std::size_t alike = groups.size();
+  std::ranges::move(similar_groups(bodies, left), std::back_inserter(groups));
+  if (groups.size() < packs_a_thread * threads) groups.resize(groups.size() / threads * threads);
+
+  std::vector<Party> parties(groups.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+    parties[g] = g < alike ? party_of_alike(bodies, std::move(groups[g])) : party_of_similar(bodies, std::move(groups[g]));
+    if (g >= alike && !pays(bodies, parties[g], configuration)) parties[g] = {};
+  });
+  std::erase_if(parties, [](const Party& party) { return party.bodies.empty(); });
+  return parties;
+}
+
+}  // namespace mercury::cpu
