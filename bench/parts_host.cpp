@@ -1,6 +1,7 @@
 // What happens on the host before and between steps: plans, muscles' factors, lists of near masses, files, growing.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <string>
 
 #include "bench/cpu_lattice.h"
@@ -50,13 +51,22 @@ void near_pairs(State& state) {
 }
 BENCHMARK(near_pairs)->Name("list of near masses")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
 
-// Of all 256 materials of a table.
-void muscle_factors(State& state) {
-  constexpr std::int64_t steps = 32;
+// Of all materials of the default table.
+cpu::Muscles all_muscles() {
   std::vector<Material> materials(max_materials);
   std::ranges::copy(default_materials(), materials.begin());
-  cpu::Muscles muscles = cpu::muscles_of(materials, {});
-  cpu::Aligned<float> factors(max_materials * steps);
+  std::array<bool, max_materials> wanted;
+  wanted.fill(true);
+  cpu::Muscles muscles;
+  muscles.add(materials, wanted);
+  return muscles;
+}
+
+void muscle_factors(State& state) {
+  constexpr std::int64_t steps = 32;
+  cpu::Muscles muscles = all_muscles();
+  muscles.move_to({});
+  cpu::Aligned<float> factors(muscles.amplitude.size() * steps);
   for (auto _ : state) {
     cpu::kernels().front().fill_factors(muscles, factors.data(), steps);
     benchmark::ClobberMemory();
@@ -66,9 +76,12 @@ void muscle_factors(State& state) {
 BENCHMARK(muscle_factors)->Name("muscles of 32 steps")->Unit(benchmark::kMicrosecond);
 
 void phases(State& state) {
-  std::vector<Material> materials(max_materials);
-  std::ranges::copy(default_materials(), materials.begin());
-  for (auto _ : state) benchmark::DoNotOptimize(cpu::muscles_of(materials, {.step = 123456789}));
+  cpu::Muscles muscles = all_muscles();
+  Clock clock{.step = 123456789};
+  for (auto _ : state) {
+    muscles.move_to(clock);
+    ++clock.step;  // which no steps have led to
+  }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(max_materials));
 }
 BENCHMARK(phases)->Name("table of phases")->Unit(benchmark::kMicrosecond);

@@ -124,7 +124,7 @@ Party party_of_similar(std::span<const Body> bodies, Group group) {
   return {std::move(group), assemble(sitters, seats)};
 }
 
-// What a step costs, in full slots of a run; measured.
+// What a step costs, in full slots of a run; measured with eight lanes.
 double cost_together(const Build& build, bool faces) {
   return static_cast<double>(build.partners.size()) + 3.2 * static_cast<double>(build.joints.size()) +
          (faces ? 5.0 * static_cast<double>(build.faces.size()) : 0.0);
@@ -142,8 +142,10 @@ bool pays(std::span<const Body> bodies, const Party& party, const Configuration&
   const bool faces = std::holds_alternative<Ocean>(configuration.environment);
   double alone = 0;
   for (const std::size_t i : party.bodies) alone += cost_alone(bodies[i], faces);
-  return footprint(*party.assembly.build, bodies[party.bodies.front()].places.lanes) <= cache_share &&
-         cost_together(*party.assembly.build, faces) < 0.95 * alone;
+  // More lanes make rows dearer.
+  const std::size_t lanes = bodies[party.bodies.front()].places.lanes;
+  const double dearer = lanes > 8 ? 1.15 : lanes < 8 ? 0.95 : 1.0;
+  return footprint(*party.assembly.build, lanes) <= cache_share && cost_together(*party.assembly.build, faces) < dearer * alone;
 }
 
 }  // namespace
