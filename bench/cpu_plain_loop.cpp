@@ -91,13 +91,13 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
 // A third of each face's force to each of its masses. False, and the lowest mass noted, if a force is out of range.
 template <class Hooks>
 bool PlainLoop::add_face_forces(const Hooks& hooks) {
-  constexpr float third = 1.0f / 3.0f;
+  const auto [drag, lift] = hooks.of_sums(scale_.force);
   bool fit = true;
   for (const auto& [a, b, c, d] : faces_) {
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
-    const Vec3 to_c = x[c] - x[a], shared = v[a] + v[c];
-    const Vec3 first = third * scale_.force * hooks.on_face(0.5f * cross(x[b] - x[a], to_c), third * (shared + v[b]));
-    const Vec3 second = third * scale_.force * hooks.on_face(0.5f * cross(to_c, x[d] - x[a]), third * (shared + v[d]));
+    const Vec3 to_c = x[c] - x[a], past = hooks.thrice_flow - (v[a] + v[c]);
+    const Vec3 first = hooks.on_face(cross(x[b] - x[a], to_c), past - v[b], drag, lift);
+    const Vec3 second = hooks.on_face(cross(to_c, x[d] - x[a]), past - v[d], drag, lift);
     if (!fits(first) || !fits(second)) {
       bad_mass_ = std::min({bad_mass_, std::uint32_t{a}, std::uint32_t{b}, std::uint32_t{c}, std::uint32_t{d}});
       fit = false;

@@ -2,6 +2,7 @@
 //   has_faces, has_contacts, has_floor       what a step has to do, known at compile time
 //   on_mass(v)                               force on a unit mass of velocity v [N]
 //   on_face(area_normal, v)                  force on a face, if has_faces
+//   on_face(normal, u, drag, lift), of_sums  the same with fewer multiplications
 //   floor(x, displacement)                   resolves the end of a step on positions, if has_floor
 // Vector is a Vec3 or a vector of several (sim/cpu/lanes.h).
 #pragma once
@@ -13,11 +14,11 @@ namespace mercury {
 
 struct OceanHooks {
   static constexpr bool has_faces = true, has_contacts = false, has_floor = false;
-  Vec3 gravity, flow;
+  Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0;
 
   explicit OceanHooks(const Ocean& ocean)
-      : gravity(ocean.gravity), flow(ocean.flow), half_density(ocean.density / 2),
+      : gravity(ocean.gravity), flow(ocean.flow), thrice_flow(3.0f * ocean.flow), half_density(ocean.density / 2),
         drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient) {}
 
   template <class Vector>
@@ -30,14 +31,28 @@ struct OceanHooks {
   // `area_normal` is A n; either orientation gives the same force.
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    const Vector u = flow - velocity;
-    const auto flux = multiply_add(area_normal.z, u.z, multiply_add(area_normal.y, u.y, area_normal.x * u.x));
+    return on_face(area_normal, flow - velocity, half_density * drag_minus_lift, half_density * lift);
+  }
+
+  // The same for normals and flows (u) of another length, the coefficients scaled to match.
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real drag, Real lift) {
+    const auto flux = multiply_add(normal.z, u.z, multiply_add(normal.y, u.y, normal.x * u.x));
     const auto speed_squared = multiply_add(u.z, u.z, multiply_add(u.y, u.y, u.x * u.x));
-    const auto along_flow = half_density * drag_minus_lift * absolute(flux);
-    const auto along_normal = half_density * lift * select(flux < 0.0f, -speed_squared, speed_squared);
-    return {multiply_add(along_flow, u.x, along_normal * area_normal.x),
-            multiply_add(along_flow, u.y, along_normal * area_normal.y),
-            multiply_add(along_flow, u.z, along_normal * area_normal.z)};
+    const auto along_flow = drag * absolute(flux);
+    const auto along_normal = lift * select(flux < 0.0f, -speed_squared, speed_squared);
+    return {multiply_add(along_flow, u.x, along_normal * normal.x), multiply_add(along_flow, u.y, along_normal * normal.y),
+            multiply_add(along_flow, u.z, along_normal * normal.z)};
+  }
+
+  // Coefficients for a third of the force times `scale`, of 2 A n and of the sum of u over the face's masses, which need
+  // no multiplication.
+  struct Coefficients {
+    float drag = 0, lift = 0;
+  };
+  Coefficients of_sums(float scale) const {
+    const float common = half_density * scale / 54;
+    return {common * drag_minus_lift, common * lift};
   }
 };
 

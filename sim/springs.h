@@ -31,5 +31,10 @@ template <class Real>
 MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real splits, Real compliance) {
   return excess(squared, length) * inverse(splits + compliance);
 }
+// The last factor, which a spring keeps from step to step: with it for stiffness, hooke() gives xpbd() bit for bit.
+template <class Real>
+MERCURY_HOST_DEVICE Real xpbd_stiffness(Real splits, Real compliance) {
+  return inverse(splits + compliance);
+}
 
 }  // namespace mercury

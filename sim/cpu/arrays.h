@@ -42,7 +42,6 @@ HWY_INLINE void add(Integers3 a, Pointers3<std::int32_t> to, std::size_t place) 
 struct Arrays {
   Pointers3<float> x, v;
   float *x_rows, *v_rows;
-  const float* splits;
   Pointers3<std::int32_t> own, reaction, taken;
   std::int32_t* row_sums;
   const std::uint32_t* bias;
@@ -50,12 +49,12 @@ struct Arrays {
 
   explicit Arrays(Body& body)
       : x(pointers(body.x)), v(pointers(body.v)), x_rows(body.x_rows.data()), v_rows(body.v_rows.data()),
-        splits(body.splits.data()), own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)),
+        own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)),
         taken(pointers(body.sums.taken)), row_sums(body.sums.rows.data()), bias(body.springs.bias.data()), places(body.places.mass_at.size()),
         stride(body.places.padded()) {}
 
   HWY_INLINE void store_x_rows(Lanes3 value, std::size_t place) const {
-    store_rows({value.x, value.y, value.z, load_aligned(splits + place)}, x_rows + 4 * place);
+    store_rows({value.x, value.y, value.z, value.z}, x_rows + 4 * place);
   }
   HWY_INLINE void store_v_rows(Lanes3 value, std::size_t place) const {
     store_rows({value.x, value.y, value.z, value.z}, v_rows + 4 * place);

@@ -38,7 +38,7 @@ class CpuBackend final : public Backend {
   std::vector<std::string> notes() const override { return {}; }
 
   std::size_t robots_at_once() const override {
-    const bool together = !bodies_.empty() && fits_in_party(bodies_.front(), configuration_);
+    const bool together = !bodies_.empty() && fits_in_party(bodies_.front());
     return static_cast<std::size_t>(arena_.max_concurrency()) * (together ? kernel_.lanes : 1);
   }
   double spring_limit() const override { return 0; }

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "sim/cpu/build.h"
+#include "sim/springs.h"
+#include "sim/telemetry.h"
 
 namespace mercury::cpu {
 
@@ -29,7 +31,6 @@ Body make_body(const Robot& robot, std::size_t lanes) {
   body.sums.taken.assign(padded, 0);
   body.x_rows.assign(4 * padded, 0);
   body.v_rows.assign(4 * padded, 0);
-  body.splits.assign(padded, 0);
   return body;
 }
 
@@ -43,29 +44,35 @@ void clear(Sums& sums) {
 }
 
 void update_laws(Body& body, const Configuration& configuration) {
+  const Robot& robot = *body.robot;
   body.scale = fixed_point_scale(body.measures, body.materials, configuration);
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
+  const bool force = configuration.solver == Solver::force;
+  std::array<float, max_materials> of_material;  // stiffness or compliance
   for (std::size_t id = 0; id < max_materials; ++id) {
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
-    body.hardness[id] = configuration.solver == Solver::force
-                       ? static_cast<float>(stiffness) * body.scale.force
-                       : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
+    of_material[id] = force ? static_cast<float>(stiffness) * body.scale.force
+                            : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
   }
-  body.hardness[air] = configuration.solver == Solver::force ? 0 : std::numeric_limits<float>::infinity();
-  SpringPlan& springs = body.springs;
-  for (std::size_t i = 0; i < springs.hardness.size(); ++i) springs.hardness[i] = body.hardness[springs.material[i]];
+  of_material[air] = force ? 0 : std::numeric_limits<float>::infinity();
 
-  const std::vector<std::uint32_t> at = springs_at_masses(*body.robot);
-  for (std::size_t mass = 0; mass < at.size(); ++mass) {
-    const std::size_t place = body.places.of_mass[mass];
-    body.splits[place] = static_cast<float>(at[mass]) / body.scale.correction;
-    body.x_rows[4 * place + 3] = body.splits[place];
+  const std::vector<std::uint32_t> at = springs_at_masses(robot);
+  const float per_scale = 1 / body.scale.correction;
+  body.hardness.resize(robot.springs.size());
+  for (std::size_t s = 0; s < robot.springs.size(); ++s) {
+    const Spring& spring = robot.springs[s];
+    const float of_its = of_material[spring.material];
+    body.hardness[s] = force ? of_its : xpbd_stiffness(static_cast<float>(at[spring.a] + at[spring.b]) * per_scale, of_its);
   }
+  SpringPlan& springs = body.springs;
+  for (std::size_t i = 0; i < springs.hardness.size(); ++i)
+    springs.hardness[i] = springs.spring[i] == no_spring ? 0 : body.hardness[springs.spring[i]];
 }
 
 void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {
   SpringPlan& springs = body.springs;
-  for (std::size_t i = 0; i < springs.factor.size(); ++i) springs.factor[i] = factors[springs.material[i]];
+  for (std::size_t i = 0; i < springs.factor.size(); ++i)
+    springs.factor[i] = springs.spring[i] == no_spring ? FactorId{0} : factors[body.robot->springs[springs.spring[i]].material];
 }
 
 void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities) {

@@ -64,13 +64,13 @@ struct Body {
   NearPairs near_pairs;
   std::vector<Material> materials;   // max_materials elements
   FixedPointScale scale;
-  std::array<float, max_materials> hardness{};  // stiffness or compliance of each material in units; none of air
+  // Of each spring, in units: what it pulls with for each part of its length that is too much. None of air.
+  std::vector<float> hardness;
 
   Residence residence;               // while it is elsewhere, x and v are anything
   Triples<float> x, v;               // during XPBD's springs: the prediction and v + dt F
   Aligned<float> x_rows, v_rows;     // the same four to a place, for masses that are collected one by one; the fourth
-                                     // of x is the number of springs at the mass
-  Aligned<float> splits;             // number of springs at the mass over the scale of corrections
+                                     // is without meaning
   Sums sums;
 
   // No two masses are farther apart than a spring may be long, so that springs need not be looked at.

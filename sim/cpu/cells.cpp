@@ -4,6 +4,7 @@
 #include <array>
 #include <bitset>
 #include <cmath>
+#include <functional>
 
 #include "sim/springs.h"
 
@@ -36,6 +37,26 @@ std::vector<Cell> cells_of(const Robot& robot) {
     cells.push_back({static_cast<std::uint8_t>(at[0]), static_cast<std::uint8_t>(at[1]), static_cast<std::uint8_t>(at[2])});
   }
   return cells;
+}
+
+std::vector<Cell> in_common_pose(const std::vector<Cell>& cells) {
+  using Axis = std::uint8_t Cell::*;
+  std::array<Axis, 3> axes{&Cell::x, &Cell::y, &Cell::z};
+  const auto widest = [&](Axis axis) { return std::ranges::max(cells, {}, axis).*axis; };
+  std::ranges::stable_sort(axes, std::greater{}, widest);
+  std::vector<Cell> posed(cells.size());
+  constexpr std::array<Axis, 3> to{&Cell::x, &Cell::y, &Cell::z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::uint8_t last = widest(axes[a]);
+    std::size_t sum = 0;
+    for (const Cell c : cells) sum += c.*axes[a];
+    const bool mirrored = 2 * sum > last * cells.size();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::uint8_t at = cells[i].*axes[a];
+      posed[i].*to[a] = mirrored ? static_cast<std::uint8_t>(last - at) : at;
+    }
+  }
+  return posed;
 }
 
 }  // namespace mercury::cpu

@@ -21,4 +21,8 @@ inline constexpr int most_cells_across = 32;
 // share one, or the robot is too large.
 std::vector<Cell> cells_of(const Robot& robot);
 
+// The same pattern, turned and mirrored: widest along x, then y, and most masses in the lower half of each. Robots of
+// other poses then have more in common.
+std::vector<Cell> in_common_pose(const std::vector<Cell>& cells);
+
 }  // namespace mercury::cpu

@@ -107,6 +107,20 @@ HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); 
 HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, integers, to); }
 HWY_INLINE void store_aligned(Words a, std::uint32_t* to) { hn::Store(a.v, words, to); }
 HWY_INLINE void store(Integers a, std::int32_t* to) { hn::StoreU(a.v, integers, to); }
+// All lanes, which the compiler cannot see.
+HWY_INLINE Mask every_lane() {
+#if HWY_TARGET == HWY_AVX2
+  __m256 all = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
+  asm("" : "+x"(all));
+  return {hn::Mask<decltype(floats)>{all}};
+#elif HWY_TARGET == HWY_AVX3
+  __mmask16 all = 0xffff;
+  asm("" : "+k"(all));
+  return {hn::Mask<decltype(floats)>{all}};
+#else
+  return {hn::Lt(hn::Zero(floats), hn::Set(floats, 1.0f))};
+#endif
+}
 // table[id] for each lane's id where the mask holds, elsewhere 0 or table[id].
 HWY_INLINE Lanes look_up(const float* table, const FactorId* ids, Mask wanted) {
   const auto narrow = hn::LoadU(hn::Rebind<FactorId, decltype(integers)>(), ids);

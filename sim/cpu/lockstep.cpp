@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/cpu/step.h"
-
 namespace mercury::cpu {
 namespace {
 
@@ -42,8 +40,8 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   group.rest_length.resize(slots);
   group.hardness.resize(slots);
   group.factor.resize(slots);
-  group.face_scale.resize(group.build->faces.size() * group.lanes);
-  group.splits.resize(seats);
+  group.face_drag.resize(group.build->faces.size() * group.lanes);
+  group.face_lift.resize(group.build->faces.size() * group.lanes);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * seats);
   group.sums.resize(3 * seats);
   for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance})
@@ -62,28 +60,31 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   return group;
 }
 
-void take_laws(Lockstep& group, std::span<const Body> bodies,
+void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& hooks,
                std::span<const std::array<FactorId, max_materials>> factors) {
-  constexpr float third = 1.0f / 3.0f;
+  const OceanHooks* const ocean = std::get_if<OceanHooks>(&hooks);
   std::ranges::fill(group.rest_length, 0.0f);
   std::ranges::fill(group.factor, FactorId{0});
-  std::ranges::fill(group.face_scale, 0.0f);
-  std::ranges::fill(group.splits, 0.0f);
+  std::ranges::fill(group.hardness, 0.0f);
+  std::ranges::fill(group.face_drag, 0.0f);
+  std::ranges::fill(group.face_lift, 0.0f);
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const std::size_t member = member_of(group, lane);
     const Body& body = bodies[group.bodies[member]];
     const Seating& seating = *group.seatings[lane];
-    for (std::size_t slot = lane; slot < group.hardness.size(); slot += group.lanes) group.hardness[slot] = body.hardness[air];
     for (std::size_t s = 0; s < seating.slots.size(); ++s) {
       const Spring& spring = body.robot->springs[s];
       const std::size_t slot = seating.slots[s] * group.lanes + lane;
       group.rest_length[slot] = spring.rest_length;
-      group.hardness[slot] = body.hardness[spring.material];
+      group.hardness[slot] = body.hardness[s];
       group.factor[slot] = factors[member][spring.material];
     }
-    for (const std::uint32_t pair : seating.faces) group.face_scale[pair * group.lanes + lane] = third * body.scale.force;
-    for (std::size_t mass = 0; mass < seating.seats.size(); ++mass)
-      group.splits[seating.seats[mass] * group.lanes + lane] = body.splits[body.places.of_mass[mass]];
+    if (ocean != nullptr)
+      for (const std::uint32_t pair : seating.faces) {
+        const auto [drag, lift] = ocean->of_sums(body.scale.force);
+        group.face_drag[pair * group.lanes + lane] = drag;
+        group.face_lift[pair * group.lanes + lane] = lift;
+      }
     group.force_scale[lane] = body.scale.force;
     group.correction_scale[lane] = body.scale.correction;
     group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();

@@ -13,6 +13,7 @@
 
 #include "sim/cpu/body.h"
 #include "sim/cpu/build.h"
+#include "sim/cpu/step.h"
 
 namespace mercury::cpu {
 
@@ -27,10 +28,8 @@ struct Lockstep {
   // [slot][lane], as in SpringPlan; no force where a robot has no spring
   Aligned<float> rest_length, hardness;
   Aligned<FactorId> factor;
-  // [pair of faces][lane]: units in a newton, of a third; 0 where a robot has no such faces
-  Aligned<float> face_scale;
-  // [seat][lane]: number of springs at the mass over the scale of corrections
-  Aligned<float> splits;
+  // [pair of faces][lane]: OceanHooks::of_sums() in units; 0 where a robot has no such faces
+  Aligned<float> face_drag, face_lift;
 
   // [seat][x, y, z][lane]
   Aligned<float> x, v;           // during XPBD's springs: the prediction and v + dt F
@@ -68,8 +67,8 @@ struct Lockstep {
 // A group of 1 to as many bodies as they have lanes, without laws or state.
 Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts);
 
-// Takes the bodies' laws as they stand; `factors`, by lane, are those of their materials.
-void take_laws(Lockstep& group, std::span<const Body> bodies,
+// Takes the bodies' laws as they stand; `factors`, by body, are those of their materials.
+void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& hooks,
                std::span<const std::array<FactorId, max_materials>> factors);
 
 // Takes the bodies' states, which reside here from then on; gives them back.

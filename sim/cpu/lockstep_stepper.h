@@ -31,8 +31,7 @@ class LockstepStepper {
   // Algorithm 1. A mass ends its step as soon as its own springs are done: those that it is partner in came before.
   bool step_force(const float* factors) {
     Box box;
-    good_ = true;
-    const bool sound = add_springs<false>(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+    const bool sound = add_springs(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
       Lanes3 v = accelerated(v0, per_force_ * float_of(sum) + hooks_.on_mass(v0), constants_);
       Lanes3 x = multiply_add(constants_.dt, v, x0);
@@ -41,13 +40,12 @@ class LockstepStepper {
       box.add(x);
     });
     group_.compact = within_stretch_limit(box);
-    return sound && good_;
+    return sound && are_within_reach();
   }
 
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     Box box;
-    good_ = true;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
       const Lanes3 v0 = at(v_, mass);
       const Lanes3 v = accelerated(v0, per_force_ * float_of(take(mass)) + hooks_.on_mass(v0), constants_);
@@ -56,8 +54,8 @@ class LockstepStepper {
       box.add(x);
     }
     group_.compact = within_stretch_limit(box);
-    if (!good_) return false;
-    const bool sound = add_springs<true>(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+    if (!are_within_reach()) return false;
+    const bool sound = add_springs(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 correction = per_correction_ * float_of(sum);
       Lanes3 x = at(x_, mass) + correction;
       Lanes3 v = multiply_add(constants_.inverse_dt, correction, at(v_, mass));
@@ -65,7 +63,7 @@ class LockstepStepper {
       keep(x, v, mass);
     });
     group_.compact = false;
-    return sound && good_;
+    return sound && are_within_reach();
   }
 
   // Adds the forces of contacts, and sees to it that near pairs are listed.
@@ -98,45 +96,44 @@ class LockstepStepper {
   // False if a face's force is out of range.
   bool add_faces() {
     if constexpr (Hooks::has_faces) {
-      const float* scale = group_.face_scale.data();
+      const float *drag = group_.face_drag.data(), *lift = group_.face_lift.data();
+      const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
       Integers largest_force = no_integers();
       for (const auto& [a, b, c, d] : group_.build->faces) {
-        const Lanes3 xa = at(x_, a), shared = at(v_, a) + at(v_, c);
-        const FaceForces f = face_forces(hooks_, load_aligned(scale), at(x_, b) - xa, at(x_, c) - xa, at(x_, d) - xa,
-                                         shared + at(v_, b), shared + at(v_, d));
+        const Lanes3 xa = at(x_, a), past = thrice_flow - (at(v_, a) + at(v_, c));
+        const FaceForces f = face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x_, b) - xa, at(x_, c) - xa,
+                                                at(x_, d) - xa, past - at(v_, b), past - at(v_, d));
         largest_force = larger(largest_force, f.largest_component());
         const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
         add_to(a, on_both);
         add_to(b, on_b);
         add_to(c, on_both);
         add_to(d, on_d);
-        scale += lane_count;
+        drag += lane_count;
+        lift += lane_count;
       }
       return largest(largest_force) < mercury::bits_of(face_limit_units);
     }
     return true;
   }
 
-  template <bool xpbd, class Finish>
+  template <class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
-    return group_.compact ? add_springs<xpbd, false>(factors, finish) : add_springs<xpbd, true>(factors, finish);
+    return group_.compact ? add_springs<false>(factors, finish) : add_springs<true>(factors, finish);
   }
 
   // Calls finish(mass, sum of all that acts on it) for each mass. False if a spring is beyond the stretch limit, which
   // only `checked` finds.
-  template <bool xpbd, bool checked, class Finish>
+  template <bool checked, class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
-    SlotLaw<xpbd, checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.factor.data(), 0.0f};
-    const float* const splits = group_.splits.data();
+    SlotLaw<checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.factor.data(), 0.0f};
     const std::uint32_t* partner = group_.build->partners.data();
     std::size_t mass = 0;
     for (const auto& [owned, slots] : joints_) {
       const Lanes3 own = at(x_, mass);
-      const Lanes own_splits = xpbd ? load_aligned(splits + mass * lane_count) : Lanes(0.0f);
       Integers3 sum{no_integers(), no_integers(), no_integers()};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
-        const Lanes partner_splits = xpbd ? load_aligned(splits + *partner * lane_count) : Lanes(0.0f);
-        const Integers3 f = law(own - at(x_, *partner), own_splits + partner_splits);
+        const Integers3 f = law(own - at(x_, *partner));
         sum = sum - f;
         add_to(*partner, f);
       }
@@ -165,9 +162,13 @@ class LockstepStepper {
     return sum;
   }
   HWY_INLINE void keep(Lanes3 x, Lanes3 v, std::size_t mass) {
-    if (HWY_UNLIKELY(!every(within_reach(x)))) good_ = false;
+    farthest_ = larger(farthest_, larger(magnitude(x.x), larger(magnitude(x.y), magnitude(x.z))));
     store_aligned(x, lanes_of(x_, mass), 0);
     store_aligned(v, lanes_of(v_, mass), 0);
+  }
+  // Whether all masses kept were; NaN is of the greatest magnitude.
+  bool are_within_reach() {
+    return largest(std::exchange(farthest_, no_integers())) <= mercury::bits_of(mercury::farthest);
   }
   bool within_stretch_limit(const Box& box) const { return every(squared_length(box.high - box.low) <= squared_stretch_limit_); }
 
@@ -179,7 +180,7 @@ class LockstepStepper {
   const StepConstants constants_;
   const float contact_stiffness_;
   const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
-  bool good_ = true;  // all masses are within reach
+  Integers farthest_ = no_integers();  // magnitude of a coordinate since a check
 };
 
 // Kernel::advance_together.

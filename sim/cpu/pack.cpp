@@ -56,7 +56,7 @@ class Casting {
   std::array<FactorId, max_materials> factors_{};
 };
 
-void take_laws(Pack& pack, std::span<Body> bodies) {
+void take_laws(Pack& pack, std::span<Body> bodies, const AnyHooks& hooks) {
   pack.muscles = {};
   Casting casting(pack.muscles);
   for (Lockstep& group : pack.groups) {
@@ -65,7 +65,7 @@ void take_laws(Pack& pack, std::span<Body> bodies) {
       factors.push_back(casting.factors_of(bodies[i]));
       set_factors(bodies[i], factors.back());  // if it has to be stepped alone
     }
-    if (!group.bodies.empty()) take_laws(group, bodies, factors);
+    if (!group.bodies.empty()) take_laws(group, bodies, hooks, factors);
   }
   for (const std::size_t i : pack.bodies) set_factors(bodies[i], casting.factors_of(bodies[i]));
   pack.laws_are_stale = false;
@@ -116,7 +116,7 @@ std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const 
 
 std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, const StepSetting& setting, const Clock& clock,
                     std::int64_t steps) {
-  if (pack.laws_are_stale) take_laws(pack, bodies);
+  if (pack.laws_are_stale) take_laws(pack, bodies, setting.hooks);
   std::size_t broken = 0;
   const auto break_up_counted = [&](Lockstep& group) {
     break_up(group, pack);

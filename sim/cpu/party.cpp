@@ -1,8 +1,11 @@
 #include "sim/cpu/party.h"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -10,6 +13,16 @@ namespace mercury::cpu {
 namespace {
 
 using Group = std::vector<std::size_t>;
+
+// A party is stepped several times at a stretch; twice the cache of a core is still quicker than one robot after the other.
+std::size_t cache_of_a_core() {
+  constexpr std::size_t least = 256 * 1024;
+#ifdef _SC_LEVEL2_CACHE_SIZE
+  if (const long size = sysconf(_SC_LEVEL2_CACHE_SIZE); size > 0) return std::max(least, static_cast<std::size_t>(size));
+#endif
+  return least;
+}
+const std::size_t party_share = 2 * cache_of_a_core();  // [bytes]
 
 std::size_t footprint(std::size_t slots, std::size_t seats, std::size_t lanes) {
   return lanes * (slots * (2 * sizeof(float) + sizeof(FactorId)) + seats * 9 * sizeof(float));
@@ -43,16 +56,16 @@ class Crowd {
  public:
   Crowd() : count_(std::size_t{across} * across * across) {}
 
-  void add(const Body& body) {
-    for (const Cell c : body.cells)
+  void add(std::span<const Cell> cells) {
+    for (const Cell c : cells)
       if (count_[index(c)]++ == 0) ++cells_;
   }
   // Cells that a robot shares with the others, less those that it or they would leave empty.
-  double likeness(const Body& body) const {
+  double likeness(std::span<const Cell> cells) const {
     std::size_t shared = 0;
-    for (const Cell c : body.cells) shared += count_[index(c)] != 0;
+    for (const Cell c : cells) shared += count_[index(c)] != 0;
     const auto common = static_cast<double>(shared);
-    return common - (static_cast<double>(body.cells.size()) - common) - 0.5 * (static_cast<double>(cells_) - common);
+    return common - (static_cast<double>(cells.size()) - common) - 0.5 * (static_cast<double>(cells_) - common);
   }
   // Numbers the cells in use: z slowest, then y.
   std::size_t number(std::vector<std::uint32_t>& seat_of_cell) const {
@@ -70,11 +83,24 @@ class Crowd {
   std::size_t cells_ = 0;
 };
 
+// By body; those without take part in nothing.
+using Patterns = std::vector<std::vector<Cell>>;
+
+// Pairs of faces meet only where robots are as they are, since each is told by place (sim/face_pairs.h).
+Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> wanted, bool faces) {
+  Patterns patterns(bodies.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t w) {
+    const std::vector<Cell>& cells = bodies[wanted[w]].cells;
+    patterns[wanted[w]] = faces || cells.empty() ? cells : in_common_pose(cells);
+  });
+  return patterns;
+}
+
 // Groups of robots with masses in much the same cells: to the largest robot left those that are most like it.
-std::vector<Group> similar_groups(std::span<const Body> bodies, Group& left) {
-  Group candidates, others;
-  for (const std::size_t i : left) (bodies[i].cells.empty() ? others : candidates).push_back(i);
-  std::ranges::stable_sort(candidates, std::greater{}, [&](std::size_t i) { return bodies[i].cells.size(); });
+std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns, std::span<const std::size_t> left) {
+  Group candidates;
+  std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
+  std::ranges::stable_sort(candidates, std::greater{}, [&](std::size_t i) { return patterns[i].size(); });
   constexpr std::size_t most_compared = 64;
   Group compared;  // the largest left
   std::size_t next = 0;
@@ -83,7 +109,7 @@ std::vector<Group> similar_groups(std::span<const Body> bodies, Group& left) {
     Crowd crowd;
     Group group;
     const auto take = [&](Group::iterator chosen) {
-      crowd.add(bodies[*chosen]);
+      crowd.add(patterns[*chosen]);
       group.push_back(*chosen);
       compared.erase(chosen);
     };
@@ -94,10 +120,9 @@ std::vector<Group> similar_groups(std::span<const Body> bodies, Group& left) {
     if (!refill()) break;
     take(compared.begin());
     while (group.size() < bodies[group.front()].places.lanes && refill())
-      take(std::ranges::max_element(compared, {}, [&](std::size_t i) { return crowd.likeness(bodies[i]); }));
+      take(std::ranges::max_element(compared, {}, [&](std::size_t i) { return crowd.likeness(patterns[i]); }));
     groups.push_back(std::move(group));
   }
-  left = std::move(others);
   return groups;
 }
 
@@ -111,15 +136,15 @@ Party party_of_alike(std::span<const Body> bodies, Group group) {
   return party;
 }
 
-Party party_of_similar(std::span<const Body> bodies, Group group) {
+Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, Group group) {
   Crowd crowd;
-  for (const std::size_t i : group) crowd.add(bodies[i]);
+  for (const std::size_t i : group) crowd.add(patterns[i]);
   std::vector<std::uint32_t> seat_of_cell;
   const std::size_t seats = crowd.number(seat_of_cell);
   std::vector<Sitter> sitters;
   for (const std::size_t i : group) {
     sitters.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
-    for (const Cell c : bodies[i].cells) sitters.back().seats.push_back(seat_of_cell[Crowd::index(c)]);
+    for (const Cell c : patterns[i]) sitters.back().seats.push_back(seat_of_cell[Crowd::index(c)]);
   }
   return {std::move(group), assemble(sitters, seats)};
 }
@@ -138,14 +163,13 @@ double cost_alone(const Body& body, bool faces) {
          (faces ? 9.0 * static_cast<double>(body.faces.size()) / (4 * lanes) : 0.0);
 }
 
-bool pays(std::span<const Body> bodies, const Party& party, const Configuration& configuration) {
-  const bool faces = std::holds_alternative<Ocean>(configuration.environment);
+bool pays(std::span<const Body> bodies, const Party& party, bool faces) {
   double alone = 0;
   for (const std::size_t i : party.bodies) alone += cost_alone(bodies[i], faces);
   // More lanes make rows dearer.
   const std::size_t lanes = bodies[party.bodies.front()].places.lanes;
   const double dearer = lanes > 8 ? 1.15 : lanes < 8 ? 0.95 : 1.0;
-  return footprint(*party.assembly.build, lanes) <= cache_share && cost_together(*party.assembly.build, faces) < dearer * alone;
+  return footprint(*party.assembly.build, lanes) <= party_share && cost_together(*party.assembly.build, faces) < dearer * alone;
 }
 
 }  // namespace
@@ -159,28 +183,26 @@ std::size_t footprint(const Body& body) {
          body.places.padded() * 128;
 }
 
-// Contacts pick masses lane by lane, which only pays where positions and sums of a group are in the nearest cache.
-bool fits_in_party(const Body& body, const Configuration& configuration) {
-  constexpr std::size_t nearest_cache_share = 24 * 1024;  // [bytes]
-  const Land* const land = std::get_if<Land>(&configuration.environment);
-  const std::size_t masses = body.robot->masses.size(), lanes = body.places.lanes;
-  return body.status.exploded_step < 0 && footprint(body.robot->springs.size(), masses, lanes) <= cache_share &&
-         (land == nullptr || !land->self_collision || masses * lanes * 3 * (sizeof(float) + sizeof(std::int32_t)) <= nearest_cache_share);
+bool fits_in_party(const Body& body) {
+  return body.status.exploded_step < 0 &&
+         footprint(body.robot->springs.size(), body.robot->masses.size(), body.places.lanes) <= party_share;
 }
 
 std::vector<Party> find_parties(std::span<const Body> bodies, std::size_t threads, const Configuration& configuration) {
   Group left;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (fits_in_party(bodies[i], configuration)) left.push_back(i);
+    if (fits_in_party(bodies[i])) left.push_back(i);
+  const bool faces = std::holds_alternative<Ocean>(configuration.environment);
   std::vector<Group> groups = alike_groups(bodies, left);
   const std::size_t alike = groups.size();
-  std::ranges::move(similar_groups(bodies, left), std::back_inserter(groups));
+  const Patterns patterns = patterns_of(bodies, left, faces);
+  std::ranges::move(similar_groups(bodies, patterns, left), std::back_inserter(groups));
   if (groups.size() < packs_a_thread * threads) groups.resize(groups.size() / threads * threads);
 
   std::vector<Party> parties(groups.size());
   oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
-    parties[g] = g < alike ? party_of_alike(bodies, std::move(groups[g])) : party_of_similar(bodies, std::move(groups[g]));
-    if (g >= alike && !pays(bodies, parties[g], configuration)) parties[g] = {};
+    parties[g] = g < alike ? party_of_alike(bodies, std::move(groups[g])) : party_of_similar(bodies, patterns, std::move(groups[g]));
+    if (g >= alike && !pays(bodies, parties[g], faces)) parties[g] = {};
   });
   std::erase_if(parties, [](const Party& party) { return party.bodies.empty(); });
   return parties;

@@ -17,7 +17,7 @@ struct Party {
 };
 
 // Whether a body is small enough to be one of a party.
-bool fits_in_party(const Body& body, const Configuration& configuration);
+bool fits_in_party(const Body& body);
 
 // Parties of robots of one build, then of robots that are built in much the same way, wherever that is quicker than one
 // robot after the other and leaves no thread without work. Each body is in one party at most.

@@ -67,6 +67,13 @@ HWY_INLINE Rows collect(const float* rows, const std::uint32_t* offsets) {
   return {side_by_side(floats, row, 0), side_by_side(floats, row, 1), side_by_side(floats, row, 2),
           side_by_side(floats, row, 3)};
 }
+// One row over and over.
+HWY_INLINE Rows row_in_every(Vec3 row) {
+  alignas(64) float values[lane_count];
+  for (std::size_t i = 0; i < lane_count; ++i) values[i] = i % 4 == 0 ? row.x : i % 4 == 1 ? row.y : i % 4 == 2 ? row.z : 0;
+  const Lanes all = load_aligned(values);
+  return {all, all, all, all};
+}
 HWY_INLINE Lanes4 turned(Rows a) { return turned(Lanes4{a.r0, a.r1, a.r2, a.r3}); }
 // Without the fourth numbers.
 HWY_INLINE Lanes3 vectors(Rows a) {

@@ -17,22 +17,19 @@ struct FaceForces {
   }
 };
 
-// The ways from a to the other corners, and the sums of each face's three velocities; `scale`: units in a newton, of a
-// third.
+// The ways from a to the other corners, and each face's sum of what flows past its corners; of_sums() by `drag`, `lift`.
 template <class Hooks>
-HWY_INLINE FaceForces face_forces(const Hooks& hooks, Lanes scale, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 v_first,
-                                  Lanes3 v_second) {
-  constexpr float third = 1.0f / 3.0f;
-  return {scale * hooks.on_face(Lanes(0.5f) * cross(to_b, to_c), Lanes(third) * v_first),
-          scale * hooks.on_face(Lanes(0.5f) * cross(to_c, to_d), Lanes(third) * v_second)};
+HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 past_first,
+                                  Lanes3 past_second) {
+  return {Hooks::on_face(cross(to_b, to_c), past_first, drag, lift), Hooks::on_face(cross(to_c, to_d), past_second, drag, lift)};
 }
 
 template <class Hooks>
 class Skin {
  public:
   Skin(Body& body, const Hooks& hooks)
-      : arrays_(body), corners_(body.faces.data()), corners_end_(corners_ + body.faces.size()), hooks_(hooks),
-        scale_(1.0f / 3.0f * body.scale.force) {}
+      : arrays_(body), corners_(body.faces.data()), corners_end_(corners_ + body.faces.size()),
+        coefficients_(hooks.of_sums(body.scale.force)), thrice_flow_(row_in_every(hooks.thrice_flow)) {}
 
   // Adds a third of each face's force to each of its masses. False if a force is out of range.
   bool add_forces() const {
@@ -64,17 +61,17 @@ class Skin {
   // Of pairs of faces, whose corners stand one after the other.
   HWY_INLINE FaceForces forces(const std::uint32_t* corner) const {
     const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count, *const d = c + lane_count;
-    const Rows xa = x(a), shared = v(a) + v(c);
-    return face_forces(hooks_, Lanes(scale_), vectors(x(b) - xa), vectors(x(c) - xa), vectors(x(d) - xa),
-                       vectors(shared + v(b)), vectors(shared + v(d)));
+    const Rows xa = x(a), past = thrice_flow_ - (v(a) + v(c));
+    return face_forces<Hooks>(coefficients_.drag, coefficients_.lift, vectors(x(b) - xa), vectors(x(c) - xa),
+                              vectors(x(d) - xa), vectors(past - v(b)), vectors(past - v(d)));
   }
   HWY_INLINE Rows x(const std::uint32_t* corner) const { return collect(arrays_.x_rows, corner); }
   HWY_INLINE Rows v(const std::uint32_t* corner) const { return collect(arrays_.v_rows, corner); }
 
   const Arrays arrays_;
   const std::uint32_t *const corners_, *const corners_end_;
-  const Hooks hooks_;
-  const float scale_;  // units in a newton, of a third
+  const OceanHooks::Coefficients coefficients_;
+  const Rows thrice_flow_;
 };
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

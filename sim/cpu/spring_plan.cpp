@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/fixed_point.h"
+#include "sim/telemetry.h"
 
 namespace mercury::cpu {
 namespace {
@@ -106,13 +107,13 @@ class Planner {
   std::size_t append_slot(std::uint32_t block) {
     const std::size_t first = plan_.rest_length.size();
     plan_.rest_length.resize(first + lanes_, 0.0f);
-    plan_.material.resize(first + lanes_, air);
+    plan_.spring.resize(first + lanes_, no_spring);
     for (std::size_t lane = 0; lane < lanes_; ++lane) plan_.bias[block * lanes_ + lane] += std::uint32_t{rounding_magic_bits};
     return first;
   }
   void fill(std::size_t slot, const Link& link) {
     plan_.rest_length[slot + lane_of(link.owner)] = robot_.springs[link.spring].rest_length;
-    plan_.material[slot + lane_of(link.owner)] = robot_.springs[link.spring].material;
+    plan_.spring[slot + lane_of(link.owner)] = link.spring;
   }
   // A lane's force will be added at this place.
   void expect(std::uint32_t place) { plan_.bias[place] -= std::uint32_t{rounding_magic_bits}; }

@@ -35,12 +35,12 @@ struct SpringPlan {
   std::vector<Run> runs;
   std::vector<std::uint32_t> partners;  // of the rows: four times the place, a lane
 
-  // Of each slot, a lane; material air and rest length 0 where there is no spring.
+  // Of each slot, a lane; no_spring and rest length 0 where there is none.
   Aligned<float> rest_length;
-  std::vector<MaterialId> material;
-  // Stiffness or compliance of the present configuration, in units; so that no force comes of an empty lane.
+  std::vector<std::uint32_t> spring;
+  // Body::hardness; 0 where there is no spring.
   Aligned<float> hardness;
-  // Its place among the muscles that it is stepped with.
+  // The place of its factor among those of the muscles that it is stepped with.
   Aligned<FactorId> factor;
 
   // The integers of the sums carry rounding_magic_bits (sim/fixed_point.h) once for every lane that was added; these,

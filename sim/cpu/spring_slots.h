@@ -6,8 +6,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
 
-// A slot's springs between owners and partners.
-template <bool xpbd, bool checked>
+// A slot's springs between owners and partners, by either solver (xpbd_stiffness()).
+template <bool checked>
 struct SlotLaw {
   const float* factors;
   const float* rest_length;
@@ -16,17 +16,13 @@ struct SlotLaw {
   Lanes longest;
 
   // The contribution to the partners in units, plus rounding_magic_bits. `d` points from partner to owner.
-  HWY_INLINE Integers3 operator()(Lanes3 d, Lanes splits) {
+  HWY_INLINE Integers3 operator()(Lanes3 d) {
     const Lanes squared = squared_length(d);
     const Lanes rest = load_aligned(rest_length);
     const Mask real = rest > 0.0f;
     if constexpr (checked) longest = select((squared > longest) & real, squared, longest);
     const Lanes length = rest * look_up(factors, factor, real);
-    Lanes per_distance;
-    if constexpr (xpbd)
-      per_distance = mercury::xpbd(squared, length, splits, load_aligned(hardness));
-    else
-      per_distance = hooke(squared, length, load_aligned(hardness));
+    const Lanes per_distance = hooke(squared, length, load_aligned(hardness));
     rest_length += lane_count;
     hardness += lane_count;
     factor += lane_count;
@@ -40,30 +36,27 @@ struct SlotLaw {
 // Calls finish(place) for each block of which it has all contributions and needs the positions no more: in order and one
 // block behind, so that what was added to it has arrived in the cache. With rows, whose partners stand anywhere, that is
 // for all blocks at the end; so it is when the springs must all be checked before anything may move.
-template <bool xpbd, bool checked, bool spring_rows, class Finish>
+template <bool checked, bool spring_rows, class Finish>
 bool add_springs(Body& body, const float* factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !spring_rows;
   const Arrays arrays(body);
   const SpringPlan& plan = body.springs;
-  SlotLaw<xpbd, checked> law{factors, plan.rest_length.data(), plan.hardness.data(), plan.factor.data(), 0.0f};
+  SlotLaw<checked> law{factors, plan.rest_length.data(), plan.hardness.data(), plan.factor.data(), 0.0f};
   const Run* run = plan.runs.data();
   const std::uint32_t* partners = plan.partners.data();
   std::size_t place = 0;
   for (const auto& [runs, rows] : plan.blocks) {
     const Lanes3 own = load_aligned(arrays.x, place);
-    const Lanes own_splits = xpbd ? load_aligned(arrays.splits + place) : Lanes(0.0f);
     Integers3 sum{no_integers(), no_integers(), no_integers()};
     for (const Run* const end = run + runs; run != end; ++run) {
       const auto [partner, reaction] = *run;
-      const Lanes partner_splits = xpbd ? load(arrays.splits + partner) : Lanes(0.0f);
-      const Integers3 f = law(own - load(arrays.x, partner), own_splits + partner_splits);
+      const Integers3 f = law(own - load(arrays.x, partner));
       sum = sum - f;
       add(f, arrays.reaction, reaction);
     }
     for (const std::uint32_t* const end = partners + (spring_rows ? rows * lane_count : 0); partners != end;
          partners += lane_count) {
-      const Lanes4 partner = turned(collect(arrays.x_rows, partners));
-      const Integers3 f = law(own - Lanes3{partner.x, partner.y, partner.z}, own_splits + partner.w);
+      const Integers3 f = law(own - vectors(collect(arrays.x_rows, partners)));
       sum = sum - f;
       add_to_rows(f, arrays.row_sums, partners);
     }

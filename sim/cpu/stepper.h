@@ -38,7 +38,7 @@ class Stepper {
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.force);
-    if (!add_springs<false>(factors, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); })) return false;
+    if (!add_springs(factors, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); })) return false;
     settle_stand_ins();
     body_.compact = end.squared_diagonal() <= body_.measures.squared_stretch_limit();
     return end.finite();
@@ -52,16 +52,16 @@ class Stepper {
     body_.compact = prediction.squared_diagonal() <= body_.measures.squared_stretch_limit();
     if (!prediction.finite()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.correction);
-    if (!add_springs<true>(factors, [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); })) return false;
+    if (!add_springs(factors, [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); })) return false;
     settle_stand_ins();
     body_.compact = false;
     return end.finite();
   }
 
-  template <bool xpbd, class Finish>
+  template <class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
-    return body_.compact ? HWY_NAMESPACE::add_springs<xpbd, false, spring_rows>(body_, factors, finish)
-                         : HWY_NAMESPACE::add_springs<xpbd, true, spring_rows>(body_, factors, finish);
+    return body_.compact ? HWY_NAMESPACE::add_springs<false, spring_rows>(body_, factors, finish)
+                         : HWY_NAMESPACE::add_springs<true, spring_rows>(body_, factors, finish);
   }
 
   // Forces that do not depend on one mass alone.
