@@ -10,7 +10,7 @@ namespace {
 
 constexpr Binding table[] = {
     {Action::play_pause, "Space", "play or pause", "Time", 0, GLFW_KEY_SPACE, false, false},
-    {Action::step, "Right  .", "one step", "Time", U'.', GLFW_KEY_RIGHT, false, true},
+    {Action::step, "Right or .", "one step", "Time", U'.', GLFW_KEY_RIGHT, false, true},
     {Action::faster, "+", "faster", "Time", U'+', GLFW_KEY_KP_ADD, false, true},
     {Action::slower, "-", "slower", "Time", U'-', GLFW_KEY_KP_SUBTRACT, false, true},
     {Action::real_time, "0", "at the speed of real time", "Time", U'0', 0, false, false},
@@ -34,16 +34,16 @@ constexpr Binding table[] = {
     {Action::save, "Ctrl S", "save robots", "Robots", U's', 0, true, false},
 
     {Action::drag_arrows, "D", "arrows of the water's drag", "Picture", U'd', 0, false, false},
-    {Action::color, "1 - 8", "colour by material, activation, strain, ...", "Picture", U'1', 0, false, false},
+    {Action::color, "1 - 8", "colour by, in the order of the panel See", "Picture", U'1', 0, false, false},
     {Action::springs, "S", "springs in place of the skin", "Picture", U's', 0, false, false},
     {Action::labels, "L", "names and distances", "Picture", U'l', 0, false, false},
     {Action::legend, "K", "key of the colours", "Picture", U'k', 0, false, false},
     {Action::theme, "B", "dark or light", "Picture", U'b', 0, false, false},
     {Action::hide_panels, "H", "hide or show the panels", "Picture", U'h', 0, false, false},
     {Action::full_screen, "F11", "full screen", "Picture", 0, GLFW_KEY_F11, false, false},
-    {Action::screenshot, "P  F2", "picture of what is shown", "Picture", U'p', GLFW_KEY_F2, false, false},
+    {Action::screenshot, "P or F2", "picture of what is shown", "Picture", U'p', GLFW_KEY_F2, false, false},
     {Action::record, "V", "start or end a video of what is shown", "Picture", U'v', 0, false, false},
-    {Action::help, "F1  ?", "this list", "Picture", U'?', GLFW_KEY_F1, false, false},
+    {Action::help, "F1 or ?", "this list", "Picture", U'?', GLFW_KEY_F1, false, false},
     {Action::quit, "Ctrl Q", "quit", "Picture", U'q', 0, true, false},
 };
 

@@ -48,6 +48,15 @@ void frame_robots(Desk& desk, const std::vector<RobotId>& robots, float aspect) 
   desk.camera.frame(boxes, aspect);
 }
 
+void as_seen(Desk& desk, const std::function<void()>& act) {
+  const ViewSettings before = desk.scene.view();
+  ViewSettings view = before;
+  view.camera = desk.camera.plan();
+  desk.scene.set_view(view);
+  act();
+  desk.scene.set_view(before);
+}
+
 void save_with_care(Desk& desk, const std::string& what, std::function<SaveResult(bool overwrite)> save) {
   const SaveResult result = save(false);
   if (result.outcome != SaveResult::Outcome::exists) {

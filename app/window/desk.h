@@ -32,6 +32,9 @@ void frame_robots(Desk& desk, const std::vector<RobotId>& robots, float aspect);
 // The boxes of these robots in the picture, as far as they are there.
 std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId>& robots);
 
+// Does something while the scene's camera is the one in the user's hand.
+void as_seen(Desk& desk, const std::function<void()>& act);
+
 // Saves by `save(overwrite)`; where files exist, asks first. Tells how it went.
 void save_with_care(Desk& desk, const std::string& what, std::function<SaveResult(bool overwrite)> save);
 

@@ -87,10 +87,7 @@ void FilmPanel::draw_group(Desk& desk) {
     options_.size = sizes[static_cast<std::size_t>(size_)];
     options_.frames_per_second = rate_;
     options_.quality = desk.preferences.quality;
-    ViewSettings view = desk.scene.view();
-    view.camera = desk.camera.plan();
-    desk.scene.set_view(view);
-    group_ = desk.scene.film(options_);
+    as_seen(desk, [&] { group_ = desk.scene.film(options_); });
     desk.observations.tell("filming", {{"file", options_.output}});
   }
   desk.observations.item("film.group");
@@ -102,7 +99,7 @@ void FilmPanel::draw_group_options(Desk&) {
   choice("size", "of the video", size_, {"1280 x 720", "1920 x 1080", "2560 x 1440", "3840 x 2160"});
   auto length = static_cast<float>(options_.seconds), speed = static_cast<float>(options_.speed);
   if (slider("length", "simulated time", length, 10, {1, 120, "%.0f s", true}) && length > 0) options_.seconds = static_cast<double>(length);
-  if (slider("speed", "simulated seconds a second of video", speed, 1, {0.1f, 10, "x %.2f", true}) && speed > 0) options_.speed = static_cast<double>(speed);
+  if (slider("speed", "simulated seconds a second of video", speed, 1, {0.1f, 10, "\xc3\x97 %.2f", true}) && speed > 0) options_.speed = static_cast<double>(speed);
 }
 
 void FilmPanel::toggle(Desk& desk) {

@@ -9,7 +9,9 @@
 namespace mercury::window {
 
 float Column::pixels(float width) {
-  return std::min(width * ImGui::GetFontSize(), 0.38f * ImGui::GetIO().DisplaySize.x);
+  const float text = ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
+  const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 20.0f, 30.0f);
+  return std::min(lines * text, 0.38f * screen);
 }
 
 bool Column::has(const std::string& name) const {

@@ -24,7 +24,7 @@ class Column {
 
   // Between two heights of the window. `open` and `width` [lines of text] are changed by the user.
   void draw(Desk& desk, float top, float bottom, std::string& open, float& width);
-  // Its width now [pixels].
+  // Its width now [pixels]; one of 0 lines is as the window suggests.
   static float pixels(float width);
   const std::vector<Panel>& panels() const { return panels_; }
   bool has(const std::string& name) const;

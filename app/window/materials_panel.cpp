@@ -51,10 +51,10 @@ void MaterialsPanel::draw(Desk& desk) {
 }
 
 void MaterialsPanel::draw_factors(Desk& desk, const std::vector<RobotId>& robots) {
-  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1, {0.1f, 10, "x %.2f", true});
+  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1, {0.1f, 10, "\xc3\x97 %.2f", true});
   desk.observations.item("materials.stiffness");
-  changed |= slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "x %.2f"});
-  changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "x %.2f"});
+  changed |= slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
+  changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
   changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
   if (changed) desk.scene.scale_materials(robots, scale_);
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "app/window/plot.h"
@@ -62,20 +64,9 @@ void MeasurePanel::draw_plots(Desk& desk) {
     }
     plot(quantity.name, {.title = quantity.name, .unit = quantity.unit, .height = 9 * ImGui::GetFontSize()}, lines);
   }
-  // Which line is whose.
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float text = ImGui::GetFontSize();
-    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text}, {corner.x + 0.6f * text, corner.y + 0.8f * text},
-                                              packed(render::category_color(static_cast<int>(k))), 0.1f * text);
-    ImGui::Dummy({0.7f * text, text});
-    ImGui::SameLine();
-    ImGui::TextUnformatted(shortened(curves[k].name, 9 * text).c_str());
-    if (k + 1 < curves.size()) {
-      ImGui::SameLine();
-      if (ImGui::GetContentRegionAvail().x < 7 * text) ImGui::NewLine();
-    }
-  }
+  std::vector<PlotLine> names;
+  for (std::size_t k = 0; k < curves.size(); ++k) names.push_back({curves[k].name, render::category_color(static_cast<int>(k)), {}, {}});
+  plot_key(names);
 }
 
 void MeasurePanel::draw_exports(Desk& desk) {
@@ -103,8 +94,14 @@ void RankingPanel::draw(Desk& desk, float aspect) {
     ImGui::TableSetupColumn("speed", ImGuiTableColumnFlags_PreferSortDescending);
     ImGui::TableSetupColumn("energy", ImGuiTableColumnFlags_PreferSortDescending);
     ImGui::TableSetupColumn("largest strain", ImGuiTableColumnFlags_PreferSortDescending);
-    ImGui::TableHeadersRow();
-    if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0) {
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    for (int column = 0; column < ImGui::TableGetColumnCount(); ++column) {
+      if (!ImGui::TableSetColumnIndex(column)) continue;
+      ImGui::TableHeader(ImGui::TableGetColumnName(column));
+      desk.observations.item(std::string("ranking.by.") + ImGui::TableGetColumnName(column));
+    }
+    if (ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0) {
+      if (std::exchange(specs->SpecsDirty, false)) sorted_ = false;
       column_ = specs->Specs[0].ColumnIndex;
       ascending_ = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
     }
@@ -117,6 +114,11 @@ void RankingPanel::draw(Desk& desk, float aspect) {
       if (column_ == 0) return ascending_ ? a.name < b.name : b.name < a.name;
       return ascending_ ? key(a) < key(b) : key(b) < key(a);
     });
+    if (std::exchange(sorted_, true) == false) {
+      std::vector<std::string> names;
+      for (const Named& named : rows) names.push_back(named.name);
+      desk.observations.tell("ranking", {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
+    }
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(rows.size()));
     while (clipper.Step())

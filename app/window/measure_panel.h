@@ -26,6 +26,7 @@ class RankingPanel {
  private:
   int column_ = 1;
   bool ascending_ = false;
+  bool sorted_ = false;  // as the headings say, and told so
 };
 
 }  // namespace mercury::window

@@ -19,15 +19,14 @@ namespace {
 
 void draw_see(Desk& desk) {
   ViewSettings view = desk.scene.view();
-  if (draw_see_panel(view, desk.camera, desk.preferences, desk.scene.configuration().environment, desk.observations))
+  if (draw_see_panel(view, desk.camera, desk.preferences, desk.scene.configuration().environment,
+                     desk.scene.entries().size(), desk.observations))
     desk.scene.set_view(view);
 }
 
 void copy_as_command(Desk& desk, const char* subcommand) {
-  ViewSettings view = desk.scene.view();
-  view.camera = desk.camera.plan();
-  desk.scene.set_view(view);
-  const CommandText command = desk.scene.command(subcommand);
+  CommandText command;
+  as_seen(desk, [&] { command = desk.scene.command(subcommand); });
   ImGui::SetClipboardText(command.text.c_str());
   desk.observations.tell("copied", {{"text", command.text}});
   desk.toasts.say(Tone::success, "copied: " + command.text);
@@ -251,6 +250,8 @@ void Panels::escape() {
     desk_.dialogs.close();
   else if (help_)
     help_ = false;
+  else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+    ImGui::SetWindowFocus(nullptr);  // closes menus and lists
   else
     desk_.scene.clear_selection();
 }

@@ -80,7 +80,8 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
     drawn.push_back(1000 * costs_[i].picture);
   }
   const PlotLine lines[] = {{"frame", render::category_color(0), number, whole}, {"picture", render::category_color(1), number, drawn}};
-  plot("costs", {.title = "frame and picture", .unit = "ms", .x_title = "frame, 0 = now", .height = 8 * ImGui::GetFontSize()}, lines);
+  plot("costs", {.title = "frame and picture", .unit = "ms", .x_title = "frame, 0 = now", .x_unit = "", .height = 8 * ImGui::GetFontSize()}, lines);
+  plot_key(lines);
   if (!picture.renderer().times().empty() && ImGui::CollapsingHeader("Parts of the picture")) {
     if (begin_figures("passes")) {
       for (const render::PassTime& pass : picture.renderer().times())

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/window/theme.h"
+#include "app/window/widgets.h"
 #include "render/overlay.h"
 
 namespace mercury::window {
@@ -98,7 +99,7 @@ void show_values(const Frame& frame, const PlotAxes& axes, std::span<const PlotL
   const double x = frame.x.low + (mouse.x - frame.low.x) / (frame.high.x - frame.low.x) * (frame.x.high - frame.x.low);
   ImGui::GetWindowDrawList()->AddLine({mouse.x, frame.low.y}, {mouse.x, frame.high.y}, palette().faint);
   ImGui::BeginTooltip();
-  ImGui::Text("%s s", short_number(x).c_str());
+  ImGui::Text("%s %s", short_number(x).c_str(), axes.x_unit.c_str());
   for (const PlotLine& line : lines) {
     const auto next = std::lower_bound(line.x.begin(), line.x.end(), x);
     if (line.x.empty()) continue;
@@ -122,6 +123,26 @@ std::string short_number(double value) {
   if (size >= 1e4) return fmt::format("{:.3g} k", value / 1e3);
   if (size >= 1e3) return fmt::format("{:.0f}", value);
   return fmt::format("{:.3g}", value);
+}
+
+void plot_key(std::span<const PlotLine> lines) {
+  const float text = ImGui::GetFontSize(), end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+  bool first = true;
+  for (const PlotLine& line : lines) {
+    const std::string name = shortened(line.name, 9 * text);
+    const float width = 0.7f * text + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(name.c_str()).x;
+    if (!first) {
+      ImGui::SameLine();
+      if (ImGui::GetCursorPosX() + width > end) ImGui::NewLine();
+    }
+    first = false;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text}, {corner.x + 0.6f * text, corner.y + 0.8f * text},
+                                              packed(line.color), 0.1f * text);
+    ImGui::Dummy({0.7f * text, text});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+  }
 }
 
 void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines) {

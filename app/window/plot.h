@@ -21,12 +21,15 @@ struct PlotLine {
 struct PlotAxes {
   std::string title;    // "speed"
   std::string unit;     // "m/s"
-  std::string x_title = "time [s]";
+  std::string x_title = "time [s]", x_unit = "s";
   float height = 140;   // [pixels]
 };
 
 // Draws it over the whole width that is left. Hovering shows the values under the cursor.
 void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines);
+
+// Which line is whose, in rows of colours and names.
+void plot_key(std::span<const PlotLine> lines);
 
 // A number as short as an axis needs: "12.3 k", "0.02", "4.1e-05".
 std::string short_number(double value);

@@ -55,8 +55,8 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   preferences.size.width = std::clamp(preferences.size.width, 640, 16384);
   preferences.size.height = std::clamp(preferences.size.height, 400, 16384);
   preferences.text_scale = std::clamp(preferences.text_scale, 0.6f, 3.0f);
-  preferences.left_width = std::clamp(preferences.left_width, 14.0f, 60.0f);
-  preferences.right_width = std::clamp(preferences.right_width, 14.0f, 60.0f);
+  for (float* width : {&preferences.left_width, &preferences.right_width})
+    *width = *width > 0 ? std::clamp(*width, 14.0f, 60.0f) : 0;
 }
 
 void save(const Preferences& preferences, const std::filesystem::path& file) {

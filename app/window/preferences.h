@@ -13,7 +13,7 @@ struct Preferences {
   WindowSize size;
   float text_scale = 1;
   bool panels = true;             // shown at all
-  float left_width = 19, right_width = 20;  // of the columns of panels, in lines of text
+  float left_width = 0, right_width = 0;  // of the columns of panels, in lines of text; 0 = as the window suggests
   std::string left_panel = "Robots", right_panel = "See";
   render::Quality quality = render::Quality::automatic;
   std::string folder;             // shown by the browser last

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -184,13 +185,23 @@ void camera_section(CameraHand& camera, Observations& observations) {
     camera.field_of_view = degrees / 57.29578f;
 }
 
-bool look_section(ViewSettings& view, Preferences& preferences, Observations& observations) {
+bool look_section(ViewSettings& view, Preferences& preferences, int robots, Observations& observations) {
   heading("Layout and looks");
   bool changed = false;
   int layout = static_cast<int>(view.layout);
   if (choice("layout", "where the robots stand", layout, {"grid", "race: a lane each"})) {
     view.layout = static_cast<Layout>(layout);
     changed = true;
+  }
+  if (view.layout == Layout::grid) {
+    int columns = view.grid ? static_cast<int>(view.grid->columns) : 0;
+    row("columns", "of the grid; 0 = as suits the picture");
+    if (ImGui::InputInt("##columns", &columns)) {
+      columns = std::clamp(columns, 0, 1000);
+      view.grid = columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;
+      changed = true;
+    }
+    observations.item("columns");
   }
   int theme = view.theme == render::Theme::dark ? 0 : 1;
   if (choice("theme", "of the picture and the panels (key B)", theme, {"dark", "light"})) {
@@ -214,11 +225,11 @@ bool look_section(ViewSettings& view, Preferences& preferences, Observations& ob
 }  // namespace
 
 bool draw_see_panel(ViewSettings& view, CameraHand& camera, Preferences& preferences, const Environment& environment,
-                    Observations& observations) {
+                    std::size_t robots, Observations& observations) {
   bool changed = color_section(view, environment, observations);
   changed |= show_section(view, environment, observations);
   camera_section(camera, observations);
-  changed |= look_section(view, preferences, observations);
+  changed |= look_section(view, preferences, static_cast<int>(robots), observations);
   changed |= cut_section(view, observations);
   return changed;
 }

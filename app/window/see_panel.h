@@ -11,7 +11,7 @@ namespace mercury::window {
 
 // True when the settings changed. Arrows and colours that the environment does not have are not offered.
 bool draw_see_panel(ViewSettings& view, CameraHand& camera, Preferences& preferences, const Environment& environment,
-                    Observations& observations);
+                    std::size_t robots, Observations& observations);
 
 // What a key does to the settings.
 void toggle_drag_arrows(ViewSettings& view);

@@ -43,7 +43,7 @@ bool edit_common(Kind& environment) {
   static const Kind standard;
   bool changed = slider("gravity", "acceleration [m/s\xc2\xb2]", environment.gravity, standard.gravity, {-20, 20, "%.2f"});
   changed |= slider("stiffness scale", "multiplies every spring's stiffness", environment.stiffness_scale, standard.stiffness_scale,
-                    {0.01f, 1000, "x %.2f", true});
+                    {0.01f, 1000, "\xc3\x97 %.2f", true});
   return changed;
 }
 

@@ -113,8 +113,7 @@ Viewer::~Viewer() {
   if (folder_.empty()) return;
   Messages untold;
   ViewSettings view = scene_.view();
-  view.camera = camera_.plan();
-  view.camera.robot.clear();  // of this scene
+  view.camera = {.mode = camera_.mode()};  // all else is of this scene
   save_remembered(remembered_path(), {.view = view,
                                       .generation = panels_.generation(),
                                       .pause_on_explosion = preferences_.pause_on_explosion,
@@ -236,9 +235,9 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
     redraw_ = 3;
   }
   if (!framed_ && !live.bounds().empty()) {
-    camera_.set_orbit(direction_of(options_.view.camera, std::holds_alternative<Land>(scene_.configuration().environment)));
+    camera_.set_orbit(direction_of(scene_.view().camera, std::holds_alternative<Land>(scene_.configuration().environment)));
     camera_.start(live.bounds(), area.aspect());
-    camera_.set_mode(options_.view.camera.mode);
+    camera_.set_mode(scene_.view().camera.mode);
     framed_ = true;
   }
   const render::Camera camera = camera_.at(live.bounds(), area.aspect(), dt);
@@ -320,6 +319,9 @@ void Viewer::tell(double dt) {
                                {"playing", scene_.playing()},
                                {"selected", scene_.selection().size()},
                                {"panels", preferences_.panels},
+                               {"color", name_of(scene_.view().color)},
+                               {"theme", scene_.view().theme == render::Theme::dark ? "dark" : "light"},
+                               {"camera", name_of(camera_.mode())},
                                {"seconds", dt},
                                {"picture", cost_.picture}});
 }

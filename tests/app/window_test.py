@@ -1,8 +1,10 @@
 """The interactive window, started for real and driven with mouse and keys: window_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import csv
 import importlib.util
 import json
 import os
 import random
+import shlex
 import shutil
 import subprocess
 import sys
@@ -135,6 +137,92 @@ class WindowTest(unittest.TestCase):
         again.dialog(str(self.folder / "new.json"))
         again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
         self.finish(again)
+
+    def test_all_robots_are_saved_as_cbor(self):
+        window = self.small("--paused")
+        window.key("ctrl+s")
+        window.click("files.format")
+        x, y = window.place("files.format")
+        window.do("mousemove", x, y + 1.9 * window.items["files.format"]["height"])
+        window.frame()
+        window.do("click", 1)
+        window.frame()
+        since = window.mark()
+        window.click("dialog.text")
+        window.dialog("both")
+        saved = window.wait("saved", since)["files"]
+        self.assertEqual([str(Path(file).relative_to(self.folder)) for file in saved], ["both/eel.cbor", "both/fish.cbor"])
+        self.finish(window)
+        info = subprocess.run([PROGRAM, "info", str(self.folder / "both")], capture_output=True, text=True)
+        self.assertEqual(info.returncode, 0, info.stderr)
+        self.assertIn("eel", info.stdout)
+
+    def test_a_scene_copied_as_a_command_is_made_again_by_it(self):
+        def copy(window):
+            since = window.mark()
+            window.click("tune.copy")
+            return window.wait("copied", since)["text"]
+
+        window = self.open(str(SAMPLES / "eel.json"), "--random", "voxel:2", "--seed", "3", "--paused")
+        names = window.wait("robots", 0, lambda event: event["count"] == 3)["names"]
+        window.key("3", "d", "b", "t")
+        window.click("tab.Tune")
+        window.click("tune.damping")
+        window.click("tune.solver")
+        x, y = window.place("tune.solver")
+        window.do("mousemove", x, y + 1.9 * window.items["tune.solver"]["height"])
+        window.frame()
+        window.do("click", 1)
+        window.frame()
+        command = copy(window)
+        words = shlex.split(command)
+        self.assertEqual(words[:2], ["mercury", "view"])
+        for word in ("--solver=xpbd", "--color=strain", "--theme=light", "--camera=turntable", "voxel:2:3"):
+            self.assertTrue(any(given.startswith(word) for given in words), f"{word} in {command}")
+        self.finish(window)
+        again = self.window_in(self.folder, "--fresh", "--paused", *(word for word in words[2:] if not word.startswith("--device")))
+        self.assertEqual(again.wait("robots", 0, lambda event: event["count"] == 3)["names"], names)
+        again.click("tab.Tune")
+        again.key("t")  # the turntable has gone on; all else is as it was
+        again.frame(lambda frame: frame["camera"] == "still")
+
+        def settings(command):
+            return sorted(word for word in shlex.split(command) if not word.startswith(("--azimuth", "--elevation", "--camera")))
+
+        self.assertEqual(settings(copy(again)), settings(command))
+        self.finish(again)
+
+    def test_ranking_sorts_and_measurements_are_exported(self):
+        window = self.open(str(SAMPLES / "fish.json"), str(SAMPLES / "eel.json"), str(SAMPLES / "ray.json"))
+        window.frame(lambda frame: frame["time"] > 1)
+        window.key("space")
+        window.frame(lambda frame: not frame["playing"])
+        window.click("tab.Ranking")
+        for _ in range(2):
+            since = window.mark()
+            window.click("ranking.by.robot")
+            told = window.wait("ranking", since)
+            self.assertEqual(told["by"], "robot")
+            self.assertEqual(told["names"], sorted(["fish", "eel", "ray"], reverse=not told["ascending"]))
+        window.click("ranking.by.distance")
+        window.click("tab.Measure")
+        for button, file in (("measure.csv", "swim.csv"), ("ranking.csv", "rank.csv")):
+            since = window.mark()
+            window.click(button)
+            window.dialog(str(self.folder / file))
+            window.wait("saved", since)
+        time = window.frame()["time"]
+        self.finish(window)
+        with open(self.folder / "swim.csv") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0][0], "time [s]")
+        self.assertTrue(any("eel" in name and "distance" in name for name in rows[0]), rows[0])
+        self.assertLessEqual(abs(float(rows[-1][0]) - time), 0.1)
+        with open(self.folder / "rank.csv") as file:
+            ranking = list(csv.DictReader(file))
+        self.assertEqual(sorted(row["name"] for row in ranking), ["eel", "fish", "ray"])
+        distances = [float(row[next(name for name in row if name.startswith("distance"))]) for row in ranking]
+        self.assertEqual(distances, sorted(distances, reverse=True))
 
     def test_a_robot_that_cannot_be_loaded_is_told(self):
         window = self.small("--paused")
@@ -270,9 +358,18 @@ class WindowTest(unittest.TestCase):
         window = self.small("--paused")
         window.click("tab.Tune")
         window.wait("panel", 0, lambda event: event["name"] == "Tune")
+        x, y = window.place("picture")
+        edge = int(x + window.items["picture"]["width"] / 2)
+        window.script([f"mousemove {edge} {y}", "sleep 0.2", "mousedown 1", "sleep 0.2", f"mousemove {edge - 60} {y}", "sleep 0.2", "mouseup 1"])
+        width = window.until("a wider column", lambda: window.items["panel.Tune"]["width"] if
+                             abs(edge - 60 - window.items["picture"]["x"] - window.items["picture"]["width"] / 2) < 3 else 0)
+        window.key("3", "b", "t")
+        window.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
         self.finish(window)
         again = self.window_in(self.folder, "--paused")
         again.place("panel.Tune")
+        again.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
+        self.assertLess(abs(again.items["panel.Tune"]["width"] - width), 2)
         self.finish(again)
 
     def test_whatever_is_clicked_and_typed_the_window_lives(self):
