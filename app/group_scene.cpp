@@ -77,8 +77,10 @@ std::string distance_text(float metres) {
   return fmt::format("{:.2f} m", metres);
 }
 
+// In slow motion so many digits that the last one is seen to move.
 std::string clock_of(double time, double speed) {
-  return speed == 1 ? fmt::format("{:.1f} s", time) : fmt::format("{:.1f} s   x{:g}", time, speed);
+  const int digits = speed >= 1 ? 1 : std::clamp(1 + static_cast<int>(std::ceil(-std::log10(speed) - 1e-9)), 1, 5);
+  return speed == 1 ? fmt::format("{:.1f} s", time) : fmt::format("{:.{}f} s   x{:g}", time, digits, speed);
 }
 
 }  // namespace

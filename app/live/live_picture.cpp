@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "app/cameraman.h"
+#include "app/live/slow_motion.h"
 
 namespace mercury {
 namespace {
@@ -63,6 +64,8 @@ struct LivePicture::Parts {
   std::optional<GroupScene> scene;
   std::vector<Eigen::Vector3f> offsets;
   std::uint64_t revision = 0;
+  SlowMotion slow_motion;
+  SlowMotion::Shown shown;
 
   void keep_trails(const GroupScene& old, const Moment& before) {
     for (std::size_t i = 0; i < moment->robots->size(); ++i)
@@ -75,7 +78,7 @@ LivePicture::LivePicture() : parts_(std::make_unique<Parts>()) {}
 LivePicture::~LivePicture() = default;
 
 void LivePicture::update(std::shared_ptr<const Moment> moment, const ViewSettings& settings, float aspect,
-                         const std::set<RobotId>& selected, const std::set<RobotId>& hidden) {
+                         const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall) {
   Parts& parts = *parts_;
   const std::shared_ptr<const Moment> before = std::exchange(parts.moment, moment);
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
@@ -102,8 +105,10 @@ void LivePicture::update(std::shared_ptr<const Moment> moment, const ViewSetting
     const RobotId id = moment->robots->robots[i].id;
     parts.scene->mark(i, selected.contains(id), hidden.contains(id));
   }
-  parts.scene->update(moment->time, moment->telemetry, moment->details);
-  const auto& positions = moment->positions;
+  if (before != moment) parts.slow_motion.take(moment);
+  parts.shown = parts.slow_motion.at(wall);
+  parts.scene->update(parts.shown.time, parts.shown.telemetry, moment->details);
+  const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};
 }
 
@@ -119,6 +124,10 @@ void LivePicture::set_bodies(render::Renderer& renderer) const { parts_->scene->
 render::Scene& LivePicture::scene() { return parts_->scene->scene(); }
 std::span<const render::Bounds> LivePicture::bounds() const {
   return parts_->scene ? parts_->scene->bounds() : std::span<const render::Bounds>{};
+}
+std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
+  const std::vector<std::size_t>& offsets = parts_->moment->robots->mass_offsets;
+  return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }
 std::span<const Eigen::Vector3f> LivePicture::offsets() const { return parts_->offsets; }
 

@@ -19,9 +19,10 @@ class LivePicture {
   LivePicture();
   ~LivePicture();
 
-  // Brings the scene to a moment, which is kept until the next one.
+  // Brings the scene to a moment, which is kept until the next one; in slow motion, to what is to be seen at that wall
+  // time (slow_motion.h).
   void update(std::shared_ptr<const Moment> moment, const ViewSettings& settings, float aspect,
-              const std::set<RobotId>& selected, const std::set<RobotId>& hidden);
+              const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall);
   // Robots stand anew in rows that suit the picture and the settings' camera angles.
   void lay_out(float aspect);
 
@@ -32,6 +33,8 @@ class LivePicture {
   render::Scene& scene();
   // One a robot of the moment, in the picture; those of exploded robots are empty, unless all have exploded.
   std::span<const render::Bounds> bounds() const;
+  // Where a robot's masses are shown, in its own coordinates.
+  std::span<const Vec3> positions_of(std::size_t robot) const;
   // Added to the robots' own coordinates [m].
   std::span<const Eigen::Vector3f> offsets() const;
 

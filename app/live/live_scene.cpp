@@ -9,6 +9,7 @@
 
 #include "app/eigen_vec3.h"
 #include "app/live/live_scene_parts.h"
+#include "app/live/pace.h"
 #include "app/report.h"
 
 namespace mercury {
@@ -52,7 +53,7 @@ void LiveScene::frame(float aspect) {
   }
   std::erase_if(parts.selected, [&](RobotId id) { return !parts.document.find(id); });
   if (parts.pull && !parts.document.find(parts.pull->robot)) end_pull();
-  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()}, parts.hidden);
+  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()}, parts.hidden, wall_now());
 }
 
 const Moment& LiveScene::moment() const { return *parts_->moment; }
@@ -227,7 +228,7 @@ std::optional<PullFigures> LiveScene::pull() const {
   const auto index = parts_->moment->robots->index_of(pull.robot);
   if (!index || *index >= parts_->picture.offsets().size()) return std::nullopt;
   const Eigen::Vector3f offset = parts_->picture.offsets()[*index];
-  const Vec3 mass = parts_->moment->positions_of(*index)[pull.mass];
+  const Vec3 mass = parts_->picture.positions_of(*index)[pull.mass];
   return PullFigures{.robot = pull.robot,
                      .mass = pull.mass,
                      .at = eigen(mass) + offset,

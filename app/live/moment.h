@@ -67,6 +67,7 @@ struct Moment {
 
   bool playing = false;
   double speed = 1;               // wanted, simulated seconds a second
+  double due_at = 0;              // when this moment is to be seen, if playing at a finite speed [s of wall time]
   double achieved_speed = 0;      // over the last second or so; 0 = at rest
   double springs_per_second = 0;  // while stepping
   double step_seconds = 0;        // of wall time one step takes, 0 = not known

@@ -6,6 +6,9 @@
 
 namespace mercury {
 
+// Wall time [s], from some beginning on.
+double wall_now();
+
 // Keeps simulated time at `speed` times real time. Where physics is too slow it falls behind for good rather than
 // piling up work: what is more than a tenth of a second late is forgotten.
 class Pace {
@@ -17,6 +20,8 @@ class Pace {
   std::int64_t due(double wall);
   // When the next step is due [s of wall time].
   double next_due() const;
+  // When the last step done was due.
+  double done_at() const { return start_ + static_cast<double>(done_) / rate_; }
   void done(std::int64_t steps) { done_ += steps; }
 
  private:

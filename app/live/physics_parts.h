@@ -99,9 +99,4 @@ struct Physics::Parts {
   void tell();
 };
 
-// Wall time [s].
-inline double wall_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace mercury

@@ -173,6 +173,7 @@ void Physics::Parts::tell() {
     if (!population.pulls_of({&pull, 1}).empty()) next->pulls.push_back(pull);
   next->playing = playing;
   next->speed = speed;
+  next->due_at = playing && std::isfinite(speed) ? pace.done_at() : 0;
   next->achieved_speed = playing ? gauge.speed() : 0;
   next->step_seconds = step_seconds;
   next->springs_per_second =

@@ -46,8 +46,8 @@ bool sign_button(const char* id, Sign sign, const char* explanation, bool lit = 
   return clicked;
 }
 
-std::string time_text(double seconds) {
-  if (seconds < 60) return fmt::format("{:.2f} s", seconds);
+std::string time_text(double seconds, int digits) {
+  if (seconds < 60) return fmt::format("{:.{}f} s", seconds, digits);
   const auto minutes = static_cast<long>(seconds / 60);
   return fmt::format("{}:{:05.2f}", minutes, seconds - 60 * static_cast<double>(minutes));
 }
@@ -114,7 +114,7 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   ImGui::PushFont(large_font());
   ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 - ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
-  ImGui::TextUnformatted(time_text(scene.moment().time).c_str());
+  ImGui::TextUnformatted(time_text(scene.moment().time, scene.speed() < 0.05 ? 3 : 2).c_str());
   ImGui::PopFont();
   hint(fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt).c_str());
   ImGui::SameLine();

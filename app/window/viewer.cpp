@@ -87,6 +87,7 @@ class Viewer {
   bool framed_ = false;            // the camera has found its first robots
   int redraw_ = 3;                 // pictures to be drawn though nothing in them moves
   std::int64_t shown_steps_ = -1;
+  double shown_time_ = -1;         // of the robots in the picture [s]
   render::Camera shown_;           // the picture was drawn with
   PictureArea area_{{0, 0}, {16, 9}};
   FrameCost cost_;
@@ -245,7 +246,7 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
   const float least = 2e-4f * (camera.eye - camera.target).norm();
   const bool turned = (camera.eye - shown_.eye).norm() > least || (camera.target - shown_.target).norm() > least ||
                       camera.field_of_view != shown_.field_of_view;
-  const bool stepped = shown_steps_ != scene_.moment().steps;
+  const bool stepped = shown_steps_ != scene_.moment().steps || shown_time_ != live.scene().time;
   turned_ = turned;
   const bool moving = turned || (stepped && scene_.playing()) || hands_.busy();
   if (!moving && !stepped && redraw_ == 0 && !picture_.coarse()) return;
@@ -254,6 +255,7 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
   cost_.picture = since(begin);
   shown_ = camera;
   shown_steps_ = scene_.moment().steps;
+  shown_time_ = live.scene().time;
   redraw_ = std::max(0, redraw_ - 1);
 }
 
@@ -316,6 +318,7 @@ void Viewer::tell(double dt) {
                                {"input", window_.input().taken()},
                                {"steps", scene_.moment().steps},
                                {"time", scene_.moment().time},
+                               {"shown", shown_time_},
                                {"playing", scene_.playing()},
                                {"selected", scene_.selection().size()},
                                {"panels", preferences_.panels},

@@ -83,6 +83,24 @@ class WindowTest(unittest.TestCase):
         window.frame(lambda frame: frame["steps"] == 0)
         self.finish(window)
 
+    def test_slow_motion_glides_between_steps(self):
+        window = self.small()
+        window.frame(lambda frame: frame["time"] > 0.02)
+        window.key(*["minus"] * 9)  # to 1/1000: a step a second
+        first = window.frame(lambda frame: frame["shown"] < frame["time"])
+        second = window.frame(lambda frame: frame["steps"] > first["steps"] + 1)
+        since, between = window.mark(), set()
+        window.frame(lambda frame: frame["steps"] > second["steps"] + 2, since)
+        for frame in window.events[since:]:
+            if frame["event"] == "frame":
+                self.assertLessEqual(frame["shown"], frame["time"])
+                self.assertGreater(frame["shown"], frame["time"] - 0.0021)
+                between.add(frame["shown"])
+        self.assertGreater(len(between), 6)  # several a step
+        shown = [event["shown"] for event in window.events[since:] if event["event"] == "frame"]
+        self.assertEqual(shown, sorted(shown))
+        self.finish(window)
+
     def test_camera_turns_and_comes_closer(self):
         window = self.small("--paused")
         before = window.frame()
