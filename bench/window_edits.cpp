@@ -1,0 +1,92 @@
+// How long the window's pictures wait for an edit of a large scene: bench_window_edits [robots [side]].
+//
+// Robots are random voxel robots without air of side^3 voxels: side 10 has 1,331 masses and 14,230 springs. For each
+// edit, the longest that one picture's share of the scene's work took (LiveScene::frame() and handing bodies to the
+// renderer), and the time until the edit is seen.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include "app/live/live_scene.h"
+#include "render/context.h"
+#include "render/renderer.h"
+#include "robots/random_voxel.h"
+
+namespace {
+
+using namespace mercury;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+class Window {
+ public:
+  Window() : context_(render::make_context({.kind = render::ContextKind::automatic})), renderer_(*context_, {.width = 64, .height = 64}) {}
+
+  // Seconds that one picture waits.
+  double picture(LiveScene& scene) {
+    const double start = now();
+    scene.frame();
+    LivePicture& live = scene.picture();
+    if (bodies_ != live.bodies_revision()) {
+      live.set_bodies(renderer_);
+      bodies_ = live.bodies_revision();
+    }
+    return now() - start;
+  }
+
+ private:
+  std::unique_ptr<render::Context> context_;
+  render::Renderer renderer_;
+  std::uint64_t bodies_ = 0;
+};
+
+void measure(Window& window, LiveScene& scene, const char* name, const std::function<void()>& edit, const std::function<bool()>& seen) {
+  const double begin = now();
+  edit();
+  const double call = now() - begin;
+  double longest = 0;
+  while (!seen() && now() - begin < 60) {
+    longest = std::max(longest, window.picture(scene));
+    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+  }
+  longest = std::max(longest, window.picture(scene));
+  std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest, 1e3 * (now() - begin));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500;
+  const int side = argc > 2 ? std::atoi(argv[2]) : 10;
+  LiveScene scene({.configuration = {.device = {.kind = DeviceKind::automatic}}});
+  Window window;
+  const auto robots_are = [&](std::size_t wanted) { return [&scene, wanted] { return scene.moment().robots->size() == wanted; }; };
+  std::vector<Robot> robots;
+  for (std::size_t i = 0; i < count; ++i)
+    robots.push_back(random_voxel_robot({.smallest = {side, side, side}, .largest = {side, side, side}, .air = 0}, 1, i % 8));
+  std::printf("%zu robots of %zu masses, %zu springs, on %s\n", count, robots[0].masses.size(), robots[0].springs.size(), scene.device_name().c_str());
+  measure(window, scene, "add all", [&] { scene.add(std::move(robots)); }, robots_are(count));
+  const RobotId some = scene.entries()[count / 2].id;
+  measure(window, scene, "duplicate one", [&] { scene.duplicate({some}); }, robots_are(count + 1));
+  measure(window, scene, "remove one", [&] { scene.remove({some}); }, robots_are(count));
+  measure(window, scene, "undo that", [&] { scene.undo(); }, robots_are(count + 1));
+  const RobotId first = scene.entries()[0].id;
+  measure(window, scene, "materials of one", [&] { scene.scale_materials({first}, {.stiffness = 1.5f}); },
+          [&] { return scene.moment().robots->robots[0].materials != nullptr; });
+  std::vector<RobotId> all;
+  for (const RobotEntry& entry : scene.entries()) all.push_back(entry.id);
+  measure(window, scene, "materials of all", [&] { scene.scale_materials(all, {.stiffness = 2}); },
+          [&] { return scene.moment().robots->robots.back().materials != nullptr; });
+  measure(window, scene, "damping", [&] {
+    Configuration configuration = scene.configuration();
+    configuration.damping = 0.5;
+    scene.set_configuration(configuration);
+  }, [&] { return scene.moment().configuration.damping == 0.5; });
+  measure(window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.moment().resets > 0; });
+  double usual = 0;
+  for (int i = 0; i < 20; ++i) usual += window.picture(scene) / 20;
+  std::printf("a picture without edits %.2f ms\n", 1e3 * usual);
+  return 0;
+}
