@@ -155,7 +155,7 @@ void add_pulls(Lockstep& group) {
   }
 }
 
-void list_near_pairs(Lockstep& group, std::uint32_t lanes) {
+void list_near_pairs(Lockstep& group, std::uint32_t lanes, void (*list)(Body&)) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     if ((lanes >> lane & 1) == 0) continue;
     Body& body = *group.members[lane];
@@ -167,7 +167,7 @@ void list_near_pairs(Lockstep& group, std::uint32_t lanes) {
       body.x.y[place] = x.y;
       body.x.z[place] = x.z;
     }
-    body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
+    list(body);
   }
   group.lists = present_lists(group);
 }

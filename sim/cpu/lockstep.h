@@ -83,7 +83,8 @@ void take_pulls(Lockstep& group);
 void add_pulls(Lockstep& group);
 
 // Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes' contacts.
-void list_near_pairs(Lockstep& group, std::uint32_t lanes);
+// `list` does it for a body whose masses are at body.x.
+void list_near_pairs(Lockstep& group, std::uint32_t lanes, void (*list)(Body&));
 void add_contacts(Lockstep& group, float stiffness);
 
 void make_checkpoint(Lockstep& group);

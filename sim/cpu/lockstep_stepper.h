@@ -3,6 +3,7 @@
 
 #include "sim/cpu/lockstep.h"
 #include "sim/cpu/motion.h"
+#include "sim/cpu/near_search.h"
 #include "sim/cpu/skin.h"
 #include "sim/cpu/spring_slots.h"
 
@@ -69,7 +70,7 @@ class LockstepStepper {
   // Adds the forces of contacts, and sees to it that near pairs are listed.
   void touch() {
     const std::uint32_t lanes = group_.lists.empty() ? ~0u : bits_of(strayed());
-    if (lanes != 0) list_near_pairs(group_, lanes);
+    if (lanes != 0) list_near_pairs(group_, lanes, [](Body& body) { HWY_NAMESPACE::list_near_pairs(body); });
     add_contacts(group_, contact_stiffness_);
   }
 

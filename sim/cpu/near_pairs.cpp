@@ -8,7 +8,7 @@
 
 namespace mercury::cpu {
 
-NearPairs::NearPairs(const Robot& robot, const Places& places) : masses_(places.of_mass) {
+NearPairs::NearPairs(const Robot& robot, const Places& places) : masses_(places.of_mass), lanes_(places.lanes) {
   start_.assign(places.mass_at.size() + 1, 0);
   for (const Spring& spring : robot.springs) {
     ++start_[places.of_mass[spring.a] + 1];
@@ -88,13 +88,31 @@ void NearPairs::list_in_row(const Grid& grid, std::uint32_t i, std::uint32_t fir
   }
 }
 
-void NearPairs::list(std::span<const float> x, std::span<const float> y, std::span<const float> z, float contact_distance) {
+std::span<const std::uint8_t> NearPairs::candidates() {
+  if (!candidates_.empty()) return candidates_;
+  const std::size_t bytes = bytes_of(lanes_), row = (start_.size() - 1) / lanes_ * bytes;
+  constexpr std::size_t read_beyond = 8;  // by vector code
+  candidates_.resize((start_.size() - 1) * row + read_beyond);
+  for (const std::uint32_t i : masses_)
+    for (const std::uint32_t j : masses_) {
+      if (j <= i || joined(i, j)) continue;
+      const std::size_t lane = j % lanes_;
+      candidates_[i * row + j / lanes_ * bytes + lane / 8] |= static_cast<std::uint8_t>(1u << lane % 8);
+    }
+  return candidates_;
+}
+
+void NearPairs::start(std::span<const float> x, std::span<const float> y, std::span<const float> z) {
   x_.assign(x.begin(), x.end());
   y_.assign(y.begin(), y.end());
   z_.assign(z.begin(), z.end());
   pairs_.clear();
   listed_ = true;
   ++times_listed_;
+}
+
+void NearPairs::list(std::span<const float> x, std::span<const float> y, std::span<const float> z, float contact_distance) {
+  start(x, y, z);
   const float radius = list_radius * contact_distance;
   const Grid grid(masses_, {x, y, z}, radius);
   for (std::uint32_t n = 0; n < grid.sorted.size(); ++n) {

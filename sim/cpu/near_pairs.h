@@ -29,9 +29,19 @@ class NearPairs {
   NearPairs() = default;
   NearPairs(const Robot& robot, const Places& places);
 
-  // Lists the pairs of the masses at these places, coordinates x, y, z.
+  // Lists the pairs of the masses at these places, coordinates x, y, z, which a grid finds.
   void list(std::span<const float> x, std::span<const float> y, std::span<const float> z, float contact_distance);
   void forget() { listed_ = false; }
+
+  // The other way, for robots of few masses: the caller looks at all pairs, many at once (sim/cpu/near_search.h), and adds
+  // those that are near.
+  bool few() const { return masses_.size() <= 64 * lanes_; }
+  // For each place, for each block of places: one bit a lane, set where the mass at it comes later and no spring joins the
+  // two. So many bytes a block.
+  std::span<const std::uint8_t> candidates();
+  static constexpr std::size_t bytes_of(std::size_t lanes) { return lanes > 8 ? 2 : 1; }
+  void start(std::span<const float> x, std::span<const float> y, std::span<const float> z);
+  void add(Pair pair) { pairs_.push_back(pair); }
 
   bool listed() const { return listed_; }
   std::uint64_t times_listed() const { return times_listed_; }
@@ -49,6 +59,8 @@ class NearPairs {
   std::vector<std::uint32_t> masses_;           // places with a mass
   std::vector<std::uint32_t> start_, joined_;   // places joined by a spring to place i: [start_[i], start_[i + 1])
   std::vector<Pair> pairs_;
+  std::size_t lanes_ = 1;
+  std::vector<std::uint8_t> candidates_;        // made when first asked for
   Aligned<float> x_, y_, z_;
   bool listed_ = false;
   std::uint64_t times_listed_ = 0;

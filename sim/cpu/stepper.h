@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/cpu/motion.h"
+#include "sim/cpu/near_search.h"
 #include "sim/cpu/skin.h"
 #include "sim/cpu/spring_slots.h"
 
@@ -71,7 +72,7 @@ class Stepper {
       const float distance = body_.measures.contact_distance();
       if (contact_stiffness_ != 0 && distance != 0) {
         if (!body_.near_pairs.listed() || strayed(list_reach * distance))
-          body_.near_pairs.list(body_.x.x, body_.x.y, body_.x.z, distance);
+          list_near_pairs(body_);
         add_contacts(body_, contact_stiffness_);
       }
     }
