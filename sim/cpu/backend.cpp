@@ -72,11 +72,11 @@ class CpuBackend final : public Backend {
         broken += advance(kernel_, packs_[i], bodies_, setting_, clock, steps);
       });
     });
-    broken_ += broken;
-    // Groups that were broken up are made anew of those that are whole, but not at every explosion.
+    out_of_place_ += broken;
+    // Groups are made anew of the robots that are whole, but not at every explosion.
     std::size_t groups = 0;
     for (const Pack& pack : packs_) groups += pack.groups.size();
-    if (16 * broken_ > groups) unpack();
+    if (16 * out_of_place_ > groups) unpack();
     busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -108,7 +108,7 @@ class CpuBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) unpack();
+    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) ++out_of_place_;
     bodies_[robot].status = status;
   }
 
@@ -144,7 +144,7 @@ class CpuBackend final : public Backend {
   void unpack() {
     cpu::store(packs_);
     packs_.clear();
-    broken_ = 0;
+    out_of_place_ = 0;
   }
 
   void replace_table(std::size_t robot, std::span<const Material> table) {
@@ -157,7 +157,7 @@ class CpuBackend final : public Backend {
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
   std::vector<Pack> packs_;  // empty = to be made before the next step
-  std::size_t broken_ = 0;   // groups of theirs
+  std::size_t out_of_place_ = 0;  // groups broken up, robots made whole again or exploded by order
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;
