@@ -66,9 +66,18 @@ void BrowserPanel::draw_bar(Desk& desk) {
   desk.observations.item("browser.samples");
   hint("the robots that come with the program");
   ImGui::SameLine();
-  if (ImGui::Button("This folder")) folder = std::filesystem::current_path().string();
-  desk.observations.item("browser.here");
-  hint("the folder that the program was started in");
+  if (ImGui::Button("Folder...")) {
+    desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+                            .title = "Folder of robots",
+                            .button = "Show",
+                            .extensions = {".json", ".cbor"},
+                            .folder = folder,
+                            .name = "",
+                            .formats = {}},
+                           [&desk](const FileAnswer& answer) { desk.preferences.folder = answer.paths.front().string(); });
+  }
+  desk.observations.item("browser.choose");
+  hint("shows the robots of a folder");
   ImGui::SetNextItemWidth(-1);
   if (text_field("##folder", typed_, "sample robots; or a folder") && !typed_.empty()) folder = typed_;
   desk.observations.item("browser.folder");

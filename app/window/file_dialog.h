@@ -13,7 +13,7 @@
 namespace mercury::window {
 
 struct FileQuestion {
-  // Files that there are; a name for one that there need not be; a folder, of which the name is a part that need not be.
+  // Files that there are; a name for one that there need not be; a folder. A name typed for the latter need not be there.
   enum class Kind { open, save, folder } kind = Kind::open;
   std::string title, button;
   std::vector<std::string> extensions;  // of the files shown; the first is given to a name without one
@@ -47,6 +47,7 @@ class FileDialog {
   void draw_name(Observations& observations);
   void draw_buttons(Observations& observations);
   void set_text(std::string text);
+  void typed();
   void enter(const std::filesystem::path& folder);
   void go_up();
   void click(std::size_t index);

@@ -1,11 +1,9 @@
 #include "app/window/viewer.h"
 
 #include <epoxy/gl.h>
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -14,6 +12,7 @@
 #include "app/interrupt.h"
 #include "app/live/live_scene.h"
 #include "app/live/remembered.h"
+#include "app/window/frame_report.h"
 #include "app/window/interface.h"
 #include "app/window/panels.h"
 #include "app/window/picture_text.h"
@@ -59,13 +58,12 @@ class Viewer {
   void frame(double dt);
   void listen(const std::vector<InputEvent>& events);
   void draw_picture(const PictureArea& area, double dt);
-  void finish_picture(const PictureArea& area);
+  void finish_picture();
   void take_screenshot();
-  void tell(double dt);
   bool anything_moves() const;
   std::filesystem::path settings(const char* name) const { return folder_.empty() ? folder_ : folder_ / name; }
 
-  const Clock::time_point start_ = Clock::now();
+  FrameReport report_;  // first: it measures how long opening takes
   ViewerOptions options_;
   std::filesystem::path folder_;  // of settings; empty = nothing is remembered
   Preferences preferences_;
@@ -93,10 +91,6 @@ class Viewer {
   FrameCost cost_;
   Clock::time_point seen_;         // the last picture
   double seeing_ = 0;              // time that it took [s]
-  std::int64_t frames_ = 0;
-  std::uint64_t told_input_ = 0;
-  double told_ = -1;
-  std::size_t told_robots_ = 0;
 };
 
 Viewer::Viewer(ViewerOptions options)
@@ -212,13 +206,13 @@ void Viewer::frame(double dt) {
   } else {
     const auto drawing = Clock::now();
     draw_picture(area_, dt);
-    finish_picture(area_);
+    finish_picture();
     seen_ = Clock::now();
     seeing_ = since(drawing);
   }
   cost_.whole = dt;
   panels_.note(cost_);
-  tell(dt);
+  report_.tell(desk_, window_, {area_, shown_, shown_time_}, cost_, dt);
 }
 
 void Viewer::draw_picture(const PictureArea& area, double dt) {
@@ -259,7 +253,7 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
   redraw_ = std::max(0, redraw_ - 1);
 }
 
-void Viewer::finish_picture(const PictureArea&) {
+void Viewer::finish_picture() {
   const WindowSize pixels = window_.pixels();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels.width, pixels.height);
@@ -283,50 +277,6 @@ void Viewer::finish_picture(const PictureArea&) {
 
 void Viewer::take_screenshot() {
   screenshot_.take(read_window(window_.pixels()), fresh_name(picture_folder(desk_), ".png"));
-}
-
-void Viewer::tell(double dt) {
-  observations_.end_frame();
-  const std::vector<std::string> complaints = window_.context().take_messages();
-  for (const std::string& complaint : complaints) {
-    observations_.tell("gl", {{"text", complaint}});
-    fmt::print(stderr, "mercury: OpenGL: {}\n", complaint);
-  }
-  if (frames_++ == 0) observations_.tell("ready", {{"seconds", since(start_)}, {"context", window_.context().describe()}});
-  if (!observations_) return;
-  const std::size_t robots = scene_.entries().size();
-  if (robots != told_robots_) {
-    std::vector<std::string> names;
-    for (const RobotEntry& entry : scene_.entries()) names.push_back(entry.name);
-    observations_.tell("robots", {{"count", robots}, {"names", names}});
-    told_robots_ = robots;
-  }
-  // Five times a second, and when all that was pressed was taken.
-  const bool caught_up = !window_.input().behind() && window_.input().taken() != told_input_;
-  if (since(start_) - told_ < 0.2 && !caught_up) return;
-  told_input_ = window_.input().taken();
-  told_ = since(start_);
-  std::vector<std::array<float, 2>> where;  // the middle of each robot in the window
-  for (const render::Bounds& box : scene_.picture().bounds()) {
-    const Eigen::Vector3f p = shown_.project(box.center(), static_cast<int>(area_.width()), static_cast<int>(area_.height()));
-    if (where.size() < 20) where.push_back({area_.low.x + p.x(), area_.low.y + p.y()});
-  }
-  observations_.tell("frame", {{"number", frames_},
-                               {"where", where},
-                               {"distance", camera_.orbit().distance},
-                               {"azimuth", camera_.orbit().azimuth},
-                               {"input", window_.input().taken()},
-                               {"steps", scene_.moment().steps},
-                               {"time", scene_.moment().time},
-                               {"shown", shown_time_},
-                               {"playing", scene_.playing()},
-                               {"selected", scene_.selection().size()},
-                               {"panels", preferences_.panels},
-                               {"color", name_of(scene_.view().color)},
-                               {"theme", scene_.view().theme == render::Theme::dark ? "dark" : "light"},
-                               {"camera", name_of(camera_.mode())},
-                               {"seconds", dt},
-                               {"picture", cost_.picture}});
 }
 
 }  // namespace
