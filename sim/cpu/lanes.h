@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "sim/cpu/muscles.h"
+#include "sim/host_device.h"
 #include "sim/vec3.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -81,7 +82,15 @@ HWY_INLINE Integers bits_of(Lanes a) { return {hn::BitCast(integers, a.v)}; }
 HWY_INLINE Integers magnitude(Lanes a) { return {hn::BitCast(integers, hn::Abs(a.v))}; }
 HWY_INLINE Integers larger(Integers a, Integers b) { return {hn::Max(a.v, b.v)}; }
 HWY_INLINE std::int32_t largest(Integers a) { return hn::GetLane(hn::MaxOfLanes(integers, a.v)); }
-HWY_INLINE Integers round_to_int(Lanes a) { return {hn::NearestInt(a.v)}; }
+HWY_INLINE Integers round_to_int(Lanes a) {
+#if HWY_TARGET == HWY_EMU128
+  Integers rounded;
+  for (std::size_t i = 0; i < lane_count; ++i) rounded.v.raw[i] = mercury::round_to_int(a.v.raw[i]);
+  return rounded;
+#else
+  return {hn::NearestInt(a.v)};
+#endif
+}
 HWY_INLINE Lanes float_of(Integers a) { return hn::ConvertTo(floats, a.v); }
 HWY_INLINE Integers integers_of(Words a) { return {hn::BitCast(integers, a.v)}; }
 HWY_INLINE Integers no_integers() { return {hn::Zero(integers)}; }

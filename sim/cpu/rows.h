@@ -48,9 +48,22 @@ HWY_INLINE Lanes upper_pairs(Lanes a, Lanes b) {
 
 // Turns groups of four by four elements: rows to columns, or columns to rows.
 HWY_INLINE Lanes4 turned(Lanes4 r) {
+#if HWY_TARGET == HWY_EMU128
+  // Element by element is quicker than exchanges that are emulated one by one.
+  Lanes4 t;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Lanes& column = i == 0 ? t.x : i == 1 ? t.y : i == 2 ? t.z : t.w;
+    column.v.raw[0] = r.x.v.raw[i];
+    column.v.raw[1] = r.y.v.raw[i];
+    column.v.raw[2] = r.z.v.raw[i];
+    column.v.raw[3] = r.w.v.raw[i];
+  }
+  return t;
+#else
   const Lanes a = hn::InterleaveLower(floats, r.x.v, r.y.v), b = hn::InterleaveUpper(floats, r.x.v, r.y.v);
   const Lanes c = hn::InterleaveLower(floats, r.z.v, r.w.v), d = hn::InterleaveUpper(floats, r.z.v, r.w.v);
   return {lower_pairs(a, c), upper_pairs(a, c), lower_pairs(b, d), upper_pairs(b, d)};
+#endif
 }
 
 // The rows of as many masses as there are lanes, still as rows; sums of rows cost less than sums of turned rows where
