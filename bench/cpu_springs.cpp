@@ -115,11 +115,11 @@ void compare(const std::vector<Crowd>& crowds, const Configuration& configuratio
   while (Time::now() < end)
     for (Line& line : lines) line.take_turns();
 
-  std::printf("\n%-40s %9s", what.c_str(), "plain");
+  std::printf("\n%-46s %9s", what.c_str(), "plain");
   for (const cpu::Kernel& kernel : kernels) std::printf("  %8s /plain /large", std::string(kernel.name).c_str());
   std::printf("\n");
   for (const Line& line : lines) {
-    std::printf("%-40s  %.2e", line.crowd.name.c_str(), line.rate(line.subjects.front()));
+    std::printf("%-46s  %.2e", line.crowd.name.c_str(), line.rate(line.subjects.front()));
     for (std::size_t i = 1; i < line.subjects.size(); ++i)
       std::printf("  %.2e  %5.2f  %5.2f", line.rate(line.subjects[i]),
                   line.rate(line.subjects[i]) / line.rate(line.subjects.front()),
