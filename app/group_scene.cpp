@@ -44,19 +44,13 @@ float sand_below(std::span<const render::Bounds> robots) {
   return group.empty() ? 0 : group.low.z() - 0.5f * (group.high.z() - group.low.z()) - 2 * tallest;
 }
 
-Eigen::Vector3f mean_position(const Robot& robot) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
-  return (sum / static_cast<double>(robot.masses.size())).cast<float>();
-}
-
 // Materials of the legend: the base materials that the group's springs are of, alone or in pairs, if they are the
 // defaults.
-std::vector<std::pair<render::Color, std::string>> swatches_of(std::span<const Robot* const> robots) {
+std::vector<std::pair<render::Color, std::string>> swatches_of(const Group& group) {
   std::array<bool, max_materials> springs_of{};  // by id
-  for (const Robot* robot : robots) {
-    if (!robot->materials.empty()) continue;
-    for (const Spring& spring : robot->springs) springs_of[spring.material] = true;
+  for (std::size_t i = 0; i < group.robots.size(); ++i) {
+    if (!group.robots[i]->materials.empty()) continue;
+    for (std::size_t id = 0; id < springs_of.size(); ++id) springs_of[id] = springs_of[id] || group.shapes[i]->materials[id];
   }
   std::vector<bool> used(base_material_count + 1, false);
   for (int id = 1; id < default_material_count; ++id) {
@@ -95,10 +89,14 @@ Group group_of(const Simulation& simulation) {
   return group;
 }
 
-GroupScene::GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
-    : settings_(settings), scale_(settings.color, settings.scale), names_(group.names),
-      shared_looks_(group.shared_looks), environment_(group.environment), swatches_(swatches_of(group.robots)) {
-  for (std::size_t i = 0; i < group.robots.size(); ++i) add(*group.robots[i], group.materials[i], offsets.at(i));
+GroupScene::GroupScene(const Group& given, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+    : settings_(settings), scale_(settings.color, settings.scale), names_(given.names), environment_(given.environment) {
+  Group group = given;
+  if (group.shapes.empty())
+    for (const Robot* robot : group.robots) group.shapes.push_back(shape_of(*robot));
+  swatches_ = swatches_of(group);
+  for (std::size_t i = 0; i < group.robots.size(); ++i) add(*group.robots[i], group.materials[i], *group.shapes[i], offsets.at(i));
+  bodies_ = group.bodies ? group.bodies : bodies_of(group.shapes);
   restart(group.telemetry);
   place(group.telemetry);
   show_surroundings();
@@ -147,8 +145,40 @@ void GroupScene::set_offsets(std::span<const Eigen::Vector3f> offsets) {
 }
 
 void GroupScene::set_materials(std::size_t robot, std::span<const Material> materials) {
-  Table& table = tables_[table_of_[robot]];
-  std::copy_n(materials.begin(), std::min(materials.size(), table.materials.size()), table.materials.begin());
+  const Table& table = tables_[table_of_[robot]];
+  if (std::ranges::equal(table.materials, materials)) return;
+  const std::vector<Material> own = table.own;
+  const bool defaults = table.defaults;
+  --tables_[table_of_[robot]].robots;
+  use_table(robot, table_for(own, materials, defaults));
+}
+
+// One that is as wanted, or a free one made so.
+std::size_t GroupScene::table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults) {
+  const auto same = [&](const Table& table) {
+    return table.robots > 0 && table.defaults == defaults && std::ranges::equal(table.materials, materials) && std::ranges::equal(table.own, own);
+  };
+  const auto free = [&](const Table& table) { return table.robots == 0 && table.own.size() == own.size(); };
+  auto found = std::ranges::find_if(tables_, same);
+  if (found != tables_.end()) return static_cast<std::size_t>(found - tables_.begin());
+  found = std::ranges::find_if(tables_, free);
+  if (found == tables_.end()) {
+    tables_.push_back({.first_look = looks_.size()});
+    looks_.resize(looks_.size() + own.size());
+    found = tables_.end() - 1;
+  }
+  const std::size_t first = found->first_look;
+  *found = {first, {own.begin(), own.end()}, {materials.begin(), materials.end()}, defaults, 0};
+  found->materials.resize(own.size());
+  const std::vector<render::Color> colors = material_colors(own, defaults);
+  for (std::size_t id = 0; id < colors.size(); ++id) looks_[first + id] = {.color = colors[id]};
+  return static_cast<std::size_t>(found - tables_.begin());
+}
+
+void GroupScene::use_table(std::size_t robot, std::size_t table) {
+  ++tables_[table].robots;
+  table_of_[robot] = table;
+  placements_[robot].first_look = static_cast<std::uint32_t>(tables_[table].first_look);
 }
 
 void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
@@ -161,32 +191,19 @@ void GroupScene::restart(std::span<const Telemetry> telemetry) {
   for (const Telemetry& robot : telemetry) trails_.push_back({.start = eigen(robot.center_of_mass)});
 }
 
-void GroupScene::add(const Robot& robot, std::span<const Material> materials, const Eigen::Vector3f& offset) {
-  const bool defaults = robot.materials.empty();
-  // Most robots share the default table, and its looks.
-  auto shared = std::find_if(tables_.begin(), tables_.end(), [&](const Table& table) {
-    return shared_looks_ && std::equal(table.materials.begin(), table.materials.end(), materials.begin(), materials.end());
-  });
-  if (shared == tables_.end()) {
-    tables_.push_back({looks_.size(), {materials.begin(), materials.end()}});
-    shared = tables_.end() - 1;
-    for (const render::Color color : material_colors(materials_of(robot), defaults)) looks_.push_back({.color = color});
-  }
-  table_of_.push_back(static_cast<std::size_t>(shared - tables_.begin()));
-  shapes_.emplace_back(robot, static_cast<std::uint32_t>(shared->first_look));
-  grown_.push_back(kind_of(robot) == "nn");
-  placements_.push_back({.offset = offset, .smooth = settings_.smooth || grown_.back()});
-  render::Bounds rest = rest_bounds(robot).moved(-mean_position(robot));
+void GroupScene::add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
+                     const Eigen::Vector3f& offset) {
+  grown_.push_back(shape.grown);
+  placements_.push_back({.offset = offset, .smooth = settings_.smooth || shape.grown});
+  table_of_.push_back(0);
+  use_table(placements_.size() - 1, table_for(materials_of(robot), materials, robot.materials.empty()));
+  render::Bounds rest = shape.box.moved(-shape.middle);
   rest.low *= room_to_deform;
   rest.high *= room_to_deform;
   rest_.push_back(rest);
 }
 
-void GroupScene::set_bodies(render::Renderer& renderer) const {
-  std::vector<render::Body> bodies;
-  for (const BodyShape& shape : shapes_) bodies.push_back(shape.body());
-  renderer.set_bodies(bodies);
-}
+void GroupScene::set_bodies(render::Renderer& renderer) const { renderer.set_bodies(bodies_); }
 
 void GroupScene::update(double time, std::span<const Telemetry> telemetry, SceneDetails details) {
   for (const Table& table : tables_)

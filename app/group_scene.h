@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "app/appearance.h"
 #include "app/group_layout.h"
+#include "app/robot_shape.h"
 #include "app/scene_details.h"
 #include "app/view_settings.h"
 #include "render/renderer.h"
@@ -23,7 +25,8 @@ struct Group {
   std::vector<std::span<const Material>> materials;  // one table a robot, as they are now
   std::vector<Telemetry> telemetry;                  // one a robot
   Environment environment;
-  bool shared_looks = true;  // robots of the same materials share them; else each has its own, which may change
+  std::vector<std::shared_ptr<const RobotShape>> shapes;  // one a robot; empty = to be made
+  std::shared_ptr<const render::BodyData> bodies;         // of the shapes; nothing = to be made
 };
 Group group_of(const Simulation& simulation);
 
@@ -66,11 +69,16 @@ class GroupScene {
   std::span<const render::Bounds> bounds() const { return bounds_; }
 
  private:
+  // Looks of robots that have the same materials now and the same of their own, which give the colours.
   struct Table {
-    std::size_t first_look;
-    std::vector<Material> materials;
+    std::size_t first_look = 0;
+    std::vector<Material> own, materials;
+    bool defaults = true;   // it has the default table
+    std::size_t robots = 0;  // that use it; 0 = free for others
   };
-  void add(const Robot& robot, std::span<const Material> materials, const Eigen::Vector3f& offset);
+  void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape, const Eigen::Vector3f& offset);
+  std::size_t table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults);
+  void use_table(std::size_t robot, std::size_t table);
   void show_surroundings();
   void place_floor();
   void place(std::span<const Telemetry> telemetry);
@@ -81,7 +89,7 @@ class GroupScene {
   ViewSettings settings_;
   GrowingScale scale_;
   std::vector<std::string> names_;
-  std::vector<BodyShape> shapes_;
+  std::shared_ptr<const render::BodyData> bodies_;
   std::vector<Table> tables_;
   std::vector<render::Look> looks_;
   std::vector<render::Placement> placements_;
@@ -89,7 +97,6 @@ class GroupScene {
   std::vector<render::Bounds> bounds_;
   std::vector<std::size_t> table_of_;  // one a robot
   std::vector<bool> grown_;            // robots drawn smooth whatever the settings
-  bool shared_looks_;
   Environment environment_;
   std::vector<Trail> trails_;
   std::vector<render::Path> paths_;

@@ -1,9 +1,11 @@
 // All bodies on the card: one buffer for each kind of thing, so that a pass draws every body with one call.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "render/body_data.h"
 #include "render/camera.h"
 #include "render/gl_objects.h"
 #include "render/scene.h"
@@ -14,7 +16,9 @@ class Bodies {
  public:
   Bodies();
   // See Renderer::set_bodies.
-  void set(std::span<const Body> bodies);
+  void set(std::shared_ptr<const BodyData> data);
+  // Springs are the larger part, and seldom seen: they go to the card before they are first drawn.
+  void write_springs();
 
   std::size_t body_count() const { return mass_offsets_.size() - 1; }
   std::size_t mass_count() const { return mass_offsets_.back(); }
@@ -36,6 +40,7 @@ class Bodies {
 
  private:
   std::vector<std::uint32_t> mass_offsets_{0};
+  std::shared_ptr<const BodyData> springs_to_write_;  // or nothing
   std::size_t face_count_ = 0, spring_count_ = 0;
   float typical_spring_ = 0.1f;
 };

@@ -181,7 +181,13 @@ int Renderer::height() const { return parts_->height; }
 Quality Renderer::quality() const { return parts_->quality; }
 
 void Renderer::set_bodies(std::span<const Body> bodies) {
-  parts_->bodies.set(bodies);
+  std::vector<std::shared_ptr<const PreparedBody>> prepared;
+  for (const Body& body : bodies) prepared.push_back(prepare_body(body, prepared.size()));
+  set_bodies(assemble(prepared));
+}
+
+void Renderer::set_bodies(std::shared_ptr<const BodyData> bodies) {
+  parts_->bodies.set(std::move(bodies));
   parts_->passes->skin.attach(parts_->bodies);
 }
 
@@ -201,6 +207,7 @@ std::vector<Bounds> Renderer::body_bounds() {
 
 // Everything that follows from the scene alone.
 void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style) {
+  if (scene.show.springs || scene.cut) bodies.write_springs();
   scene_buffers.upload(scene, bodies);
   scene_buffers.bind(bodies);
   bounds.measure(bodies);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/body_data.h"
 #include "render/camera.h"
 #include "render/context.h"
 #include "render/pass_timer.h"
@@ -46,6 +47,8 @@ class Renderer {
   // Replaces all bodies; positions are those at rest until told otherwise.
   // Throws std::invalid_argument for an index out of range or a length that does not fit.
   void set_bodies(std::span<const Body> bodies);
+  // The same for bodies that were made ready before, as on another thread: takes no longer than the copy to the card.
+  void set_bodies(std::shared_ptr<const BodyData> bodies);
   std::size_t body_count() const;
   std::size_t mass_count() const;  // of all bodies together
   std::size_t face_count() const;

@@ -38,6 +38,7 @@ struct Placement {
   bool selected = false;  // drawn with a bright rim
   bool faulty = false;    // drawn grey, with a red rim: it has exploded
   bool smooth = false;    // skin rounded rather than with its edges
+  std::uint32_t first_look = 0;  // added to the body's face_looks and spring_looks, below 2^24
 };
 
 // How numbers become colours.

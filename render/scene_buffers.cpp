@@ -19,7 +19,8 @@ struct PlacementRecord {
 };
 
 std::uint32_t flags_of(const Placement& place) {
-  return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u);
+  return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u) |
+         place.first_look << 8;
 }
 
 std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {

@@ -3,7 +3,7 @@
 
 struct Placement {
   vec3 offset;
-  uint flags;  // PLACEMENT_...
+  uint flags;  // PLACEMENT_..., and from bit 8 on what is added to the body's looks
 };
 #define PLACEMENT_HIDDEN 1u
 #define PLACEMENT_SELECTED 2u
@@ -44,5 +44,9 @@ layout(std430, binding = 2) readonly buffer Placements { Placement placements[];
 layout(std430, binding = 3) readonly buffer MassBodies { uint mass_bodies[]; };
 layout(std430, binding = 4) readonly buffer FaceRecords { FaceRecord face_records[]; };
 layout(std430, binding = 6) readonly buffer Looks { vec4 looks[]; };  // linear colour, activation
+
+vec4 look_at(uint look, uint placement_flags) {
+  return looks[min(look + (placement_flags >> 8), uint(looks.length()) - 1u)];
+}
 
 vec3 position_of(uint mass) { return vec3(positions[3u * mass], positions[3u * mass + 1u], positions[3u * mass + 2u]); }

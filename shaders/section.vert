@@ -15,8 +15,8 @@ layout(location = 0) out vec3 off;   // from the spring's middle
 layout(location = 1) flat out vec4 look;  // colour, activation
 out gl_PerVertex { vec4 gl_Position; };
 
-vec4 look_of(uint spring, uint a, uint b) {
-  if (color_by == 0) return looks[min(spring_looks[spring], uint(looks.length()) - 1u)];
+vec4 look_of(uint spring, uint a, uint b, uint flags) {
+  if (color_by == 0) return look_at(spring_looks[spring], flags);
   if (color_by == 2) return vec4(0.35, 0.35, 0.35, 0.0);
   float value = 0.5 * (mass_values[a] + mass_values[b]);
   return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
@@ -33,7 +33,7 @@ void main() {
   vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
   float half_side = sqrt(max(0.0, reach * reach - height * height));
   off = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
-  look = look_of(spring, a, b);
+  look = look_of(spring, a, b, placement.flags);
   gl_Position = frame.view_projection * vec4(middle + off, 1.0);
   if (abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

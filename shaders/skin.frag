@@ -102,7 +102,7 @@ void main() {
   }
 
 #if COLOR_BY == 0
-  vec4 look = looks[min(record.look, uint(looks.length()) - 1u)];
+  vec4 look = look_at(record.look, flags);
   float activation = look.a;
   vec3 albedo = look.rgb * (1.0 + 0.25 * min(activation, 0.0));
 #else

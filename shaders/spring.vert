@@ -25,8 +25,8 @@ out gl_PerVertex {
   float gl_ClipDistance[1];
 };
 
-vec4 look_of(uint spring, uint mass) {
-  if (color_by == 0) return looks[min(spring_looks[spring], uint(looks.length()) - 1u)];
+vec4 look_of(uint spring, uint mass, uint placement_flags) {
+  if (color_by == 0) return look_at(spring_looks[spring], placement_flags);
   float value = color_by == 1 ? mass_values[mass] : spring_values[spring];
   return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
 }
@@ -45,7 +45,7 @@ void main() {
   vec3 to_eye = frame.eye.xyz - point;
   float thickness = max(radius, 0.6 * pixel_size(point));
 #endif
-  look = look_of(spring, corner.x < 0.5 ? mass_a : mass_b);
+  look = look_of(spring, corner.x < 0.5 ? mass_a : mass_b, placement.flags);
   axis = normalize(b - a);
   side = across_of(axis, to_eye);
   across = corner.y;

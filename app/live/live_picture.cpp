@@ -11,8 +11,6 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t most_own_looks = 100;  // robots up to which each has its own looks
-
 static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are handed on as plain floats");
 
 bool same_layout(const ViewSettings& a, const ViewSettings& b) {
@@ -32,7 +30,8 @@ ViewSettings fitting(const ViewSettings& settings, const Moment& moment) {
 Group group_of(const Moment& moment) {
   Group group{.telemetry = moment.telemetry,
               .environment = moment.configuration.environment,
-              .shared_looks = moment.robots->size() > most_own_looks};
+              .shapes = moment.robots->shapes,
+              .bodies = moment.robots->bodies};
   for (const LiveRobot& robot : moment.robots->robots) {
     group.robots.push_back(robot.robot.get());
     group.materials.push_back(materials_of(robot));
@@ -43,7 +42,8 @@ Group group_of(const Moment& moment) {
 
 std::vector<Eigen::Vector3f> offsets_of(const Moment& moment, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
-  for (const LiveRobot& robot : moment.robots->robots) bounds.push_back(rest_bounds(*robot.robot));
+  for (std::size_t i = 0; i < moment.robots->size(); ++i)
+    bounds.push_back(i < moment.robots->shapes.size() ? moment.robots->shapes[i]->box : rest_bounds(*moment.robots->robots[i].robot));
   const bool land = std::holds_alternative<Land>(moment.configuration.environment);
   LayoutOptions options{.layout = settings.layout,
                         .grid = settings.grid,
@@ -97,8 +97,9 @@ void LivePicture::update(std::shared_ptr<const Moment> moment, const ViewSetting
       parts.scene->set_environment(moment->configuration.environment);
     if (before->resets != moment->resets) parts.scene->restart(moment->telemetry);
     for (std::size_t i = 0; i < moment->robots->size() && before->robots != moment->robots; ++i) {
-      parts.scene->set_materials(i, materials_of(moment->robots->robots[i]));
-      parts.scene->set_name(i, moment->robots->robots[i].name);
+      const LiveRobot &now = moment->robots->robots[i], &then = before->robots->robots[i];
+      if (now.materials != then.materials) parts.scene->set_materials(i, materials_of(now));
+      if (now.name != then.name) parts.scene->set_name(i, now.name);
     }
   }
   for (std::size_t i = 0; i < moment->robots->size(); ++i) {

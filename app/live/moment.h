@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/robot_shape.h"
 #include "app/scene_details.h"
 #include "sim/simulation.h"
 
@@ -36,6 +37,9 @@ struct LiveRobots {
   std::vector<LiveRobot> robots;
   std::vector<std::size_t> mass_offsets;  // size + 1
   std::size_t springs = 0;                // of all robots
+  // For pictures, made by the physics thread; the same as long as the revision is.
+  std::vector<std::shared_ptr<const RobotShape>> shapes;
+  std::shared_ptr<const render::BodyData> bodies;
 
   std::size_t size() const { return robots.size(); }
   // Nothing if it is not there.

@@ -1,6 +1,9 @@
 #include "app/live/population.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <map>
 
 namespace mercury {
 namespace {
@@ -8,12 +11,31 @@ namespace {
 // Two entries are the same body.
 bool same_body(const LiveRobot& a, const LiveRobot& b) { return a.id == b.id && a.robot == b.robot; }
 
-std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, std::uint64_t revision) {
-  auto list = std::make_shared<LiveRobots>(LiveRobots{.revision = revision, .robots = robots, .mass_offsets = {0}});
+using Shapes = std::vector<std::shared_ptr<const RobotShape>>;
+
+// Those of before where there are some; the others are made on all cores.
+Shapes shapes_of(const std::vector<LiveRobot>& robots, const LiveRobots& before) {
+  std::map<const Robot*, std::shared_ptr<const RobotShape>> known;
+  for (std::size_t i = 0; i < before.shapes.size(); ++i) known[before.robots[i].robot.get()] = before.shapes[i];
+  std::vector<const Robot*> fresh;
+  for (const LiveRobot& robot : robots)
+    if (known.emplace(robot.robot.get(), nullptr).second) fresh.push_back(robot.robot.get());
+  Shapes made(fresh.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) { made[i] = shape_of(*fresh[i]); });
+  for (std::size_t i = 0; i < fresh.size(); ++i) known[fresh[i]] = made[i];
+  Shapes shapes;
+  for (const LiveRobot& robot : robots) shapes.push_back(known[robot.robot.get()]);
+  return shapes;
+}
+
+std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, const LiveRobots& before, bool changed) {
+  auto list = std::make_shared<LiveRobots>(LiveRobots{.revision = before.revision + (changed ? 1 : 0), .robots = robots, .mass_offsets = {0}});
   for (const LiveRobot& robot : robots) {
     list->mass_offsets.push_back(list->mass_offsets.back() + robot.robot->masses.size());
     list->springs += robot.robot->springs.size();
   }
+  list->shapes = changed ? shapes_of(robots, before) : before.shapes;
+  list->bodies = changed ? bodies_of(list->shapes) : before.bodies;
   return list;
 }
 
@@ -26,7 +48,7 @@ bool Population::follow(const std::vector<LiveRobot>& wanted) {
     arrange(wanted);
   }
   follow_materials(wanted, changed);
-  robots_ = listed(wanted, robots_->revision + (changed ? 1 : 0));
+  robots_ = listed(wanted, *robots_, changed);
   return changed;
 }
 
@@ -57,7 +79,7 @@ void Population::forget_departed() {
 
 void Population::start_over() {
   forget_departed();
-  robots_ = listed({}, robots_->revision + 1);
+  robots_ = listed({}, *robots_, true);
 }
 
 // Those that stay in their order of before, then the new ones, then all in the order wanted.

@@ -263,6 +263,56 @@ TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
   EXPECT_EQ(scene.picture().bounds().size(), 3u);
 }
 
+TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 120);
+  const auto ids = ids_of(scene);
+  scene.step(300);
+  scene.wait_until_done();
+  const auto revision = scene.picture().bodies_revision();
+  const render::Scene& drawn = scene.picture().scene();
+  // By the law of a muscle: +1 where it is shortest.
+  const auto activation = [&](std::size_t robot, MaterialId id) {
+    return drawn.looks[drawn.placements[robot].first_look + id].activation;
+  };
+  const auto expected = [&](const Material& material) {
+    return -std::sin(static_cast<double>(material.frequency) * scene.moment().time + static_cast<double>(material.phase));
+  };
+  scene.scale_materials({ids[7], ids[110]}, {.frequency = 3});
+  scene.scale_materials({ids[60]}, {.phase = 1});
+  scene.wait_until_done();
+  for (const std::size_t robot : {0u, 7u, 60u, 110u, 119u})
+    for (const MaterialId id : {MaterialId{1}, MaterialId{6}, MaterialId{20}})
+      EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5) << robot << ", material " << int{id};
+  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look) << "those that are the same are kept once";
+  EXPECT_EQ(drawn.placements[0].first_look, drawn.placements[119].first_look);
+  const auto looks = drawn.looks.size();
+  for (int i = 0; i < 50; ++i) {
+    scene.scale_materials({ids[7]}, {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
+    scene.wait_until_done();
+  }
+  EXPECT_LE(drawn.looks.size(), looks + 2 * 254) << "a slider leaves nothing behind";
+  scene.reset_materials(ids);
+  scene.wait_until_done();
+  for (const std::size_t robot : {7u, 60u, 110u}) EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
+  EXPECT_EQ(scene.picture().bodies_revision(), revision) << "no body was given anew";
+}
+
+TEST(LiveScene, AnEditMakesNoShapesOfRobotsThatWereThere) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 3);
+  const auto before = scene.hold_moment();
+  scene.duplicate({ids_of(scene)[1]});
+  scene.remove({ids_of(scene)[0]});
+  scene.wait_until_done();
+  const LiveRobots& after = *scene.moment().robots;
+  ASSERT_EQ(after.shapes.size(), 3u);
+  EXPECT_EQ(after.shapes[0], before->robots->shapes[1]);
+  EXPECT_EQ(after.shapes[1], before->robots->shapes[2]);
+  EXPECT_EQ(after.shapes[2], before->robots->shapes[1]) << "the copy's shape is its original's";
+  EXPECT_EQ(after.bodies->mass_offsets.back(), scene.moment().positions.size());
+}
+
 TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
   EditHistory history(10);
   SceneDocument document;

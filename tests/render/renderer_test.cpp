@@ -116,6 +116,36 @@ TEST_F(RendererTest, APlacementMovesABody) {
   EXPECT_EQ(count_differing(placed, drawn(renderer, other), 2), 0);
 }
 
+TEST_F(RendererTest, APlacementChoosesAmongLooksWithoutNewBodies) {
+  Renderer renderer = make_renderer();
+  const Mesh mesh = triangle();
+  const std::array<std::uint32_t, 1> face_look{1};
+  const std::array<std::uint32_t, 3> spring_looks{1, 1, 1};
+  Body body = mesh.body();
+  body.face_looks = face_look;
+  body.spring_looks = spring_looks;
+  // Prepared beforehand, as on another thread.
+  const std::array prepared{prepare_body(body)};
+  renderer.set_bodies(assemble(prepared));
+  EXPECT_EQ(renderer.spring_count(), 3u);
+  const std::array looks{Look{rgb(0x101010)}, Look{rgb(0xd01010)}, Look{rgb(0x101010)}, Look{rgb(0x1010d0)}};
+  for (const bool springs : {false, true}) {
+    Scene scene = plain();
+    scene.show = {.skin = !springs, .springs = springs};
+    scene.spring_radius = 0.1f;
+    scene.looks = looks;
+    const Vector2f middle = pinhole(front(), {0.05f, 0, -0.45f}, 160, 120);  // of the first spring
+    const auto color = [&](std::uint32_t first_look) {
+      const std::array placements{Placement{.selected = false, .first_look = first_look}};
+      scene.placements = placements;
+      return springs ? pixel(drawn(renderer, scene), int(middle.x()), int(middle.y())) : pixel(drawn(renderer, scene), 80, 60);
+    };
+    const Eigen::Vector3i red = color(0), blue = color(2);
+    EXPECT_GT(red.x(), red.z() + 80) << springs;
+    EXPECT_GT(blue.z(), blue.x() + 80) << springs;
+  }
+}
+
 TEST_F(RendererTest, TheNearerBodyHidesTheFartherInEitherOrder) {
   Renderer renderer = make_renderer();
   const Mesh near = triangle(-0.5f), far = triangle(0.5f);
