@@ -37,7 +37,10 @@ void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& conf
   order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::move(robots), configuration, nullptr); });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro) {
-  order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::vector{robot}, configuration, std::move(repro)); });
+  order(*parts_, [&](Orders& orders) {
+    orders.scene.emplace(std::vector{robot}, configuration, std::move(repro));
+    orders.steps = 0;
+  });
 }
 void Physics::set_view(const ViewSettings& settings) {
   order(*parts_, [&](Orders& orders) { orders.view = settings; });

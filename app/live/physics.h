@@ -36,8 +36,9 @@ class Physics {
   // where it left, unless time began anew since. If they cannot be simulated, as for want of memory, that is told, and
   // none is until the next call.
   void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
-  // One robot, from the start of a repro, whose changes happen again as its steps are made; reset() goes back there. The
-  // next set_scene() ends that: what the repro would still change, it does not. `configuration` is the repro's.
+  // One robot, from the start of a repro, whose changes happen again as its steps are made; reset() goes back there, and
+  // steps asked for before are forgotten. The next set_scene() ends that: what the repro would still change, it does
+  // not. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
   void set_view(const ViewSettings& settings);  // what moments hold details of
   void set_pulls(std::vector<LivePull> pulls);  // those on masses that are not there are left out

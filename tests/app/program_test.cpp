@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"GridTooSmall", {"render", "--random", "voxel:5", "-o", "a.png", "--still", "0", "--grid", "2x2"},
                  "--grid: 5 robots do not fit into 2x2; give more columns or rows"},
         BadInput{"UnknownColor", {"render", "--random", "voxel", "-o", "a.mp4", "--color", "mood"},
-                 "--color: \"mood\" is not accepted; give material, activation, strain, force, speed, pressure"},
+                 "--color: \"mood\" is not accepted; give material, activation, strain, force, speed, pressure, energy, stiffness"},
         BadInput{"PressureOnLand",
                  {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--color", "pressure", "--environment", "land"},
                  "--color: pressure: land has no drag on faces; it applies to ocean"},
