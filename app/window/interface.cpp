@@ -47,6 +47,9 @@ Interface::Interface(Window& window, const std::filesystem::path& layout_file)
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
+#if IMGUI_VERSION_NUM >= 18700
+  io.ConfigInputTrickleEventQueue = false;  // InputQueue has shared it out among frames
+#endif
   ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
   ImGui_ImplOpenGL3_Init("#version 450");
 }

@@ -307,14 +307,15 @@ class WindowTest(unittest.TestCase):
         window.frame(lambda frame: len(frame["where"]) == 2)
         yellow, magenta = numpy.array([255, 225, 74]) / 255, numpy.array([209, 0, 108]) / 255
 
-        def marked(color, x, y, reach):
-            """How many pixels of a colour are within reach of a place, when the camera rests."""
-            while (before := window.frame()["distance"]) != window.frame()["distance"]:
-                self.assertGreater(before, 0)
+        def marked(color, place, reach):
+            """How many pixels of a colour are within reach of an item, or of the middle, when the camera rests."""
+            while (before := window.frame())["where"] != window.frame()["where"]:
+                self.assertGreater(before["distance"], 0)
+            x, y = window.place(place) if place else (640, 360)
             near = window.screenshot()[max(0, y - reach):y + reach + 1, max(0, x - reach):x + reach + 1]
             return int((numpy.abs(near - color).max(axis=2) < 0.04).sum())
 
-        self.assertEqual(marked(yellow, 640, 360, 400), 0)
+        self.assertEqual(marked(yellow, None, 400), 0)
         window.key("space")
         told = [window.wait("exploded", accept=lambda event, robot=robot: event["robot"] == robot) for robot in (1, 2)]
         self.assertEqual([event["spring"] for event in told], [3, 3])
@@ -328,11 +329,11 @@ class WindowTest(unittest.TestCase):
                 abs(window.items[end]["x"] - area["x"]) < area["width"] / 2 and
                 abs(window.items[end]["y"] - area["y"]) < area["height"] / 2 for end in ends))
             for end in ends:
-                self.assertGreater(marked(yellow, *window.place(end), 10), 60)
+                self.assertGreater(marked(yellow, end, 10), 60)
             window.click("explosion.next")
         window.key("b")
         window.frame()
-        self.assertGreater(marked(magenta, *window.place("explosion.a"), 10), 60)
+        self.assertGreater(marked(magenta, "explosion.a", 10), 60)
         window.click("explosion.reset")
         window.until("the card gone", lambda: "panel.Explosion" not in window.items and "explosion.a" not in window.items)
         self.finish(window)
