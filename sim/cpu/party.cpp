@@ -163,6 +163,13 @@ double cost_alone(const Body& body, bool faces) {
          (faces ? 9.0 * static_cast<double>(body.faces.size()) / (4 * lanes) : 0.0);
 }
 
+// A last round of groups that leaves many threads without one takes longer than its robots one by one, which are about
+// half as much work again.
+std::size_t worth_keeping(std::size_t groups, std::size_t threads) {
+  const std::size_t last = groups % threads;
+  return groups < packs_a_thread * threads && 3 * last < 2 * threads ? groups - last : groups;
+}
+
 bool pays(std::span<const Body> bodies, const Party& party, bool faces) {
   double alone = 0;
   for (const std::size_t i : party.bodies) alone += cost_alone(bodies[i], faces);
@@ -197,7 +204,7 @@ std::vector<Party> find_parties(std::span<const Body> bodies, std::size_t thread
   const std::size_t alike = groups.size();
   const Patterns patterns = patterns_of(bodies, left, faces);
   std::ranges::move(similar_groups(bodies, patterns, left), std::back_inserter(groups));
-  if (groups.size() < packs_a_thread * threads) groups.resize(groups.size() / threads * threads);
+  groups.resize(worth_keeping(groups.size(), threads));
 
   std::vector<Party> parties(groups.size());
   oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
