@@ -1,6 +1,7 @@
 #include "sim/cpu/build.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace mercury::cpu {
@@ -11,16 +12,23 @@ struct Claim {
   std::uint64_t seats = 0;
   std::uint32_t copy = 0, sitter = 0, item = 0;
 
-  auto order() const { return std::pair(seats, copy); }
+  auto order() const { return std::tuple(seats, copy, sitter); }
 };
 
-// Sorts claims of which each sitter's stand together, and counts copies.
+// Counts copies and sorts by order().
 void sort(std::vector<Claim>& claims) {
-  std::ranges::stable_sort(claims, {}, [](const Claim& c) { return std::pair(c.seats, c.sitter); });
-  for (std::size_t i = 1; i < claims.size(); ++i)
-    if (claims[i].seats == claims[i - 1].seats && claims[i].sitter == claims[i - 1].sitter)
-      claims[i].copy = claims[i - 1].copy + 1;
-  std::ranges::stable_sort(claims, {}, &Claim::order);
+  std::ranges::sort(claims, {}, [](const Claim& c) { return std::tuple(c.seats, c.sitter, c.item); });
+  for (auto first = claims.begin(); first != claims.end();) {
+    auto last = first + 1;
+    bool copies = false;
+    for (; last != claims.end() && last->seats == first->seats; ++last)
+      if (last->sitter == (last - 1)->sitter) {
+        last->copy = (last - 1)->copy + 1;
+        copies = true;
+      }
+    if (copies) std::sort(first, last, [](const Claim& a, const Claim& b) { return a.order() < b.order(); });
+    first = last;
+  }
 }
 
 // Calls visit(claim, number) with the same number for claims on the same seats by different sitters, and
@@ -30,7 +38,7 @@ void for_each(std::vector<Claim>& claims, const Start& start, const Visit& visit
   sort(claims);
   std::uint32_t number = 0;
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    if (i == 0 || claims[i].order() != claims[i - 1].order()) {
+    if (i == 0 || claims[i].seats != claims[i - 1].seats || claims[i].copy != claims[i - 1].copy) {
       start(claims[i]);
       ++number;
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -96,6 +97,17 @@ Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> 
   return patterns;
 }
 
+std::size_t most_alike(const Group& robots, const Patterns& patterns, const Crowd& crowd) {
+  std::size_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    if (const double likeness = crowd.likeness(patterns[robots[i]]); likeness > most) {
+      most = likeness;
+      best = i;
+    }
+  return best;
+}
+
 // Groups of robots with masses in much the same cells: to the largest robot left those that are most like it.
 std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns, std::span<const std::size_t> left) {
   Group candidates;
@@ -120,7 +132,7 @@ std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& 
     if (!refill()) break;
     take(compared.begin());
     while (group.size() < bodies[group.front()].places.lanes && refill())
-      take(std::ranges::max_element(compared, {}, [&](std::size_t i) { return crowd.likeness(patterns[i]); }));
+      take(compared.begin() + static_cast<std::ptrdiff_t>(most_alike(compared, patterns, crowd)));
     groups.push_back(std::move(group));
   }
   return groups;
