@@ -1,4 +1,5 @@
-// How long the window's pictures wait for an edit of a large scene: bench_window_edits [robots [side]].
+// How long the window's pictures wait for an edit of a large scene, and how fast it steps as fast as it goes:
+// bench_window_edits [robots [side]].
 //
 // Robots are random voxel robots without air of side^3 voxels: side 10 has 1,331 masses and 14,230 springs. For each
 // edit, the longest that one picture's share of the scene's work took (LiveScene::frame() and handing bodies to the
@@ -8,6 +9,7 @@
 #include <cstdlib>
 #include <functional>
 #include <thread>
+#include <utility>
 
 #include "app/live/live_scene.h"
 #include "render/context.h"
@@ -55,6 +57,49 @@ void measure(Window& window, LiveScene& scene, const char* name, const std::func
   std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest, 1e3 * (now() - begin));
 }
 
+// Steps a second while 60 pictures a second are shown, and of the simulation by itself.
+void measure_speed(Window& window, LiveScene& scene) {
+  constexpr double seconds = 4;
+  std::vector<Robot> robots;
+  for (const DocumentRobot& robot : scene.document().robots) robots.push_back(*robot.body.robot);
+  scene.set_speed(unlimited_speed);
+  scene.play();
+  const auto playing = [&](double wanted) {
+    const std::int64_t first = scene.moment().steps;
+    std::int64_t pictures = 0, seen = first;
+    const double begin = now();
+    while (now() - begin < wanted) {
+      window.picture(scene);
+      pictures += scene.moment().steps != seen;
+      seen = scene.moment().steps;
+      std::this_thread::sleep_for(std::chrono::milliseconds(16));
+    }
+    const double spent = now() - begin;
+    return std::pair{static_cast<double>(scene.moment().steps - first) / spent, static_cast<double>(pictures) / spent};
+  };
+  playing(1);  // until samples are as few as they become
+  const auto [in_window, pictures] = playing(seconds);
+  scene.pause();
+  scene.wait_until_done();
+  Simulation simulation(scene.configuration(), robots);
+  std::int64_t call = 1;
+  double begin = now(), spent = 0;
+  std::int64_t first = 0;
+  while (spent < seconds) {
+    const double start = now();
+    simulation.step(call);
+    if (now() - start < 0.1) {  // not yet long calls
+      call *= 2;
+      begin = now();
+      first = simulation.steps();
+    }
+    spent = now() - begin;
+  }
+  const double alone = static_cast<double>(simulation.steps() - first) / spent;
+  std::printf("as fast as it goes: %.4g steps/s with %.1f new pictures/s; %.4g steps/s by itself (%.0f %%)\n", in_window, pictures, alone,
+              100 * in_window / alone);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -88,5 +133,6 @@ int main(int argc, char** argv) {
   double usual = 0;
   for (int i = 0; i < 20; ++i) usual += window.picture(scene) / 20;
   std::printf("a picture without edits %.2f ms\n", 1e3 * usual);
+  measure_speed(window, scene);
   return 0;
 }

@@ -46,6 +46,7 @@ void LiveScene::frame(float aspect) {
   Parts& parts = *parts_;
   if (std::isfinite(aspect) && aspect > 0) parts.aspect = aspect;
   parts.background.finish_done();
+  if (parts.described > 0 && --parts.described == 0) parts.physics.watch_velocities(false);
   parts.moment = parts.physics.newest();
   if (parts.moment->stops != parts.stops) {
     parts.stops = parts.moment->stops;
@@ -187,7 +188,11 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
                         .hidden = {hidden.get(), moment.robots->size()}});
 }
 
-HitFigures LiveScene::describe(const Hit& hit) const { return mercury::describe(*parts_->moment, hit); }
+HitFigures LiveScene::describe(const Hit& hit) const {
+  parts_->described = 30;
+  parts_->physics.watch_velocities(true);
+  return mercury::describe(*parts_->moment, hit);
+}
 
 void LiveScene::begin_pull(const Hit& hit, float stiffness) {
   const auto index = parts_->moment->robots->index_of(hit.robot);

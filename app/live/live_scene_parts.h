@@ -38,6 +38,7 @@ struct LiveScene::Parts {
   std::uint64_t stops = 0;
   double speed = 1;
   std::optional<LivePull> pull;
+  mutable int described = 0;  // frames until velocities are no longer read for figures
 
   Background background;  // last: its pieces end before the rest does
 

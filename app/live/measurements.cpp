@@ -56,6 +56,7 @@ void Measurements::restart(const LiveRobots& robots, double time, std::int64_t s
   tracks_.clear();
   times_.clear();
   interval_ = std::max<std::int64_t>(1, std::llround(sample_period / dt));
+  first_interval_ = interval_;
   next_ = step;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     order_.push_back(robots.robots[i].id);
@@ -117,6 +118,15 @@ void Measurements::observe(double time, std::int64_t step, std::span<const Telem
   if (!due) return;
   next_ = step + interval_;
   if (times_.size() >= capacity_) thin();
+}
+
+void Measurements::thin_out() {
+  const std::lock_guard lock(mutex_);
+  if (interval_ >= 1024 * first_interval_) return;
+  // The next one stays in step with those that are kept.
+  const bool even = times_.size() % 2 == 0;
+  thin();
+  if (!even) next_ += interval_ / 2;
 }
 
 void Measurements::thin() {

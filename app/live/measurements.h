@@ -64,6 +64,9 @@ class Measurements {
   // Takes a sample if one is due at this step, and notes extremes.
   void observe(double time, std::int64_t step, std::span<const Telemetry> telemetry);
 
+  // Every second sample goes, and from now on so many fewer are taken; not beyond a thousandth of what it was at first.
+  void thin_out();
+
   // Of one robot; empty if there is none.
   Series series(RobotId robot) const;
   // In the order of the robots, at the last observe().
@@ -86,7 +89,7 @@ class Measurements {
   std::vector<RobotId> order_;
   std::map<RobotId, Track> tracks_;
   std::vector<double> times_;
-  std::int64_t interval_ = 1;  // in steps
+  std::int64_t interval_ = 1, first_interval_ = 1;  // in steps
   std::int64_t next_ = 0;
 };
 

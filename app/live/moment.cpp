@@ -22,6 +22,8 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
 }
 
 std::span<const Vec3> Moment::positions_of(std::size_t robot) const { return part(positions, *robots, robot); }
-std::span<const Vec3> Moment::velocities_of(std::size_t robot) const { return part(velocities, *robots, robot); }
+std::span<const Vec3> Moment::velocities_of(std::size_t robot) const {
+  return velocities.empty() ? std::span<const Vec3>{} : part(velocities, *robots, robot);
+}
 
 }  // namespace mercury

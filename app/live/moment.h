@@ -63,7 +63,7 @@ struct Moment {
   std::uint64_t resets = 0;       // how often the robots were put back to time 0
   std::uint64_t stops = 0;        // how often physics stopped by itself: at an explosion or a failure
   std::vector<Vec3> positions;    // of all masses, robot i's from robots->mass_offsets[i]; its own frame
-  std::vector<Vec3> velocities;
+  std::vector<Vec3> velocities;   // as many; empty while robots play and nobody asks for them
   std::vector<Telemetry> telemetry;  // one a robot
   SceneDetails details;
   ColorBy color = ColorBy::material;  // what details.values are values of
@@ -78,7 +78,7 @@ struct Moment {
   double telling_seconds = 0;     // that it took to gather this moment
 
   std::span<const Vec3> positions_of(std::size_t robot) const;
-  std::span<const Vec3> velocities_of(std::size_t robot) const;
+  std::span<const Vec3> velocities_of(std::size_t robot) const;  // empty where they were not read
 };
 
 }  // namespace mercury

@@ -81,6 +81,8 @@ void Physics::pause_on_explosion(bool pause) {
   order(*parts_, [&](Orders& orders) { orders.pause_on_explosion = pause; });
 }
 
+void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
+
 std::shared_ptr<const Moment> Physics::newest() {
   const std::lock_guard lock(parts_->mutex);
   parts_->looked_at = true;

@@ -48,6 +48,8 @@ class Physics {
   void step(std::int64_t count); // pauses, then so many steps; several calls add up
   void reset();                  // time 0, all at rest; steps asked for before are forgotten
   void pause_on_explosion(bool pause);
+  // Whether moments have velocities while robots play, too; else only at rest, and those that wait_until_done() waits for.
+  void watch_velocities(bool watch);
 
   // The newest moment told; asks for a newer one. Never nothing.
   std::shared_ptr<const Moment> newest();

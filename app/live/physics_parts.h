@@ -1,6 +1,7 @@
 // What Physics holds: what is asked of its thread, and what that thread works on.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -57,6 +58,8 @@ struct Physics::Parts {
   Messages& messages;
   Measurements measurements;
 
+  std::atomic<bool> velocities_wanted = false;
+
   // The physics thread's own.
   Simulation simulation;
   Population population;
@@ -75,6 +78,8 @@ struct Physics::Parts {
   SpeedGauge gauge;
   bool playing = false, stop_at_explosion = false;
   double speed = 1, step_seconds = 0;
+  double told_at = 0, telling_seconds = 0;               // end and length of the last tell() [s]
+  double stepping_seconds = 0, measuring_seconds = 0;    // since measuring was last weighed [s]
   std::int64_t steps_left = 0;  // asked for one by one
   std::uint64_t ticket = 0;     // the last one taken
   std::uint64_t resets = 0, stops = 0;
@@ -96,7 +101,9 @@ struct Physics::Parts {
   void advance();
   void take_steps(std::int64_t count);
   void note_explosions(bool now);
+  bool may_tell() const;
   void tell();
+  void weigh_measuring();
 };
 
 }  // namespace mercury

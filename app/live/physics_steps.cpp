@@ -1,5 +1,6 @@
 // The physics thread's steps: so many as are due, in slices, with a look at the robots now and then.
 #include <algorithm>
+#include <cmath>
 
 #include "app/live/physics_parts.h"
 
@@ -43,17 +44,29 @@ void Physics::Parts::take_steps(std::int64_t count) {
     const std::int64_t stop = std::min({target, sample, next_change_step()});
     const double start = wall_now();
     simulation.step(stop - simulation.steps());
-    spent += wall_now() - start;
+    const double stepped = wall_now();
+    spent += stepped - start;
     if (stop != sample && stop != target) continue;
     telemetry = simulation.telemetry();
     measurements.observe(simulation.time(), simulation.steps(), telemetry);
     note_explosions(true);
+    measuring_seconds += wall_now() - stepped;
     if (!playing && steps_left == 0) break;  // stopped by an explosion
   }
+  stepping_seconds += spent;
+  weigh_measuring();
   histories.stepped(spent, simulation, *population.robots());
   const double each = spent / static_cast<double>(count);
   step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
   dirty = true;
+}
+
+// As fast as it goes, short calls between samples would take a good part of the time: they become fewer.
+void Physics::Parts::weigh_measuring() {
+  constexpr double most = 0.04, enough = 0.05;  // share of the time; [s] to tell it
+  if (stepping_seconds < enough) return;
+  if (playing && !std::isfinite(speed) && measuring_seconds > most * stepping_seconds) measurements.thin_out();
+  stepping_seconds = measuring_seconds = 0;
 }
 
 // `now`: in the steps just made, not by robots that came back as they were.

@@ -19,7 +19,7 @@ void Physics::Parts::run() {
       const std::lock_guard lock(mutex);
       wanted = looked_at || ticket > tickets_done;
     }
-    if (!dirty || !wanted) continue;
+    if (!dirty || !wanted || !may_tell()) continue;
     dirty = false;  // also when it fails: not again before something else changes
     guarded([&] { tell(); });
   }
@@ -151,6 +151,13 @@ void Physics::Parts::watch() {
   details.emplace(simulation, known);
 }
 
+// As fast as it goes, pictures may take a fifth of the time from the steps, and no more.
+bool Physics::Parts::may_tell() const {
+  constexpr double share = 0.2;
+  if (!playing || std::isfinite(speed) || ticket > tickets_done) return true;
+  return wall_now() - told_at >= (1 / share - 1) * telling_seconds;
+}
+
 void Physics::Parts::tell() {
   const double start = wall_now();
   std::shared_ptr<Moment> next = pool.take();
@@ -161,10 +168,11 @@ void Physics::Parts::tell() {
   next->resets = resets;
   next->stops = stops;
   next->positions.resize(simulation.mass_count());
-  next->velocities.resize(simulation.mass_count());
+  // On a card, each of the two is a copy that the steps wait for.
+  const bool with_velocities = !playing || velocities_wanted || ticket > tickets_done;
+  next->velocities.resize(with_velocities ? simulation.mass_count() : 0);
   simulation.read_positions(next->positions);
-  simulation.read_velocities(next->velocities);
-  telemetry = simulation.telemetry();
+  if (with_velocities) simulation.read_velocities(next->velocities);
   next->telemetry = telemetry;
   next->details = details ? details->observe(telemetry) : SceneDetails{};
   next->color = details ? details->color() : ColorBy::material;
@@ -178,7 +186,8 @@ void Physics::Parts::tell() {
   next->step_seconds = step_seconds;
   next->springs_per_second =
       step_seconds > 0 && (playing || steps_left > 0) ? static_cast<double>(population.robots()->springs) / step_seconds : 0;
-  next->telling_seconds = wall_now() - start;
+  told_at = wall_now();
+  next->telling_seconds = telling_seconds = told_at - start;
   const std::lock_guard lock(mutex);
   moment = std::move(next);
   looked_at = false;

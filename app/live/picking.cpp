@@ -190,7 +190,8 @@ HitFigures describe(const Moment& moment, const Hit& hit) {
   figures.robot = live.name;
   if (hit.mass >= robot.masses.size()) return figures;
   const auto positions = moment.positions_of(*index);
-  figures.mass = {.position = positions[hit.mass], .speed = length(moment.velocities_of(*index)[hit.mass])};
+  figures.mass.position = positions[hit.mass];
+  if (const auto velocities = moment.velocities_of(*index); !velocities.empty()) figures.mass.speed = length(velocities[hit.mass]);
   for (const Spring& spring : robot.springs) figures.mass.springs += spring.a == hit.mass || spring.b == hit.mass;
   if (hit.spring && *hit.spring < robot.springs.size()) figures.spring = spring_figures(moment, *index, *hit.spring);
   return figures;

@@ -38,7 +38,7 @@ std::optional<Hit> pick(const Moment& moment, std::span<const Eigen::Vector3f> o
 struct HitFigures {
   struct OfMass {
     Vec3 position;       // [m]
-    float speed = 0;     // [m/s]
+    std::optional<float> speed;  // [m/s]; nothing where the moment has no velocities
     std::size_t springs = 0;  // that end at it
   };
   struct OfSpring {

@@ -147,7 +147,8 @@ void Hands::draw(Desk& desk, const PictureArea& area, const render::Camera& came
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-  ImGui::Text("mass %d: %.3g m/s, %zu springs", static_cast<int>(hovered_->mass), static_cast<double>(figures.mass.speed), figures.mass.springs);
+  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
+  ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hovered_->mass), speed.c_str(), figures.mass.springs);
   ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x), static_cast<double>(figures.mass.position.y),
               static_cast<double>(figures.mass.position.z));
   if (figures.spring) {
