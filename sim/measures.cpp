@@ -58,7 +58,10 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 }
 
 std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted) {
-  if (noted >= state.positions.size()) return noted;
+  if (noted >= state.positions.size()) {
+    const auto lost = std::ranges::find_if_not(state.positions, [](Vec3 x) { return within_reach(x); });
+    return lost == state.positions.end() ? noted : static_cast<std::uint32_t>(lost - state.positions.begin());
+  }
   const auto blame = [&](std::uint32_t mass) {
     const Vec3 v = state.velocities[mass];
     const float squared = dot(v, v);

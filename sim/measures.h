@@ -37,7 +37,7 @@ std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positio
 
 // `noted`, or a mass at most two faces from it that is more to blame: one that is out of reach or not finite, else the
 // fastest. A backend that finds a face's force out of range notes a mass of that face or of one beside it, whichever is
-// at hand.
+// at hand; one that finds a spring too long may note none, and then a mass out of reach is to blame, if there is one.
 std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted);
 
 }  // namespace mercury

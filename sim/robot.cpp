@@ -1,5 +1,6 @@
 #include "sim/robot.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/error.h"
@@ -61,6 +62,19 @@ std::span<const Material> materials_of(const Robot& robot) {
 
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b) {
   return length(robot.masses[b] - robot.masses[a]);
+}
+
+bool same_build(const Robot& a, const Robot& b) {
+  const auto same_ends = [](const Spring& s, const Spring& t) { return s.a == t.a && s.b == t.b; };
+  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) && a.faces == b.faces;
+}
+
+std::uint64_t build_key(const Robot& robot) {
+  std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
+  const auto take = [&](std::uint64_t value) { key = (key ^ value) * 0x100000001b3u; };  // as FNV-1a takes bytes
+  for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);
+  for (const Face& face : robot.faces) take(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
+  return key;
 }
 
 void validate(const Robot& robot) {

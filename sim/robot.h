@@ -44,6 +44,11 @@ std::span<const Material> materials_of(const Robot& robot);
 // Distance of a spring's two masses at rest [m], the default of rest_length.
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
 
+// Robots of one build have the same masses joined and the same faces, in the same order; materials, lengths and places
+// may differ. Keys are equal for robots of one build, and seldom for others.
+bool same_build(const Robot& a, const Robot& b);
+std::uint64_t build_key(const Robot& robot);
+
 // Throws InputError, its place a JSON pointer ("/springs/7: mass 912 is out of range, the robot has 300"), unless
 // there are 1 to max_masses masses, all finite and within 1e6 m; every spring joins two different masses of the
 // robot, has a material of its table other than air, and a finite rest length of at least min_rest_length; every

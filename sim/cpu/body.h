@@ -55,7 +55,7 @@ struct Residence {
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  std::uint64_t build_key = 0;       // sim/cpu/build.h
+  std::uint64_t build_key = 0;       // sim/robot.h
   std::vector<FacePair> face_pairs;
   std::vector<Cell> cells;           // sim/cpu/cells.h
   Places places;

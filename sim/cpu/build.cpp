@@ -46,8 +46,6 @@ void for_each(std::vector<Claim>& claims, const Start& start, const Visit& visit
   }
 }
 
-bool same_ends(const Spring& a, const Spring& b) { return a.a == b.a && a.b == b.b; }
-
 }  // namespace
 
 Assembly assemble(std::span<const Sitter> sitters, std::size_t seats) {
@@ -88,18 +86,6 @@ Assembly assemble(std::span<const Sitter> sitters, std::size_t seats) {
   Assembly assembly{std::make_shared<const Build>(std::move(build)), {}};
   for (Seating& seating : seatings) assembly.seatings.push_back(std::make_shared<const Seating>(std::move(seating)));
   return assembly;
-}
-
-std::uint64_t build_key(const Robot& robot) {
-  std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
-  const auto take = [&](std::uint64_t value) { key = (key ^ value) * 0x100000001b3u; };  // as FNV-1a takes bytes
-  for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);
-  for (const Face& face : robot.faces) take(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
-  return key;
-}
-
-bool same_build(const Robot& a, const Robot& b) {
-  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) && a.faces == b.faces;
 }
 
 }  // namespace mercury::cpu

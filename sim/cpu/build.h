@@ -43,8 +43,4 @@ struct Assembly {
 // The smallest build that has room for all of these, of so many seats (at most max_masses).
 Assembly assemble(std::span<const Sitter> sitters, std::size_t seats);
 
-// Equal for robots of the same build, and seldom for others.
-std::uint64_t build_key(const Robot& robot);
-bool same_build(const Robot& a, const Robot& b);
-
 }  // namespace mercury::cpu

@@ -87,20 +87,12 @@ class CudaBackend final : public Backend {
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
     use_device();
-    std::vector<float> groups(std::size_t{batch_.groups()} * state_rows * lanes);
-    batch_.read_state(robot, groups);
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(groups, i, 0);
-    for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(groups, i, 3);
+    batch_.read(robot, positions, velocities);
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
     begin_change();
-    std::vector<float> groups(std::size_t{batch_.groups()} * state_rows * lanes);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      put_vector(groups, i, 0, positions[i]);
-      put_vector(groups, i, 3, velocities[i]);
-    }
-    batch_.write_state(robot, groups);
+    batch_.write(robot, positions, velocities);
   }
 
   void read_positions(std::span<Vec3> out) const override { gather(out, 0); }
@@ -188,17 +180,6 @@ class CudaBackend final : public Backend {
     batch_.gather(packed_.data(), first_row);
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     packed_.read(0, std::span(&out.front().x, 3 * out.size()));
-  }
-
-  static Vec3 vector_at(std::span<const float> groups, std::size_t mass, std::uint32_t row) {
-    const float* at = groups.data() + (mass / lanes * state_rows + row) * lanes + mass % lanes;
-    return {at[0], at[lanes], at[2 * lanes]};
-  }
-  static void put_vector(std::span<float> groups, std::size_t mass, std::uint32_t row, Vec3 value) {
-    float* at = groups.data() + (mass / lanes * state_rows + row) * lanes + mass % lanes;
-    at[0] = value.x;
-    at[lanes] = value.y;
-    at[2 * lanes] = value.z;
   }
 
   // What the caller changes makes a report that was begun before void.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <ranges>
 
+#include "sim/cuda/arrangement.h"
 #include "sim/cuda/step.h"
 
 namespace mercury::cuda {
@@ -12,23 +14,15 @@ namespace {
 
 constexpr unsigned threads = 256;
 
-// What one robot adds to the buffers.
-struct Prepared {
-  Schedule schedule;
-  std::vector<FacePair> pairs;
-};
-
-Prepared prepare(const Robot& robot) { return {schedule_springs(robot), spread_over_banks(pair_faces(robot))}; }
-
-// Turns the partner of every record from one unit into another: mass index (rows 0) or word offset among groups of so
+// Turns the partner of every record from one unit into another: slot (rows 0) or word offset among groups of so
 // many rows.
 __global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_rows,
                                std::uint32_t new_rows) {
   for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count; i += std::size_t{gridDim.x} * blockDim.x) {
     std::uint32_t& key = records[i * record_words];
     const std::uint32_t place = key >> 16;
-    const std::uint32_t mass = mass_at(place, old_rows);
-    const std::uint32_t moved = new_rows == 0 ? mass : mass / lanes * new_rows * lanes + mass % lanes;
+    const std::uint32_t slot = slot_at(place, old_rows);
+    const std::uint32_t moved = new_rows == 0 ? slot : slot / lanes * new_rows * lanes + slot % lanes;
     key = moved << 16 | (key & 0xffff);
   }
 }
@@ -38,20 +32,31 @@ __global__ void compute_phases(const Material* materials, MusclePhase* phases, s
   if (i < count) phases[i] = muscle_phase(materials[i], clock);
 }
 
-__global__ void gather_rows(const float* state, const std::uint64_t* first_mass, std::uint32_t group_stride,
-                            std::uint32_t first_row, float* out) {
+__global__ void gather_rows(const float* state, const RobotRecord* records, const std::uint64_t* first_mass,
+                            std::uint32_t group_stride, std::uint32_t first_row, float* out) {
   const std::uint32_t robot = blockIdx.x;
+  const SlotOrder order = slot_order(records[robot]);
   const std::uint64_t first = first_mass[robot], masses = first_mass[robot + 1] - first;
   const float* groups = state + std::size_t{robot} * group_stride * state_rows * lanes + first_row * lanes;
   for (std::uint64_t k = threadIdx.x; k < 3 * masses; k += blockDim.x) {
-    const std::uint64_t mass = k / 3, axis = k % 3;
-    out[3 * first + k] = groups[(mass / lanes * state_rows + axis) * lanes + mass % lanes];
+    const auto axis = static_cast<std::uint32_t>(k % 3), slot = order.slot_of(static_cast<std::uint32_t>(k / 3));
+    out[3 * first + k] = groups[(slot / lanes * state_rows + axis) * lanes + slot % lanes];
   }
 }
 
 unsigned blocks_for(std::size_t count) { return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536)); }
 
-std::size_t state_index(std::size_t mass, std::uint32_t row) { return (mass / lanes * state_rows + row) * lanes + mass % lanes; }
+// A mass's vector in groups of state_rows.
+Vec3 vector_at(std::span<const float> groups, std::uint32_t slot, std::uint32_t row) {
+  const float* at = groups.data() + (slot / lanes * state_rows + row) * lanes + slot % lanes;
+  return {at[0], at[lanes], at[2 * lanes]};
+}
+void put_vector(std::span<float> groups, std::uint32_t slot, std::uint32_t row, Vec3 value) {
+  float* at = groups.data() + (slot / lanes * state_rows + row) * lanes + slot % lanes;
+  at[0] = value.x;
+  at[lanes] = value.y;
+  at[2 * lanes] = value.z;
+}
 
 }  // namespace
 
@@ -70,18 +75,21 @@ Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), rob
 void Batch::upload(std::span<const RobotMeasures> measures) {
   const std::size_t count = robots_.size();
   constexpr std::size_t portion = 512;
-  // The strides are known only once every robot was prepared. Small batches are kept, large ones prepared twice.
+  // The strides are known only once every build was arranged. A few builds are kept, many arranged twice.
+  constexpr std::ptrdiff_t most_kept = 2048;
+  const std::vector<std::uint32_t> first_alike = first_of_build(robots_);
+  const auto is_first = [&](std::size_t i) { return first_alike[i] == i; };
+  const bool keep = std::ranges::count_if(std::views::iota(std::size_t{0}, count), is_first) <= most_kept;
+  std::vector<Arrangement> kept(keep ? count : 0);
   std::vector<std::uint32_t> rows(count), pairs(count);
   std::vector<std::vector<float>> lengths(count);
-  std::vector<Prepared> kept;
-  const bool keep = count <= portion;
-  if (keep) kept.resize(count);
   oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    Prepared prepared = prepare(*robots_[i]);
-    rows[i] = prepared.schedule.rows();
-    pairs[i] = static_cast<std::uint32_t>(prepared.pairs.size());
     lengths[i] = lengths_of(*robots_[i]);
-    if (keep) kept[i] = std::move(prepared);
+    if (!is_first(i)) return;
+    Arrangement arrangement = arrange(*robots_[i]);
+    rows[i] = arrangement.schedule.rows();
+    pairs[i] = static_cast<std::uint32_t>(arrangement.faces.size());
+    if (keep) kept[i] = std::move(arrangement);
   });
   record_words_ = std::ranges::all_of(lengths, [](const auto& some) { return some.size() <= max_lengths; }) ? 1 : 2;
   row_stride_ = std::ranges::max(rows);
@@ -117,21 +125,24 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
     oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
       const std::size_t i = first + k;
       const Robot& robot = *robots_[i];
-      const Prepared prepared = keep ? std::move(kept[i]) : prepare(robot);
-      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()), prepared.schedule.groups(), pairs[i],
-                     static_cast<std::uint32_t>(robot.springs.size()), 1, 1, measures[i].squared_stretch_limit(),
+      const Arrangement anew = keep ? Arrangement{} : arrange(robot);
+      const auto& [order, schedule, faces] = keep ? kept[first_alike[i]] : anew;
+      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()), schedule.groups(), static_cast<std::uint32_t>(faces.size()),
+                     static_cast<std::uint32_t>(robot.springs.size()), order.turn, 1, 1, measures[i].squared_stretch_limit(),
                      measures[i].contact_distance()};
-      float* groups = state.data() + k * group_stride_ * state_rows * lanes;
-      for (std::size_t m = 0; m < robot.masses.size(); ++m) {
-        groups[state_index(m, 0)] = robot.masses[m].x;
-        groups[state_index(m, 1)] = robot.masses[m].y;
-        groups[state_index(m, 2)] = robot.masses[m].z;
-      }
+      const std::size_t state_size = std::size_t{group_stride_} * state_rows * lanes;
+      const auto groups = std::span(state).subspan(k * state_size, state_size);
       const std::vector<std::uint32_t> at = springs_at_masses(robot);
-      std::ranges::copy(at, splits.begin() + static_cast<std::ptrdiff_t>(k * group_stride_ * lanes));
+      for (std::uint32_t m = 0; m < robot.masses.size(); ++m) {
+        const std::uint32_t slot = order.slot_of(m);
+        put_vector(groups, slot, 0, robot.masses[m]);
+        splits[k * group_stride_ * lanes + slot] = static_cast<float>(at[m]);
+      }
       std::uint32_t* to = springs.data() + k * robot_words;
-      for (const ScheduledSpring& spring : prepared.schedule.places) {
-        const std::uint32_t key = static_cast<std::uint32_t>(spring.partner) << 16 | spring.material;
+      for (const ScheduledSpring& place : schedule.places) {
+        // An empty place is of air, so that it adds nothing.
+        const Spring spring = place.spring == no_spring ? Spring{} : robot.springs[place.spring];
+        const std::uint32_t key = static_cast<std::uint32_t>(place.partner) << 16 | spring.material;
         if (record_words_ == 1) {
           const auto number = std::ranges::lower_bound(lengths[i], spring.rest_length) - lengths[i].begin();
           *to++ = key | static_cast<std::uint32_t>(number) << 8;
@@ -139,12 +150,12 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
           *to++ = key;
           *to++ = std::bit_cast<std::uint32_t>(spring.rest_length);
         }
-        ++arrivals[k * group_stride_ * lanes + spring.partner];
+        ++arrivals[k * group_stride_ * lanes + place.partner];
       }
       if (record_words_ == 1)
         std::ranges::copy(lengths[i], length_table.begin() + static_cast<std::ptrdiff_t>(k * max_lengths));
-      std::ranges::copy(prepared.schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
-      std::ranges::copy(prepared.pairs, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
+      std::ranges::copy(schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
+      std::ranges::copy(faces, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
       std::ranges::copy(materials_of(robot), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
     });
     state_.write(first * group_stride_ * state_rows * lanes, state);
@@ -207,7 +218,7 @@ void Batch::update_phases(const Clock& clock) {
 void Batch::set_pulls(std::span<const Pull> pulls) {
   std::vector<DevicePull> converted;
   for (const Pull& pull : pulls)
-    converted.push_back({static_cast<std::uint32_t>(pull.robot), pull.mass, pull.target, pull.stiffness});
+    converted.push_back({static_cast<std::uint32_t>(pull.robot), order_of(pull.robot).slot_of(pull.mass), pull.target, pull.stiffness});
   pulls_ = DeviceArray<DevicePull>(converted.size());
   pulls_.write(0, converted);
 }
@@ -226,11 +237,22 @@ BatchView Batch::view() const {
           static_cast<std::uint32_t>(workspace_stride_), record_words_};
 }
 
-void Batch::read_state(std::size_t robot, std::span<float> groups) const {
-  state_.read(robot * group_stride_ * state_rows * lanes, groups);
+void Batch::read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const {
+  const SlotOrder order = order_of(robot);
+  std::vector<float> groups(std::size_t{group_stride_} * state_rows * lanes);
+  state_.read(robot * groups.size(), std::span(groups));
+  for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(groups, order.slot_of(i), row_x);
+  for (std::uint32_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(groups, order.slot_of(i), row_v);
 }
-void Batch::write_state(std::size_t robot, std::span<const float> groups) {
-  state_.write(robot * group_stride_ * state_rows * lanes, groups);
+
+void Batch::write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  const SlotOrder order = order_of(robot);
+  std::vector<float> groups(std::size_t{group_stride_} * state_rows * lanes);
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    put_vector(groups, order.slot_of(i), row_x, positions[i]);
+    put_vector(groups, order.slot_of(i), row_v, velocities[i]);
+  }
+  state_.write(robot * groups.size(), groups);
 }
 
 DeviceStatus Batch::status(std::size_t robot) const {
@@ -247,7 +269,7 @@ void Batch::set_status(std::size_t robot, DeviceStatus status) { device_statuses
 
 void Batch::gather(float* device_out, std::uint32_t first_row) const {
   if (size() == 0) return;
-  gather_rows<<<size(), threads>>>(state_.data(), device_first_mass_.data(), group_stride_, first_row, device_out);
+  gather_rows<<<size(), threads>>>(state_.data(), device_records_.data(), device_first_mass_.data(), group_stride_, first_row, device_out);
   check(cudaGetLastError(), "gathering masses");
 }
 

@@ -21,7 +21,7 @@ class Batch {
 
   // Follows a change of configuration: scales, and where a record's partner lies in the working memory.
   void configure(const Configuration& configuration);
-  // Sets where records find their partners: as mass index (rows 0), or as offset among groups of so many rows.
+  // Sets where records find their partners: as slot (rows 0), or as offset among groups of so many rows.
   void place_records(std::uint32_t rows);
   std::uint32_t rows_placed() const { return rows_placed_; }
   void set_materials(std::size_t first_robot, std::span<const Material> tables, const Configuration& configuration);
@@ -35,9 +35,8 @@ class Batch {
   bool same_laws() const { return same_laws_; }  // all robots share materials and scales
   BatchView view() const;
 
-  // One robot's groups as they stand in memory.
-  void read_state(std::size_t robot, std::span<float> groups) const;
-  void write_state(std::size_t robot, std::span<const float> groups);
+  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const;
+  void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   DeviceStatus status(std::size_t robot) const;
   std::vector<DeviceStatus> statuses() const;
   void set_status(std::size_t robot, DeviceStatus status);
@@ -48,6 +47,7 @@ class Batch {
  private:
   void upload(std::span<const RobotMeasures> measures);
   void update_scales(const Configuration& configuration);
+  SlotOrder order_of(std::size_t robot) const { return slot_order(records_[robot]); }
 
   std::vector<const Robot*> robots_;
   std::vector<RobotMeasures> measures_;

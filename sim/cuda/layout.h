@@ -1,7 +1,8 @@
 // How robots lie in device memory. Every robot has a chunk of each buffer, sized by the largest robot (paper, II.D).
 //
-// Masses stand in groups of 32. A group is a stack of rows of 32 floats, one row a quantity, so that a mass is one
-// offset, every quantity of it lies a constant further, and a mass's bank is its index mod 32 in every row.
+// Masses stand in slots, 32 slots a group. A group is a stack of rows of 32 floats, one row a quantity, so that a slot is
+// one offset, every quantity of it lies a constant further, and a mass's bank is its slot mod 32 in every row. On the
+// device masses are named by their slots.
 #pragma once
 
 #include <cstdint>
@@ -26,23 +27,48 @@ MERCURY_HOST_DEVICE constexpr std::uint32_t working_rows(Solver solver, bool kee
   return solver == Solver::xpbd && keeps_splits ? 10 : 9;
 }
 
-// The mass whose working memory begins so many words behind the first one's; with 0 rows, places are masses.
-MERCURY_HOST_DEVICE constexpr std::uint32_t mass_at(std::uint32_t place, std::uint32_t rows) {
+// The slot whose working memory begins so many words behind the first one's; with 0 rows, places are slots.
+MERCURY_HOST_DEVICE constexpr std::uint32_t slot_at(std::uint32_t place, std::uint32_t rows) {
   return rows == 0 ? place : place / (rows * lanes) * lanes + place % lanes;
 }
 
-// A scheduled spring. `key` = partner << 16 | length << 8 | material. The partner is a mass index or, on the chip, the
-// mass's offset in the working memory, in words. Robots that have at most 256 different rest lengths name theirs by
+// Which slot each mass stands in: slot 32 g + lane is the lane of group g. Within a group masses stand in their order,
+// turned on by so many lanes a group: where masses are numbered row by row, lattice neighbours in other rows would else be
+// likely to share a bank, or all corners of one kind would have even banks.
+struct SlotOrder {
+  std::uint32_t masses, turn;
+
+  MERCURY_HOST_DEVICE std::uint32_t slot_of(std::uint32_t mass) const {
+    const std::uint32_t group = mass / lanes;
+    return group * lanes + (mass % lanes + group * turn) % in_group(group);
+  }
+  MERCURY_HOST_DEVICE std::uint32_t mass_of(std::uint32_t slot) const {
+    const std::uint32_t group = slot / lanes, size = in_group(group);
+    return group * lanes + (slot % lanes + size - group * turn % size) % size;
+  }
+
+ private:
+  MERCURY_HOST_DEVICE std::uint32_t in_group(std::uint32_t group) const {
+    const std::uint32_t rest = masses - group * lanes;
+    return rest < lanes ? rest : lanes;
+  }
+};
+
+// A scheduled spring. `key` = partner << 16 | length << 8 | material. The partner is a slot or, on the chip, the
+// slot's offset in the working memory, in words. Robots that have at most 256 different rest lengths name theirs by
 // number, which makes a record 4 bytes; others have it behind the key in 8 bytes, and no number. Records stream through
 // every step, so their size decides whether those of all robots in flight fit into the L2 cache.
 inline constexpr std::uint32_t max_lengths = 256;
 
 struct RobotRecord {
   std::uint32_t masses, groups, face_pairs, springs;
+  std::uint32_t turn;                    // SlotOrder
   float force_scale, correction_scale;   // FixedPointScale
   float squared_stretch_limit;           // [m2]
   float contact_distance;                // [m]
 };
+
+MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotRecord& record) { return {record.masses, record.turn}; }
 
 // Rows of springs that a warp has in hand at once; behind the last robot's rows stand as many that are read but unused.
 inline constexpr int rows_at_once = 4;
@@ -50,11 +76,11 @@ inline constexpr int rows_at_once = 4;
 // What became of a robot: the step is counted from the start of the simulation, -1 = has not exploded.
 struct DeviceStatus {
   long long exploded_step;
-  std::uint32_t bad_mass;
+  std::uint32_t bad_mass;  // its number, not its slot
 };
 
 struct DevicePull {
-  std::uint32_t robot, mass;
+  std::uint32_t robot, slot;
   Vec3 target;
   float stiffness;
 };
@@ -68,8 +94,8 @@ struct BatchView {
   const float* lengths;            // [robot][max_lengths], for narrow records
   const std::uint32_t* row_start;  // [robot][group + 1]
   const FacePair* face_pairs;      // [robot][pair]
-  const float* splits;             // [robot][mass], springs at a mass
-  const std::uint32_t* arrivals;   // [robot][mass], places of the schedule whose partner a mass is
+  const float* splits;             // [robot][slot], springs at a mass
+  const std::uint32_t* arrivals;   // [robot][slot], places of the schedule whose partner a slot is
   const Material* materials;       // [robot][max_materials]
   MusclePhase* phases;             // [robot][max_materials], for the present clock base
   const DevicePull* pulls;

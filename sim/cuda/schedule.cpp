@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <random>
 
 namespace mercury::cuda {
 namespace {
@@ -16,15 +17,15 @@ struct Edge {
 // owners are chosen so that the sum of the squares of all loads is small, which evens them out.
 class Ownership {
  public:
-  explicit Ownership(const Robot& robot)
-      : springs_(robot.springs), lane_load_(robot.masses.size()),
-        bank_load_((robot.masses.size() + lanes - 1) / lanes * lanes), owned_by_b_(robot.springs.size()) {
+  Ownership(std::size_t masses, std::span<const Spring> springs)
+      : springs_(springs), lane_load_(masses), bank_load_((masses + lanes - 1) / lanes * lanes), owned_by_b_(springs.size()) {
     for (std::size_t s = 0; s < springs_.size(); ++s) {
       owned_by_b_[s] = load(springs_[s].b, springs_[s].a) < load(springs_[s].a, springs_[s].b);
       change(s, 1);
     }
-    constexpr int sweeps = 12;
+    constexpr int sweeps = 12, more_sweeps = 12;
     for (int sweep = 0; sweep < sweeps; ++sweep) improve(sweep);
+    for (int sweep = 0; sweep < more_sweeps; ++sweep) relieve();
   }
 
   std::uint16_t owner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].b : springs_[s].a; }
@@ -54,7 +55,27 @@ class Ownership {
     }
   }
 
-  const std::vector<Spring>& springs_;
+  // Only loads above the average lengthen a group: hands springs over where that lowers the sum of the squares of what
+  // is above it, or, at random, where that leaves it the same.
+  void relieve() {
+    const auto average = static_cast<std::uint32_t>((springs_.size() + lane_load_.size() - 1) / lane_load_.size());
+    const auto above = [&](std::uint32_t load) { return load > average ? (load - average) * (load - average) : 0; };
+    const auto step = [&](std::uint32_t load) { return above(load + 1) - above(load); };
+    for (std::size_t s = 0; s < springs_.size(); ++s) {
+      const std::uint16_t from = owner(s), to = partner(s);
+      const std::uint32_t relieved = step(lane_load_[from] - 1) + step(bank_load(from, to) - 1);
+      const std::uint32_t burdened = step(lane_load_[to]) + step(bank_load(to, from));
+      const auto chance = static_cast<std::uint32_t>(random_());
+      const bool same = burdened == relieved && chance % (relieved > 0 ? 2 : 32) == 0;
+      if (burdened >= relieved && !same) continue;
+      change(s, static_cast<std::uint32_t>(-1));
+      owned_by_b_[s] = !owned_by_b_[s];
+      change(s, 1);
+    }
+  }
+
+  const std::span<const Spring> springs_;
+  std::minstd_rand random_;
   std::vector<std::uint32_t> lane_load_, bank_load_;
   std::vector<std::uint8_t> owned_by_b_;
 };
@@ -138,15 +159,16 @@ struct Grouped {
   std::vector<Edge> edges;
 };
 
-Grouped group_by_owner(const Robot& robot, std::uint32_t groups) {
-  const Ownership ownership(robot);
+Grouped group_by_owner(std::size_t masses, std::span<const Spring> springs) {
+  const Ownership ownership(masses, springs);
+  const std::size_t groups = (masses + lanes - 1) / lanes;
   Grouped grouped;
   grouped.start.assign(groups + 1, 0);
-  for (std::size_t s = 0; s < robot.springs.size(); ++s) ++grouped.start[ownership.owner(s) / lanes + 1];
-  for (std::uint32_t g = 0; g < groups; ++g) grouped.start[g + 1] += grouped.start[g];
-  grouped.edges.resize(robot.springs.size());
+  for (std::size_t s = 0; s < springs.size(); ++s) ++grouped.start[ownership.owner(s) / lanes + 1];
+  for (std::size_t g = 0; g < groups; ++g) grouped.start[g + 1] += grouped.start[g];
+  grouped.edges.resize(springs.size());
   std::vector<std::uint32_t> next(grouped.start.begin(), grouped.start.end() - 1);
-  for (std::size_t s = 0; s < robot.springs.size(); ++s)
+  for (std::size_t s = 0; s < springs.size(); ++s)
     grouped.edges[next[ownership.owner(s) / lanes]++] = {ownership.owner(s), ownership.partner(s),
                                                          static_cast<std::uint32_t>(s)};
   return grouped;
@@ -158,80 +180,106 @@ struct Neighbours {
   std::vector<std::uint16_t> mass;
 };
 
-Neighbours find_neighbours(const Robot& robot) {
+Neighbours find_neighbours(std::size_t masses, std::span<const Spring> springs) {
   Neighbours neighbours;
-  neighbours.start.assign(robot.masses.size() + 1, 0);
-  for (const Spring& spring : robot.springs) {
+  neighbours.start.assign(masses + 1, 0);
+  for (const Spring& spring : springs) {
     ++neighbours.start[spring.a + 1u];
     ++neighbours.start[spring.b + 1u];
   }
-  for (std::size_t i = 0; i < robot.masses.size(); ++i) neighbours.start[i + 1] += neighbours.start[i];
+  for (std::size_t i = 0; i < masses; ++i) neighbours.start[i + 1] += neighbours.start[i];
   neighbours.mass.resize(neighbours.start.back());
   std::vector<std::uint32_t> next(neighbours.start.begin(), neighbours.start.end() - 1);
-  for (const Spring& spring : robot.springs) {
+  for (const Spring& spring : springs) {
     neighbours.mass[next[spring.a]++] = spring.b;
     neighbours.mass[next[spring.b]++] = spring.a;
   }
   return neighbours;
 }
 
-// A mass for an empty place to look at, in a bank that the row leaves free: a neighbour, so that it is never farther than
-// a spring may be long. Lanes past the last mass stand at memory that is there but belongs to no mass; they look at each
-// other's. If no bank fits, the lane's own.
-std::uint16_t idle_partner(const Neighbours& neighbours, std::uint32_t self, std::uint32_t& banks) {
-  const auto take = [&](std::uint32_t mass) {
-    if (banks >> mass % lanes & 1) return false;
-    banks |= 1u << mass % lanes;
-    return true;
-  };
-  const auto masses = static_cast<std::uint32_t>(neighbours.start.size() - 1);
-  if (self < masses) {
-    for (std::uint32_t k = neighbours.start[self]; k < neighbours.start[self + 1]; ++k)
-      if (take(neighbours.mass[k])) return neighbours.mass[k];
-  } else {
-    for (std::uint32_t mass = masses; mass % lanes != 0; ++mass)
-      if (take(mass)) return static_cast<std::uint16_t>(mass);
-  }
-  return static_cast<std::uint16_t>(self);
-}
+// Masses for the empty places of one row to look at, in banks that the row leaves free; there are as many of these as
+// there are empty places.
+class IdlePartners {
+ public:
+  IdlePartners(const Neighbours& neighbours, std::uint32_t group, std::uint32_t taken_banks)
+      : neighbours_(neighbours), masses_(static_cast<std::uint32_t>(neighbours.start.size() - 1)), group_(group),
+        taken_(taken_banks) {}
 
-void append_row(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, const EdgeColouring& colouring,
-                std::uint32_t colour, const Neighbours& neighbours) {
+  // A neighbour. Lanes past the last mass stand at memory that is there but belongs to no mass, and look at each
+  // other's. `self` if none has a free bank.
+  std::uint16_t near(std::uint16_t self) {
+    if (self < masses_) {
+      for (std::uint32_t k = neighbours_.start[self]; k < neighbours_.start[self + 1u]; ++k)
+        if (take(neighbours_.mass[k])) return neighbours_.mass[k];
+    } else {
+      for (std::uint32_t mass = masses_; mass % lanes != 0; ++mass)
+        if (take(mass)) return static_cast<std::uint16_t>(mass);
+    }
+    return self;
+  }
+
+  // Any mass of the own group or the one before; `self` if none has a free bank.
+  std::uint16_t any(std::uint16_t self) {
+    if (self >= masses_ || take(self)) return self;
+    for (std::uint32_t mass = group_ * lanes; mass < masses_ && mass < (group_ + 1) * lanes; ++mass)
+      if (take(mass)) return static_cast<std::uint16_t>(mass);
+    for (std::uint32_t mass = (group_ > 0 ? group_ - 1 : 0) * lanes; mass < group_ * lanes; ++mass)
+      if (take(mass)) return static_cast<std::uint16_t>(mass);
+    return self;
+  }
+
+ private:
+  bool take(std::uint32_t mass) {
+    if (taken_ >> mass % lanes & 1) return false;
+    taken_ |= 1u << mass % lanes;
+    return true;
+  }
+
+  const Neighbours& neighbours_;
+  const std::uint32_t masses_, group_;
+  std::uint32_t taken_;
+};
+
+void append_row(Schedule& schedule, std::span<const Edge> edges, const EdgeColouring& colouring, std::uint32_t colour,
+                const Neighbours& neighbours) {
   const std::uint32_t group = schedule.groups();
-  std::uint32_t banks = 0;
-  for (std::uint32_t lane = 0; lane < lanes; ++lane)
-    if (const std::uint32_t e = colouring.edge_at(lane, colour); e != EdgeColouring::none)
-      banks |= 1u << edges[e].partner % lanes;
+  std::array<ScheduledSpring, lanes> row;
+  std::uint32_t taken_banks = 0;
   for (std::uint32_t lane = 0; lane < lanes; ++lane) {
     const std::uint32_t e = colouring.edge_at(lane, colour);
-    if (e == EdgeColouring::none) {
-      schedule.places.push_back({idle_partner(neighbours, group * lanes + lane, banks), air, 0});
-    } else {
-      const Spring& spring = robot.springs[edges[e].spring];
-      schedule.places.push_back({edges[e].partner, spring.material, spring.rest_length});
-    }
+    if (e == EdgeColouring::none) continue;
+    row[lane] = {edges[e].spring, edges[e].partner};
+    taken_banks |= 1u << edges[e].partner % lanes;
   }
+  IdlePartners idle(neighbours, group, taken_banks);
+  const auto for_each_empty = [&](auto visit) {
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+      if (row[lane].spring == no_spring) visit(row[lane].partner, static_cast<std::uint16_t>(group * lanes + lane));
+  };
+  for_each_empty([&](std::uint16_t& partner, std::uint16_t self) { partner = idle.near(self); });
+  for_each_empty([&](std::uint16_t& partner, std::uint16_t self) {
+    if (partner == self) partner = idle.any(self);
+  });
+  schedule.places.insert(schedule.places.end(), row.begin(), row.end());
 }
 
-void append_group(Schedule& schedule, const Robot& robot, std::span<const Edge> edges, const Neighbours& neighbours) {
+void append_group(Schedule& schedule, std::span<const Edge> edges, const Neighbours& neighbours) {
   const EdgeColouring colouring(edges);
   for (std::uint32_t colour = 0; colour < colouring.colours(); ++colour)
-    append_row(schedule, robot, edges, colouring, colour, neighbours);
+    append_row(schedule, edges, colouring, colour, neighbours);
   schedule.row_start.push_back(schedule.row_start.back() + colouring.colours());
 }
 
 }  // namespace
 
-Schedule schedule_springs(const Robot& robot) {
-  const auto groups = static_cast<std::uint32_t>((robot.masses.size() + lanes - 1) / lanes);
-  const Grouped grouped = group_by_owner(robot, groups);
+Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs) {
+  const Grouped grouped = group_by_owner(masses, springs);
   Schedule schedule;
   schedule.row_start.push_back(0);
-  schedule.places.reserve(robot.springs.size() * 5 / 4);
-  const Neighbours neighbours = find_neighbours(robot);
-  for (std::uint32_t g = 0; g < groups; ++g)
-    append_group(schedule, robot, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]),
-                 neighbours);
+  schedule.places.reserve(springs.size() * 5 / 4);
+  const Neighbours neighbours = find_neighbours(masses, springs);
+  for (std::size_t g = 0; g + 1 < grouped.start.size(); ++g)
+    append_group(schedule, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]), neighbours);
   return schedule;
 }
 

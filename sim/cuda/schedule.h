@@ -17,12 +17,12 @@ namespace mercury::cuda {
 
 inline constexpr std::uint32_t lanes = 32;
 
-// A spring as its owner's lane sees it. An empty place has material air and rest length 0, so that it adds nothing; its
-// partner is a neighbour of the owner, or the owner itself, in a bank that nobody else in the row wants.
+// A spring as its owner's lane sees it. An empty place looks at a mass in a bank that nobody else in the row wants: a
+// neighbour of the owner, else any.
+inline constexpr std::uint32_t no_spring = 0xffffffffu;
 struct ScheduledSpring {
+  std::uint32_t spring = no_spring;  // its number
   std::uint16_t partner = 0;
-  MaterialId material = air;
-  float rest_length = 0;
 };
 
 struct Schedule {
@@ -33,13 +33,16 @@ struct Schedule {
   std::uint32_t rows() const { return row_start.back(); }
 };
 
-Schedule schedule_springs(const Robot& robot);
+Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs);
 
 // An empty place.
 inline constexpr FacePair no_faces{0, 0, 0, 0};
 
-// The same pairs in another order, each perhaps told from another corner: of 32 in a row no two have masses of the same
-// bank in the same column; places that this leaves free are empty.
+// Bundles that pairs need at least, for what they want of the bank that they want most.
+std::uint32_t busiest_bank(std::span<const FacePair> pairs);
+
+// The same pairs in another order, each perhaps told from another corner, in bundles of 32: of one bundle no two have
+// masses of the same bank in the same column; places that this leaves free are empty.
 std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs);
 
 }  // namespace mercury::cuda

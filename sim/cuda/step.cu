@@ -56,6 +56,7 @@ __global__ void __maxnreg__(72)
   const bool seated = first_robot + seat < batch.robot_count && stepper.alive();
   if (warp == 0 && lane == 0) *failure = {seated ? never : 0, never};
   stepper.load_state();
+  stepper.expect_environment();
   __syncthreads();
   int list_contacts = 1;
 
@@ -71,6 +72,7 @@ __global__ void __maxnreg__(72)
     stepper.add_springs(step);
     __syncthreads();
     stepper.end(step);
+    stepper.expect_environment();
     materials.update(arguments, step + 1);
     if constexpr (Hooks::has_contacts)
       list_contacts = __syncthreads_or(stepper.contacts_stale());

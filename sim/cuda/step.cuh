@@ -93,10 +93,18 @@ class RobotStepper {
       if (collides()) add_contacts();
   }
 
+  // Reads ahead what add_environment begins with.
+  __device__ void expect_environment() {
+    if constexpr (Hooks::has_faces)
+      if (first_face_pair() < record_.face_pairs) first_faces_ = face_pair(first_face_pair());
+  }
+
   // Algorithm 1's forces or Algorithm 2's corrections.
   __device__ void add_springs(std::uint32_t step) {
     if (failed_before(step, phase_springs)) return;
-    if (add_all_springs() > record_.squared_stretch_limit) fail(step, phase_springs, 0xffffffffu);
+    const float limit = record_.squared_stretch_limit;
+    // Places without a spring are measured too, and may look far.
+    if (add_all_springs() > limit && longest_spring() > limit) fail(step, phase_springs, 0xffffffffu);
   }
 
   // XPBD: leaves the prediction in place of the position and v + dt F in place of the velocity.
@@ -162,13 +170,13 @@ class RobotStepper {
   }
   __device__ Mass<Memory> partner_of(const Record& record) const {
     if constexpr (Memory::on_chip)
-      return {masses_ + (record.x >> 16) * 4};
+      return {masses_ + __byte_perm(record.x, 0, 0x4432) * 4};  // one instruction less than record.x >> 16
     else
       return at(record.x >> 16);
   }
   __device__ float rest_length_of(const Record& record) const {
     if constexpr (record_words == 1)
-      return OnChip::load(lengths_ + (record.x >> 8 & 0xff) * 4, 0);
+      return OnChip::load(lengths_ + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
     else
       return __uint_as_float(record.y);
   }
@@ -190,7 +198,7 @@ class RobotStepper {
     if constexpr (Memory::keeps_splits)
       return partner.value(row_splits);
     else
-      return splits_of(mass_at(record.x >> 16, rows));
+      return splits_of(slot_at(record.x >> 16, rows));
   }
 
   // What every spring that ends at a mass adds to its sum besides its force: the bits of the rounding constant.
@@ -224,7 +232,7 @@ class RobotStepper {
       own(group).set_vector(row_x, x);
       own(group).set_vector(row_v, v);
     } else {
-      fail(step, phase, group * lanes + lane_);
+      fail(step, phase, slot_order(record_).mass_of(group * lanes + lane_));
     }
   }
 
@@ -324,10 +332,30 @@ class RobotStepper {
     return longest;
   }
 
-  __device__ void add_faces(std::uint32_t step) {
+  // The last warps begin, since the first ones have the material table to look after.
+  __device__ std::uint32_t first_face_pair() const { return (warps() - 1 - warp_) * lanes + lane_; }
+  __device__ ushort4 face_pair(std::uint32_t p) const {
     const FacePair* pairs = arguments_.batch.face_pairs + std::size_t{robot_} * arguments_.batch.face_stride;
-    for (std::uint32_t p = thread(); p < record_.face_pairs; p += warps() * lanes) {
-      const ushort4 corner = __ldg(reinterpret_cast<const ushort4*>(pairs + p));
+    return __ldg(reinterpret_cast<const ushort4*>(pairs + p));
+  }
+
+  // The longest |d|^2 of this lane's springs.
+  __device__ float longest_spring() const {
+    float longest = 0;
+    for (std::uint32_t g = first_group_; g < last_group_; ++g)
+      for (std::uint32_t row = row_start()[g]; row < row_start()[g + 1]; ++row) {
+        const Record record = springs()[std::size_t{row} * lanes + lane_];
+        if ((record.x & 0xff) == air) continue;
+        longest = fmaxf(longest, squared_length(own(g).vector(row_x) - partner_of(record).vector(row_x)));
+      }
+    return longest;
+  }
+
+  __device__ void add_faces(std::uint32_t step) {
+    ushort4 next = first_faces_;
+    for (std::uint32_t p = first_face_pair(); p < record_.face_pairs; p += warps() * lanes) {
+      const ushort4 corner = next;
+      if (p + warps() * lanes < record_.face_pairs) next = face_pair(p + warps() * lanes);
       if (corner.x == corner.y) continue;  // an empty place
       const Mass<Memory> a = at(corner.x), b = at(corner.y), c = at(corner.z), d = at(corner.w);
       const Vec3 xa = a.vector(row_x);
@@ -338,7 +366,9 @@ class RobotStepper {
       const Vec3 first = scale * hooks_.on_face(0.5f * cross(to_b, to_c), third * (shared + b.vector(row_v)));
       const Vec3 second = scale * hooks_.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(row_v)));
       if (!fits(first) || !fits(second)) {
-        fail(step, phase_environment, min(min(corner.x, corner.y), min(corner.z, corner.w)));
+        const SlotOrder order = slot_order(record_);
+        fail(step, phase_environment, min(min(order.mass_of(corner.x), order.mass_of(corner.y)),
+                                          min(order.mass_of(corner.z), order.mass_of(corner.w))));
         continue;
       }
       const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
@@ -354,8 +384,8 @@ class RobotStepper {
     for (std::uint32_t p = 0; p < arguments_.batch.pull_count; ++p) {
       const DevicePull& pull = arguments_.batch.pulls[p];
       if (pull.robot != robot_) continue;
-      const Vec3 units = pull.stiffness * record_.force_scale * (pull.target - at(pull.mass).vector(row_x));
-      if (fits(units)) at(pull.mass).add_to_sum(units);
+      const Vec3 units = pull.stiffness * record_.force_scale * (pull.target - at(pull.slot).vector(row_x));
+      if (fits(units)) at(pull.slot).add_to_sum(units);
     }
   }
 
@@ -418,6 +448,7 @@ class RobotStepper {
   const std::uint32_t robot_, warp_, lane_;
   std::uint32_t first_group_, last_group_;
   float travelled_ = 0;  // no mass of this thread has gone farther since contacts were listed
+  ushort4 first_faces_{};
   const Address masses_;
   const std::uint32_t table_, lengths_;
   Failure* const failure_;

@@ -1,4 +1,4 @@
-#include "sim/cuda/schedule.h"
+#include "sim/cuda/arrangement.h"
 
 #include <gtest/gtest.h>
 
@@ -51,17 +51,15 @@ Key key(std::uint32_t a, std::uint32_t b, MaterialId material, float rest_length
 
 TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
   for (const Robot& robot : robots()) {
-    const Schedule schedule = schedule_springs(robot);
+    const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
     std::multiset<Key> expected, found;
     for (const Spring& s : robot.springs) expected.insert(key(s.a, s.b, s.material, s.rest_length));
     for (std::uint32_t g = 0; g < schedule.groups(); ++g)
       for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
         const ScheduledSpring& s = schedule.places[place];
-        if (s.material == air) {
-          EXPECT_EQ(s.rest_length, 0);
-        } else {
-          found.insert(key(g * lanes + place % lanes, s.partner, s.material, s.rest_length));
-        }
+        if (s.spring == no_spring) continue;
+        const Spring& spring = robot.springs.at(s.spring);
+        found.insert(key(g * lanes + place % lanes, s.partner, spring.material, spring.rest_length));
       }
     EXPECT_EQ(found, expected);
   }
@@ -69,12 +67,12 @@ TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
 
 TEST(Schedule, NoTwoSpringsOfARowWantOneBank) {
   for (const Robot& robot : robots()) {
-    const Schedule schedule = schedule_springs(robot);
+    const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
     for (std::uint32_t row = 0; row < schedule.rows(); ++row) {
       std::set<int> banks;
       for (std::uint32_t lane = 0; lane < lanes; ++lane) {
         const ScheduledSpring& s = schedule.places[row * lanes + lane];
-        if (s.material != air) {
+        if (s.spring != no_spring) {
           EXPECT_TRUE(banks.insert(s.partner % 32).second) << "row " << row;
         }
       }
@@ -82,34 +80,99 @@ TEST(Schedule, NoTwoSpringsOfARowWantOneBank) {
   }
 }
 
-// An empty place is read like a spring; if it were farther from its owner than a spring may be long, the robot would
-// seem to explode.
-TEST(Schedule, EmptyPlacesLookAtTheirOwnerOrANeighbour) {
+// An empty place is read like a spring, so it must not be in the way of one either, where a group has all its masses.
+TEST(Schedule, NoEmptyPlaceOfAFullGroupWantsABankThatIsTaken) {
   for (const Robot& robot : robots()) {
-    std::map<std::uint32_t, std::set<std::uint32_t>> neighbours;
-    for (const Spring& s : robot.springs) {
-      neighbours[s.a].insert(s.b);
-      neighbours[s.b].insert(s.a);
-    }
-    const Schedule schedule = schedule_springs(robot);
+    const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
+    for (std::uint32_t g = 0; g < robot.masses.size() / lanes; ++g)
+      for (std::uint32_t row = schedule.row_start[g]; row < schedule.row_start[g + 1]; ++row) {
+        std::set<int> banks;
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) banks.insert(schedule.places[row * lanes + lane].partner % 32);
+        EXPECT_EQ(banks.size(), lanes) << "row " << row;
+      }
+  }
+}
+
+TEST(Schedule, MassesLookAtMassesAndLanesWithoutAMassAtOneAnother) {
+  for (const Robot& robot : robots()) {
+    const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
     for (std::uint32_t g = 0; g < schedule.groups(); ++g)
       for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
-        const ScheduledSpring& s = schedule.places[place];
-        const std::uint32_t owner = g * lanes + place % lanes;
-        if (s.material != air) continue;
-        if (owner < robot.masses.size()) {
-          EXPECT_TRUE(s.partner == owner || neighbours[owner].contains(s.partner));
-        } else {  // a lane of no mass looks at memory of no mass
-          EXPECT_TRUE(s.partner >= robot.masses.size() && s.partner / lanes == g);
-        }
+        const std::uint32_t owner = g * lanes + place % lanes, partner = schedule.places[place].partner;
+        if (owner < robot.masses.size())
+          EXPECT_LT(partner, robot.masses.size());
+        else
+          EXPECT_TRUE(partner >= robot.masses.size() && partner / lanes == g);
       }
   }
 }
 
 TEST(Schedule, WastesLittleOnALattice) {
   const Robot robot = bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 1);
-  const Schedule schedule = schedule_springs(robot);
-  EXPECT_GT(static_cast<double>(robot.springs.size()), 0.85 * schedule.rows() * lanes);
+  const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
+  EXPECT_GT(static_cast<double>(robot.springs.size()), 0.89 * schedule.rows() * lanes);
+}
+
+TEST(SlotOrder, GivesEveryMassASlotOfItsOwnInItsGroup) {
+  for (const std::uint32_t masses : {1u, 31u, 32u, 33u, 70u, 1331u})
+    for (const std::uint32_t turn : {0u, 1u, 5u, 13u, 31u}) {
+      const SlotOrder order{masses, turn};
+      std::set<std::uint32_t> slots;
+      for (std::uint32_t mass = 0; mass < masses; ++mass) {
+        const std::uint32_t slot = order.slot_of(mass);
+        EXPECT_EQ(slot / lanes, mass / lanes);
+        EXPECT_EQ(order.mass_of(slot), mass);
+        slots.insert(slot);
+      }
+      EXPECT_EQ(slots.size(), masses);
+      EXPECT_EQ(*slots.rbegin(), masses - 1);
+    }
+}
+
+TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
+  for (const Robot& robot : robots()) {
+    const Arrangement arrangement = arrange(robot);
+    const auto mass_of = [&](std::uint32_t slot) { return arrangement.order.mass_of(slot); };
+    std::set<std::uint32_t> springs;
+    const Schedule& schedule = arrangement.schedule;
+    for (std::uint32_t g = 0; g < schedule.groups(); ++g)
+      for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
+        const ScheduledSpring& s = schedule.places[place];
+        if (s.spring == no_spring) continue;
+        const std::set<std::uint32_t> ends{mass_of(g * lanes + place % lanes), mass_of(s.partner)};
+        EXPECT_EQ(ends, (std::set<std::uint32_t>{robot.springs.at(s.spring).a, robot.springs.at(s.spring).b}));
+        EXPECT_TRUE(springs.insert(s.spring).second);
+      }
+    EXPECT_EQ(springs.size(), robot.springs.size());
+    std::multiset<std::set<std::uint32_t>> expected, found;
+    for (const Face& f : robot.faces) expected.insert({f.a, f.b, f.c});
+    for (const FacePair& p : arrangement.faces) {
+      if (p.a == p.b) continue;
+      const std::uint32_t a = mass_of(p.a), b = mass_of(p.b), c = mass_of(p.c), d = mass_of(p.d);
+      found.insert({a, b, c});
+      if (p.d != p.a && p.d != p.c) found.insert({a, c, d});
+    }
+    for (auto it = found.begin(); it != found.end();) it = it->size() < 3 ? found.erase(it) : std::next(it);
+    EXPECT_EQ(found, expected);
+  }
+}
+
+// Lattices number their masses row by row, which gives corners of one kind few banks; their faces find room all the same.
+TEST(Arrangement, BundlesOfALatticesFacesAreWellFilled) {
+  for (const int size : {10, 15}) {
+    const Robot robot = bodies::random_voxels({.x = size, .y = size, .z = size}, 1);
+    EXPECT_GT(static_cast<double>(pair_faces(robot).size()), 0.65 * static_cast<double>(arrange(robot).faces.size()));
+  }
+}
+
+TEST(Arrangement, RobotsOfOneBuildShareTheFirst) {
+  const Robot small = bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 1), other = bodies::random_voxels({.x = 3, .y = 3, .z = 2}, 1);
+  Robot stronger = small;
+  for (Spring& s : stronger.springs) s.material = 7;
+  Robot joined = small;
+  std::swap(joined.springs.front(), joined.springs.back());
+  const std::vector<const Robot*> robots{&small, &other, &stronger, &joined, &other};
+  EXPECT_EQ(first_of_build(robots), (std::vector<std::uint32_t>{0, 1, 0, 3, 1}));
 }
 
 TEST(FacePairs, HoldEveryFaceOnceWithoutBankConflicts) {
