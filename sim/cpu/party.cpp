@@ -163,8 +163,8 @@ Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, G
 
 // What a step costs, in full slots of a run; measured with eight lanes.
 double cost_together(const Build& build, bool faces) {
-  return static_cast<double>(build.partners.size()) + 3.2 * static_cast<double>(build.joints.size()) +
-         (faces ? 5.0 * static_cast<double>(build.faces.size()) : 0.0);
+  return static_cast<double>(build.partners.size()) + 3.0 * static_cast<double>(build.joints.size()) +
+         (faces ? 4.4 * static_cast<double>(build.faces.size()) : 0.0);
 }
 double cost_alone(const Body& body, bool faces) {
   const SpringPlan& plan = body.springs;
