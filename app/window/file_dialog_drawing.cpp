@@ -177,7 +177,7 @@ void FileDialog::draw_name(Observations& observations) {
     ImGui::PopStyleColor();
   }
   static constexpr const char* names[] = {"name", "name", "folder"};
-  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path", "in the one shown; none: that one"};
+  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path", "a folder in this one, or none"};
   const auto kind = static_cast<std::size_t>(question_.kind);
   const float names_width = 6 * ImGui::GetFontSize();
   label(names[kind], names_width);
@@ -190,7 +190,7 @@ void FileDialog::draw_name(Observations& observations) {
   if (question_.kind != Kind::open) hint("folders that are missing are made");
   if (text_ != before) typed();
   if (question_.kind == Kind::folder)
-    note(shortened("into " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(), ImGui::GetContentRegionAvail().x, true).c_str());
+    note(shortened(question_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(), ImGui::GetContentRegionAvail().x, true).c_str());
   if (question_.formats.empty()) return;
   label("kind", names_width);
   if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) && question_.kind == Kind::save)
