@@ -217,12 +217,12 @@ void FileDialog::draw_buttons(Observations& observations) {
   const float room = ImGui::GetContentRegionAvail().x - 2 * width - ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
   if (ImGui::Button("Cancel", {width, 0})) open_ = false;
-  observations.item("dialog.cancel");
+  observations.item("files.cancel");
   ImGui::SameLine();
   const std::vector<FolderItem> marked = view_.marked();
   const bool into = marked.size() == 1 && marked.front().folder;
   if (ImGui::Button(into ? "Open folder###accept" : (question_.button + "###accept").c_str(), {width, 0})) accept();
-  observations.item("dialog.accept");
+  observations.item("files.accept");
 }
 
 }  // namespace mercury::window

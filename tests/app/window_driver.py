@@ -181,14 +181,13 @@ class Window:
         return round(self.items[item]["x"]), round(self.items[item]["y"])
 
     def click(self, item):
-        # Twice on its way, so that the window sees it come to rest before it is pressed.
-        x, y = self.place(item)
-        self.do("mousemove", x, y)
-        since = self.mark()
-        self.frame(since=since)
+        # What has just opened may still find its place.
+        place = None
+        while place != (place := self.place(item)):
+            self.do("mousemove", *place)
+            self.frame()
         self.do("click", 1)
-        # The window sees where the pointer is when it looks, not where it was when the button went down; the first frame
-        # told of may have looked before.
+        # A press and a release take a frame each, and what they do is seen in the next one.
         self.frame()
         self.frame()
 
