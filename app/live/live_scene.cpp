@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_set>
 
 #include "app/eigen_vec3.h"
 #include "app/live/live_scene_parts.h"
@@ -52,7 +53,11 @@ void LiveScene::frame(float aspect) {
     parts.stops = parts.moment->stops;
     parts.playing = false;
   }
-  std::erase_if(parts.selected, [&](RobotId id) { return !parts.document.find(id); });
+  if (!parts.selected.empty()) {
+    std::unordered_set<RobotId> there;
+    for (const DocumentRobot& robot : parts.document.robots) there.insert(robot.body.id);
+    std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
+  }
   if (parts.pull && !parts.document.find(parts.pull->robot)) end_pull();
   parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()}, parts.hidden, wall_now());
 }
@@ -99,7 +104,9 @@ void LiveScene::change_speed(int notches) {
 
 std::vector<RobotEntry> LiveScene::entries() const {
   const Parts& parts = *parts_;
+  const std::unordered_set<RobotId> selected(parts.selected.begin(), parts.selected.end());
   std::vector<RobotEntry> entries;
+  entries.reserve(parts.document.robots.size());
   for (const DocumentRobot& robot : parts.document.robots) {
     const Robot& body = *robot.body.robot;
     RobotEntry entry{.id = robot.body.id,
@@ -109,7 +116,7 @@ std::vector<RobotEntry> LiveScene::entries() const {
                      .faces = body.faces.size(),
                      .file = parts.file_of(robot.body.id),
                      .unsaved = !parts.is_saved(robot),
-                     .selected = is_selected(robot.body.id),
+                     .selected = selected.contains(robot.body.id),
                      .hidden = parts.hidden.contains(robot.body.id),
                      .tuned = robot.body.materials != nullptr};
     if (const auto index = parts.moment->robots->index_of(robot.body.id)) {
@@ -138,8 +145,9 @@ void LiveScene::toggle_selected(RobotId robot) {
     select(robot, false);
 }
 void LiveScene::select_all() {
+  const std::unordered_set<RobotId> before(parts_->selected.begin(), parts_->selected.end());
   for (const DocumentRobot& robot : parts_->document.robots)
-    if (!is_selected(robot.body.id)) parts_->selected.push_back(robot.body.id);
+    if (!before.contains(robot.body.id)) parts_->selected.push_back(robot.body.id);
 }
 void LiveScene::clear_selection() { parts_->selected.clear(); }
 bool LiveScene::is_selected(RobotId robot) const { return std::ranges::find(parts_->selected, robot) != parts_->selected.end(); }

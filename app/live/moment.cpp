@@ -17,6 +17,10 @@ std::span<const Material> materials_of(const LiveRobot& robot) {
 }
 
 std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
+  if (!places.empty()) {
+    const auto place = places.find(id);
+    return place == places.end() ? std::nullopt : std::optional(place->second);
+  }
   const auto found = std::ranges::find(robots, id, &LiveRobot::id);
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "app/robot_shape.h"
@@ -36,6 +37,7 @@ struct LiveRobots {
   std::uint64_t revision = 0;             // grows whenever robots come, go or are replaced
   std::vector<LiveRobot> robots;
   std::vector<std::size_t> mass_offsets;  // size + 1
+  std::unordered_map<RobotId, std::size_t> places;  // of all robots, or empty
   std::size_t springs = 0;                // of all robots
   // For pictures, made by the physics thread; the same as long as the revision is.
   std::vector<std::shared_ptr<const RobotShape>> shapes;
