@@ -13,8 +13,7 @@ Robot found(const char* name, const char* environment, std::size_t points, std::
 }  // namespace
 
 std::vector<Robot> found_network_robots() {
-  return {found("kite", "ocean", 64, 2450), found("flapper", "ocean", 64, 1962), found("rambler", "land", 192, 495),
-          found("shuffler", "land", 192, 382)};
+  return {found("flapper", "ocean", 64, 1962), found("rambler", "land", 192, 495), found("shuffler", "land", 192, 382)};
 }
 
 }  // namespace mercury::library
