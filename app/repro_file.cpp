@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/configuration_json.h"
 #include "app/repro.h"
@@ -162,7 +163,10 @@ std::string serialize_repro(const Repro& repro) {
   const auto own = materials_of(repro.robot);
   std::vector<Material> materials(own.begin(), own.end());
   json["changes"] = Json::array();
-  for (const ReproChange& change : repro.changes) json["changes"].push_back(json_of(change, materials));
+  // Changes of one step are of different kinds, which do not touch each other: told in one order, however they came.
+  std::vector<ReproChange> changes = repro.changes;
+  std::ranges::stable_sort(changes, {}, [](const ReproChange& c) { return std::pair(c.step, c.configuration ? 2 : c.pulls ? 1 : 0); });
+  for (const ReproChange& change : changes) json["changes"].push_back(json_of(change, materials));
   json["robot"] = Json::parse(serialize_robot(repro.robot, RobotFormat::json));
   return json.dump() + "\n";
 }
