@@ -191,6 +191,14 @@ class Window:
         self.frame()
         self.frame()
 
+    def choose_next(self, combo):
+        """Of a list that a click opened below its field, the entry after the first."""
+        x, y = self.place(combo)
+        self.do("mousemove", x, y + 1.9 * self.items[combo]["height"])
+        self.frame()
+        self.do("click", 1)
+        self.frame()
+
     def dialog(self, text):
         """Types into the question that is open, and accepts."""
         self.place("dialog.text")

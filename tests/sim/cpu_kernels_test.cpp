@@ -7,35 +7,13 @@
 #include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
 #include "bodies.h"
+#include "kernel_cases.h"
 #include "sim/cpu/backend.h"
 
 namespace mercury {
 namespace {
 
-struct Case {
-  cpu::Kernel kernel;
-  Solver solver;
-  std::string_view environment;
-};
-
-std::vector<Case> every_case() {
-  std::vector<Case> cases;
-  for (const cpu::Kernel& kernel : cpu::kernels())
-    for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
-        cases.push_back({kernel, solver, environment});
-  return cases;
-}
-
-std::string name_of_case(const testing::TestParamInfo<Case>& info) {
-  std::string name;
-  for (const std::string_view part : {info.param.kernel.name, name_of(info.param.solver), info.param.environment}) {
-    if (!name.empty()) name += '_';
-    for (const char c : part)
-      if (c != '-') name += c;
-  }
-  return name;
-}
+using test::KernelCase;
 
 // Without some of its springs and faces.
 Robot torn(const Robot& robot, std::uint64_t seed) {
@@ -72,7 +50,7 @@ std::vector<Robot> zoo() {
   return robots;
 }
 
-class CpuKernel : public testing::TestWithParam<Case> {
+class CpuKernel : public testing::TestWithParam<KernelCase> {
  protected:
   Configuration configuration() const {
     return {.solver = GetParam().solver, .environment = environment_named(GetParam().environment), .device = {.threads = 1}};
@@ -121,7 +99,7 @@ class CpuKernel : public testing::TestWithParam<Case> {
     EXPECT_EQ(different, 0u) << which << ", masses that differ, of " << robot.masses.size();
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, CpuKernel, testing::ValuesIn(every_case()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(All, CpuKernel, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
 
 TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
   const std::vector<Robot> robots = zoo();
@@ -208,7 +186,7 @@ class CpuKernelTogether : public CpuKernel {
   std::vector<Robot> robots;
   std::vector<State> starts;
 };
-INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(every_case()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
 
 TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoop) { expect_all_same(); }
 

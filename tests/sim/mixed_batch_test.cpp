@@ -10,6 +10,7 @@
 #include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
 #include "bodies.h"
+#include "kernel_cases.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/party.h"
 
@@ -39,39 +40,12 @@ std::vector<Robot> crowd(std::size_t lanes) {
   return robots;
 }
 
-struct Case {
-  cpu::Kernel kernel;
-  Solver solver;
-  std::string_view environment;
-
-  Configuration configuration() const {
-    return {.solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
-  }
-};
-
-std::vector<Case> every_case() {
-  std::vector<Case> cases;
-  for (const cpu::Kernel& kernel : cpu::kernels())
-    for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
-        cases.push_back({kernel, solver, environment});
-  return cases;
-}
-
-std::string name_of_case(const testing::TestParamInfo<Case>& info) {
-  std::string name;
-  for (const std::string_view part : {info.param.kernel.name, name_of(info.param.solver), info.param.environment}) {
-    if (!name.empty()) name += '_';
-    for (const char c : part)
-      if (c != '-') name += c;
-  }
-  return name;
-}
+using test::KernelCase;
 
 // A backend with robots, its clock, and what became of them.
 class Batch {
  public:
-  Batch(const Case& of, std::span<const Robot> robots, std::int64_t threads = 1)
+  Batch(const KernelCase& of, std::span<const Robot> robots, std::int64_t threads = 1)
       : robots_(robots), backend_(cpu::make_backend({.threads = static_cast<int>(threads)}, of.kernel)), clock_{.dt = of.configuration().dt} {
     std::vector<const Robot*> pointers;
     for (const Robot& robot : robots) pointers.push_back(&robot);
@@ -101,7 +75,7 @@ void expect_same(const State& got, const State& wanted, std::size_t robot) {
   EXPECT_TRUE(got.positions == wanted.positions && got.velocities == wanted.velocities) << "robot " << robot;
 }
 
-class MixedBatch : public testing::TestWithParam<Case> {
+class MixedBatch : public testing::TestWithParam<KernelCase> {
  protected:
   void SetUp() override {
     for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -132,7 +106,7 @@ class MixedBatch : public testing::TestWithParam<Case> {
   std::vector<Robot> robots = crowd(GetParam().kernel.lanes);
   std::vector<State> starts;
 };
-INSTANTIATE_TEST_SUITE_P(All, MixedBatch, testing::ValuesIn(every_case()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(All, MixedBatch, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
 
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoop) { expect_the_plain_loop(); }
 
@@ -196,7 +170,7 @@ TEST_P(MixedBatch, EditsReachTheirRobotOnly) {
       if (is_there(i)) std::ranges::copy(table_of(i, 1 + 0.1f * static_cast<float>(i)), std::back_inserter(tables));
     batch.backend().write_materials(tables);
     batch.step(4);
-    Case other = GetParam();
+    KernelCase other = GetParam();
     other.solver = other.solver == Solver::force ? Solver::xpbd : Solver::force;
     batch.backend().configure(other.configuration());
     batch.step(6);

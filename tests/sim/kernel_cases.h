@@ -1,0 +1,43 @@
+// Every kernel of the CPU with every pair of solver and environment, as parameters of tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/cpu/backend.h"
+
+namespace mercury::test {
+
+struct KernelCase {
+  cpu::Kernel kernel;
+  Solver solver;
+  std::string_view environment;
+
+  Configuration configuration() const {
+    return {.solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
+  }
+};
+
+inline std::vector<KernelCase> every_kernel_case() {
+  std::vector<KernelCase> cases;
+  for (const cpu::Kernel& kernel : cpu::kernels())
+    for (const Solver solver : {Solver::force, Solver::xpbd})
+      for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
+        cases.push_back({kernel, solver, environment});
+  return cases;
+}
+
+inline std::string name_of_kernel_case(const testing::TestParamInfo<KernelCase>& info) {
+  std::string name;
+  for (const std::string_view part : {info.param.kernel.name, name_of(info.param.solver), info.param.environment}) {
+    if (!name.empty()) name += '_';
+    for (const char c : part)
+      if (c != '-') name += c;
+  }
+  return name;
+}
+
+}  // namespace mercury::test
