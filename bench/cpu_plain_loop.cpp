@@ -95,9 +95,10 @@ bool PlainLoop::add_face_forces(const Hooks& hooks) {
   bool fit = true;
   for (const auto& [a, b, c, d] : faces_) {
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
-    const Vec3 to_c = x[c] - x[a], past = hooks.thrice_flow - (v[a] + v[c]);
-    const Vec3 first = hooks.on_face(cross(x[b] - x[a], to_c), past - v[b], drag, lift);
-    const Vec3 second = hooks.on_face(cross(to_c, x[d] - x[a]), past - v[d], drag, lift);
+    const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - hooks.thrice_flow;
+    const auto on_face = [&](Vec3 normal, Vec3 sum) { return hooks.on_face(normal, sum, inner(sum, sum), drag, lift); };
+    const Vec3 first = on_face(cross(to_c, x[b] - x[a]), common + v[b]);
+    const Vec3 second = on_face(cross(x[d] - x[a], to_c), common + v[d]);
     if (!fits(first) || !fits(second)) {
       bad_mass_ = std::min({bad_mass_, std::uint32_t{a}, std::uint32_t{b}, std::uint32_t{c}, std::uint32_t{d}});
       fit = false;

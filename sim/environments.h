@@ -2,7 +2,7 @@
 //   has_faces, has_contacts, has_floor       what a step has to do, known at compile time
 //   on_mass(v)                               force on a unit mass of velocity v [N]
 //   on_face(area_normal, v)                  force on a face, if has_faces
-//   on_face(normal, u, drag, lift), of_sums  the same with fewer multiplications
+//   on_face(normal, u, u.u, drag, lift)      the same with fewer multiplications, for of_sums()
 //   floor(x, displacement)                   resolves the end of a step on positions, if has_floor
 // Vector is a Vec3 or a vector of several (sim/cpu/lanes.h).
 #pragma once
@@ -11,6 +11,11 @@
 #include "sim/springs.h"
 
 namespace mercury {
+
+template <class Vector>
+MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
+  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
+}
 
 struct OceanHooks {
   static constexpr bool has_faces = true, has_contacts = false, has_floor = false;
@@ -31,27 +36,28 @@ struct OceanHooks {
   // `area_normal` is A n; either orientation gives the same force.
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    return on_face(area_normal, flow - velocity, half_density * drag_minus_lift, half_density * lift);
+    const Vector u = flow - velocity;
+    return on_face(area_normal, u, inner(u, u), half_density * drag_minus_lift, half_density * lift);
   }
 
-  // The same for normals and flows (u) of another length, the coefficients scaled to match.
+  // The same for normals and flows (u) of another length, the coefficients scaled to match. Both the other way around,
+  // with coefficients of the other sign, give the same bits.
   template <class Vector, class Real>
-  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real drag, Real lift) {
-    const auto flux = multiply_add(normal.z, u.z, multiply_add(normal.y, u.y, normal.x * u.x));
-    const auto speed_squared = multiply_add(u.z, u.z, multiply_add(u.y, u.y, u.x * u.x));
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, Real drag, Real lift) {
+    const auto flux = inner(normal, u);
     const auto along_flow = drag * absolute(flux);
-    const auto along_normal = lift * select(flux < 0.0f, -speed_squared, speed_squared);
+    const auto along_normal = lift * negated_where(flux < 0.0f, speed_squared);
     return {multiply_add(along_flow, u.x, along_normal * normal.x), multiply_add(along_flow, u.y, along_normal * normal.y),
             multiply_add(along_flow, u.z, along_normal * normal.z)};
   }
 
   // Coefficients for a third of the force times `scale`, of 2 A n and of the sum of u over the face's masses, which need
-  // no multiplication.
+  // no multiplication; both vectors the other way around.
   struct Coefficients {
     float drag = 0, lift = 0;
   };
   Coefficients of_sums(float scale) const {
-    const float common = half_density * scale / 54;
+    const float common = -half_density * scale / 54;
     return {common * drag_minus_lift, common * lift};
   }
 };

@@ -41,6 +41,7 @@ MERCURY_HOST_DEVICE float select(bool condition, float yes, float no) { return c
 MERCURY_HOST_DEVICE std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) {
   return condition ? yes : no;
 }
+MERCURY_HOST_DEVICE float negated_where(bool condition, float a) { return condition ? -a : a; }
 MERCURY_HOST_DEVICE bool all_of(bool a, bool b, bool c) { return a && b && c; }
 
 // 1 / sqrt(a), a > 0; on the device within 2 units in the last place.

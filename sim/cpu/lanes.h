@@ -61,6 +61,14 @@ HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
 HWY_INLINE Lanes inverse(Lanes a) { return Lanes(1.0f) / a; }
 HWY_INLINE Lanes inverse_sqrt(Lanes a) { return inverse(square_root(a)); }
 HWY_INLINE Lanes select(Mask condition, Lanes yes, Lanes no) { return hn::IfThenElse(condition.m, yes.v, no.v); }
+HWY_INLINE Lanes negated_where(Mask condition, Lanes a) {
+  const auto sign = hn::Set(floats, -0.0f);
+#if HWY_TARGET == HWY_AVX3
+  return hn::Vec<decltype(floats)>{_mm512_mask_xor_ps(a.v.raw, condition.m.raw, a.v.raw, sign.raw)};
+#else
+  return hn::Xor(a.v, hn::IfThenElseZero(condition.m, sign));
+#endif
+}
 HWY_INLINE Lanes smaller(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
 HWY_INLINE Lanes larger(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
 HWY_INLINE Mask all_of(Mask a, Mask b, Mask c) { return {hn::And(hn::And(a.m, b.m), c.m)}; }

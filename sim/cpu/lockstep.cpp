@@ -1,6 +1,7 @@
 #include "sim/cpu/lockstep.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace mercury::cpu {
@@ -35,6 +36,9 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   group.lanes = bodies[members.front()].places.lanes;
   group.build = std::move(assembly.build);
   group.bodies = std::move(members);
+  for (const std::uint32_t partner : group.build->partners) group.partners.push_back(group.start_of(partner));
+  for (const auto& [a, b, c, d] : group.build->faces)
+    group.faces.push_back({group.start_of(a), group.start_of(b), group.start_of(c), group.start_of(d)});
   for (std::size_t lane = 0; lane < group.lanes; ++lane) group.seatings.push_back(assembly.seatings[member_of(group, lane)]);
   const std::size_t slots = group.build->partners.size() * group.lanes, seats = group.build->joints.size() * group.lanes;
   group.rest_length.resize(slots);
@@ -44,7 +48,8 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   group.face_lift.resize(group.build->faces.size() * group.lanes);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * seats);
   group.sums.resize(3 * seats);
-  for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance})
+  for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance,
+                                   &group.most_force, &group.squared_diagonal})
     of_lanes->resize(group.lanes);
   std::vector<bool> taken(seats);
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
@@ -79,12 +84,14 @@ void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& ho
       group.hardness[slot] = body.hardness[s];
       group.factor[slot] = factors[member][spring.material];
     }
-    if (ocean != nullptr)
+    if (ocean != nullptr) {
+      const auto [drag, lift] = ocean->of_sums(body.scale.force);
+      group.most_force[lane] = std::abs(drag) + std::abs(lift);
       for (const std::uint32_t pair : seating.faces) {
-        const auto [drag, lift] = ocean->of_sums(body.scale.force);
         group.face_drag[pair * group.lanes + lane] = drag;
         group.face_lift[pair * group.lanes + lane] = lift;
       }
+    }
     group.force_scale[lane] = body.scale.force;
     group.correction_scale[lane] = body.scale.correction;
     group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();
@@ -106,7 +113,7 @@ void load(Lockstep& group, std::span<Body> bodies) {
   }
   for (std::size_t lane = 0; lane < group.bodies.size(); ++lane)
     group.members[lane]->residence = {&group, group.x.data() + lane, group.v.data() + lane, group.seatings[lane]->seats.data(), group.lanes};
-  group.compact = false;
+  std::ranges::fill(group.squared_diagonal, std::numeric_limits<float>::infinity());
   group.steps_since_settled = std::numeric_limits<std::int64_t>::max() / 2;
   if (group.lists != present_lists(group)) group.lists.clear();
 }
@@ -192,7 +199,6 @@ void return_to_checkpoint(Lockstep& group) {
   std::ranges::copy(group.checkpoint_x, group.x.begin());
   std::ranges::copy(group.checkpoint_v, group.v.begin());
   std::ranges::fill(group.sums, 0);
-  group.compact = false;
 }
 
 }  // namespace mercury::cpu

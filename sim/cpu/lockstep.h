@@ -21,6 +21,12 @@ struct Lockstep {
   std::shared_ptr<const Build> build;
   std::size_t lanes = 1;
   std::vector<std::size_t> bodies;  // one a lane; lanes that are left do what the first does
+  // Of the build, with the place where a seat's values start in x instead of its number.
+  std::vector<std::uint32_t> partners;
+  struct Corners {
+    std::uint32_t a = 0, b = 0, c = 0, d = 0;
+  };
+  std::vector<Corners> faces;
   // Of every lane.
   std::vector<std::shared_ptr<const Seating>> seatings;
   std::vector<Body*> members;       // from load() on
@@ -58,10 +64,12 @@ struct Lockstep {
   Aligned<float> force_scale, correction_scale;  // FixedPointScale
   Aligned<float> squared_stretch_limit;
   Aligned<float> contact_distance;
-  bool compact = false;  // no two masses of a robot are farther apart than its springs may be long
+  Aligned<float> most_force;                     // of a face, less than this times |2 A n| |sum of velocities|^2 [units]
+  Aligned<float> squared_diagonal;               // of a box around all of a lane's masses [m2]; infinite if not known
 
   bool resident() const { return !members.empty() && members.front()->residence.group == this; }
-  std::size_t first_of(std::uint32_t seat, std::size_t lane) const { return 3 * lanes * seat + lane; }
+  std::uint32_t start_of(std::uint32_t seat) const { return static_cast<std::uint32_t>(3 * lanes) * seat; }
+  std::size_t first_of(std::uint32_t seat, std::size_t lane) const { return start_of(seat) + lane; }
 };
 
 // A group of 1 to as many bodies as they have lanes, without laws or state.

@@ -24,7 +24,8 @@ class LockstepStepper {
     if (!group_.pulls.empty()) add_pulls(group_);
     if constexpr (Hooks::has_contacts)
       if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) touch();
-    if (!add_faces()) return false;
+    if constexpr (Hooks::has_faces)
+      if (!add_faces()) return false;
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
   }
 
@@ -32,7 +33,7 @@ class LockstepStepper {
   // Algorithm 1. A mass ends its step as soon as its own springs are done: those that it is partner in came before.
   bool step_force(const float* factors) {
     Box box;
-    const bool sound = add_springs(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+    const bool sound = add_springs(factors, compact(load_aligned(group_.squared_diagonal.data())), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
       Lanes3 v = accelerated(v0, per_force_ * float_of(sum) + hooks_.on_mass(v0), constants_);
       Lanes3 x = multiply_add(constants_.dt, v, x0);
@@ -40,31 +41,32 @@ class LockstepStepper {
       keep(x, v, mass);
       box.add(x);
     });
-    group_.compact = within_stretch_limit(box);
-    return sound && are_within_reach();
+    store_aligned(squared_diagonal(box), group_.squared_diagonal.data());
+    return sound && within_reach(box);
   }
 
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
-    Box box;
+    Box predicted;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
       const Lanes3 v0 = at(v_, mass);
       const Lanes3 v = accelerated(v0, per_force_ * float_of(take(mass)) + hooks_.on_mass(v0), constants_);
       const Lanes3 x = multiply_add(constants_.dt, v, at(x_, mass));
       keep(x, v, mass);
-      box.add(x);
+      predicted.add(x);
     }
-    group_.compact = within_stretch_limit(box);
-    if (!are_within_reach()) return false;
-    const bool sound = add_springs(factors, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+    if (!within_reach(predicted)) return false;
+    Box box;
+    const bool sound = add_springs(factors, compact(squared_diagonal(predicted)), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 correction = per_correction_ * float_of(sum);
       Lanes3 x = at(x_, mass) + correction;
       Lanes3 v = multiply_add(constants_.inverse_dt, correction, at(v_, mass));
       end_step(x, v, hooks_, constants_);
       keep(x, v, mass);
+      box.add(x);
     });
-    group_.compact = false;
-    return sound && are_within_reach();
+    store_aligned(squared_diagonal(box), group_.squared_diagonal.data());
+    return sound && within_reach(box);
   }
 
   // Adds the forces of contacts, and sees to it that near pairs are listed.
@@ -94,33 +96,54 @@ class LockstepStepper {
     return farthest_squared > reach * reach;
   }
 
-  // False if a face's force is out of range.
+  // False if a face's force is out of range. That is looked for only where no bound excludes it.
   bool add_faces() {
-    if constexpr (Hooks::has_faces) {
-      const float *drag = group_.face_drag.data(), *lift = group_.face_lift.data();
-      const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
-      Integers largest_force = no_integers();
-      for (const auto& [a, b, c, d] : group_.build->faces) {
-        const Lanes3 xa = at(x_, a), past = thrice_flow - (at(v_, a) + at(v_, c));
-        const FaceForces f = face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x_, b) - xa, at(x_, c) - xa,
-                                                at(x_, d) - xa, past - at(v_, b), past - at(v_, d));
-        largest_force = larger(largest_force, f.largest_component());
-        const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
-        add_to(a, on_both);
-        add_to(b, on_b);
-        add_to(c, on_both);
-        add_to(d, on_d);
-        drag += lane_count;
-        lift += lane_count;
-      }
-      return largest(largest_force) < mercury::bits_of(face_limit_units);
+    const bool still = hooks_.thrice_flow == Vec3{};
+    const Lanes fastest_squared = still ? add_face_forces<true>() : add_face_forces<false>();
+    const Lanes most = load_aligned(group_.most_force.data()) * load_aligned(group_.squared_diagonal.data()) * fastest_squared;
+    return every(most < 0.5f * face_limit_units) || face_forces_fit();
+  }
+  // Returns the greatest square of the sum of a face's velocities.
+  template <bool still>
+  Lanes add_face_forces() {
+    std::int32_t* const sums = sums_;
+    Lanes fastest_squared = 0.0f;
+    for_each_pair_of_faces<still>([&](const Lockstep::Corners& corners, const FaceForces& f) HWY_ATTR {
+      fastest_squared = larger(fastest_squared, f.fastest_squared);
+      const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
+      add_to(sums + corners.a, on_both);
+      add_to(sums + corners.b, on_b);
+      add_to(sums + corners.c, on_both);
+      add_to(sums + corners.d, on_d);
+    });
+    return fastest_squared;
+  }
+  HWY_NOINLINE bool face_forces_fit() const {
+    Integers largest_force = no_integers();
+    for_each_pair_of_faces<false>([&](const Lockstep::Corners&, const FaceForces& f)
+                                      HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
+    return largest(largest_force) < mercury::bits_of(face_limit_units);
+  }
+  // Calls visit(corners, FaceForces). `still`: the water does not flow.
+  template <bool still, class Visit>
+  HWY_INLINE void for_each_pair_of_faces(const Visit& visit) const {
+    const float *const x = x_, *const v = v_, *drag = group_.face_drag.data(), *lift = group_.face_lift.data();
+    const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
+    for (const Lockstep::Corners& corners : group_.faces) {
+      const auto& [a, b, c, d] = corners;
+      const Lanes3 xa = at(x + a);
+      Lanes3 common = at(v + a) + at(v + c);
+      if constexpr (!still) common = common - thrice_flow;
+      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x + b) - xa, at(x + c) - xa, at(x + d) - xa,
+                                        common + at(v + b), common + at(v + d)));
+      drag += lane_count;
+      lift += lane_count;
     }
-    return true;
   }
 
   template <class Finish>
-  bool add_springs(const float* factors, const Finish& finish) {
-    return group_.compact ? add_springs<false>(factors, finish) : add_springs<true>(factors, finish);
+  bool add_springs(const float* factors, bool compact, const Finish& finish) {
+    return compact ? add_springs<false>(factors, finish) : add_springs<true>(factors, finish);
   }
 
   // Calls finish(mass, sum of all that acts on it) for each mass. False if a spring is beyond the stretch limit, which
@@ -128,15 +151,17 @@ class LockstepStepper {
   template <bool checked, class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
     SlotLaw<checked> law{factors, group_.rest_length.data(), group_.hardness.data(), group_.factor.data(), 0.0f};
-    const std::uint32_t* partner = group_.build->partners.data();
+    const float* const x = x_;
+    std::int32_t* const sums = sums_;
+    const std::uint32_t* partner = group_.partners.data();
     std::size_t mass = 0;
     for (const auto& [owned, slots] : joints_) {
       const Lanes3 own = at(x_, mass);
       Integers3 sum{no_integers(), no_integers(), no_integers()};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
-        const Integers3 f = law(own - at(x_, *partner));
+        const Integers3 f = law(own - at(x + *partner));
         sum = sum - f;
-        add_to(*partner, f);
+        add_to(sums + *partner, f);
       }
       // The sum holds rounding_magic_bits once for each slot that the seat is partner in, less those that it owns.
       const Integers magic = integers_of(Words((2 * owned - slots) * std::uint32_t{rounding_magic_bits}));
@@ -146,32 +171,33 @@ class LockstepStepper {
     return !checked || every(law.longest <= squared_stretch_limit_);
   }
 
+  // x, y and z of a seat start so far apart.
   template <class T>
-  static HWY_INLINE Pointers3<T> lanes_of(T* values, std::size_t mass) {
-    T* const first = values + 3 * lane_count * mass;
-    return {first, first + lane_count, first + 2 * lane_count};
+  static HWY_INLINE Pointers3<T> lanes_of(T* first) { return {first, first + lane_count, first + 2 * lane_count}; }
+  static HWY_INLINE Lanes3 at(const float* first) {
+    return {load_aligned(first), load_aligned(first + lane_count), load_aligned(first + 2 * lane_count)};
   }
-  static HWY_INLINE Lanes3 at(float* values, std::size_t mass) { return load_aligned(lanes_of(values, mass), 0); }
-  HWY_INLINE void add_to(std::size_t mass, Integers3 a) const {
-    const Pointers3<std::int32_t> sum = lanes_of(sums_, mass);
+  static HWY_INLINE void add_to(std::int32_t* first, Integers3 a) {
+    const Pointers3<std::int32_t> sum = lanes_of(first);
     store_aligned(load_aligned(sum, 0) + a, sum, 0);
   }
+  static HWY_INLINE Lanes3 at(const float* values, std::size_t mass) { return at(values + 3 * lane_count * mass); }
   HWY_INLINE Integers3 take(std::size_t mass) const {
-    const Pointers3<std::int32_t> from = lanes_of(sums_, mass);
+    const Pointers3<std::int32_t> from = lanes_of(sums_ + 3 * lane_count * mass);
     const Integers3 sum = load_aligned(from, 0);
     store_aligned(Integers3{no_integers(), no_integers(), no_integers()}, from, 0);
     return sum;
   }
-  HWY_INLINE void keep(Lanes3 x, Lanes3 v, std::size_t mass) {
-    farthest_ = larger(farthest_, larger(magnitude(x.x), larger(magnitude(x.y), magnitude(x.z))));
-    store_aligned(x, lanes_of(x_, mass), 0);
-    store_aligned(v, lanes_of(v_, mass), 0);
+  HWY_INLINE void keep(Lanes3 x, Lanes3 v, std::size_t mass) const {
+    store_aligned(x, lanes_of(x_ + 3 * lane_count * mass), 0);
+    store_aligned(v, lanes_of(v_ + 3 * lane_count * mass), 0);
   }
-  // Whether all masses kept were; NaN is of the greatest magnitude.
-  bool are_within_reach() {
-    return largest(std::exchange(farthest_, no_integers())) <= mercury::bits_of(mercury::farthest);
-  }
-  bool within_stretch_limit(const Box& box) const { return every(squared_length(box.high - box.low) <= squared_stretch_limit_); }
+  static Lanes squared_diagonal(const Box& box) { return squared_length(box.high - box.low); }
+  // Whether all masses in the box are. None is NaN: what acts on masses is made of integers, and a velocity that a robot
+  // comes with is finite (ready()).
+  static bool within_reach(const Box& box) { return every(mercury::within_reach(box.low) & mercury::within_reach(box.high)); }
+  // Whether no two masses of a robot are farther apart than its springs may be long.
+  bool compact(Lanes squared_diagonal) const { return every(squared_diagonal <= squared_stretch_limit_); }
 
   Lockstep& group_;
   float *const x_, *const v_;
@@ -181,7 +207,6 @@ class LockstepStepper {
   const StepConstants constants_;
   const float contact_stiffness_;
   const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
-  Integers farthest_ = no_integers();  // magnitude of a coordinate since a check
 };
 
 // Kernel::advance_together.

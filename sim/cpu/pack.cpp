@@ -1,6 +1,7 @@
 #include "sim/cpu/pack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "sim/cpu/party.h"
@@ -71,11 +72,21 @@ void take_laws(Pack& pack, std::span<Body> bodies, const AnyHooks& hooks) {
   pack.laws_are_stale = false;
 }
 
+// Whether no velocity is so large that one more step could make a number of it that is none (or is none already).
+bool velocities_are_tame(const Body& body) {
+  constexpr float most = 1e30f;  // [m/s]
+  for (std::size_t mass = 0; mass < body.places.of_mass.size(); ++mass) {
+    const Vec3 v = body.velocity(mass);
+    if (!(std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most)) return false;
+  }
+  return true;
+}
+
 // Whether all of a group can be stepped in lockstep now.
 bool ready(const Lockstep& group, std::span<Body> bodies) {
   return std::ranges::all_of(group.bodies, [&](std::size_t i) {
     Body& body = bodies[i];
-    return body.status.exploded_step < 0 && (!body.written || accept_state(body));
+    return body.status.exploded_step < 0 && (!body.written || (velocities_are_tame(body) && accept_state(body)));
   });
 }
 

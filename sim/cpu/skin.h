@@ -10,6 +10,7 @@ namespace mercury::cpu::HWY_NAMESPACE {
 // The forces on two faces (a, b, c) and (a, c, d), a third of each, in units.
 struct FaceForces {
   Lanes3 first, second;
+  Lanes fastest_squared;  // the larger of the squares of what both velocities sum up to
 
   HWY_INLINE Integers largest_component() const {
     const auto of = [](Lanes3 f) HWY_ATTR { return larger(magnitude(f.x), larger(magnitude(f.y), magnitude(f.z))); };
@@ -17,11 +18,13 @@ struct FaceForces {
   }
 };
 
-// The ways from a to the other corners, and each face's sum of what flows past its corners; of_sums() by `drag`, `lift`.
+// The ways from a to the other corners, and the sum of the velocities of each face's corners relative to the water;
+// of_sums() by `drag`, `lift`.
 template <class Hooks>
-HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 past_first,
-                                  Lanes3 past_second) {
-  return {Hooks::on_face(cross(to_b, to_c), past_first, drag, lift), Hooks::on_face(cross(to_c, to_d), past_second, drag, lift)};
+HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 first, Lanes3 second) {
+  const Lanes first_squared = inner(first, first), second_squared = inner(second, second);
+  return {Hooks::on_face(cross(to_c, to_b), first, first_squared, drag, lift),
+          Hooks::on_face(cross(to_d, to_c), second, second_squared, drag, lift), larger(first_squared, second_squared)};
 }
 
 template <class Hooks>
@@ -61,9 +64,9 @@ class Skin {
   // Of pairs of faces, whose corners stand one after the other.
   HWY_INLINE FaceForces forces(const std::uint32_t* corner) const {
     const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count, *const d = c + lane_count;
-    const Rows xa = x(a), past = thrice_flow_ - (v(a) + v(c));
+    const Rows xa = x(a), common = v(a) + v(c) - thrice_flow_;
     return face_forces<Hooks>(coefficients_.drag, coefficients_.lift, vectors(x(b) - xa), vectors(x(c) - xa),
-                              vectors(x(d) - xa), vectors(past - v(b)), vectors(past - v(d)));
+                              vectors(x(d) - xa), vectors(common + v(b)), vectors(common + v(d)));
   }
   HWY_INLINE Rows x(const std::uint32_t* corner) const { return collect(arrays_.x_rows, corner); }
   HWY_INLINE Rows v(const std::uint32_t* corner) const { return collect(arrays_.v_rows, corner); }

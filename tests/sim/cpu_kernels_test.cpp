@@ -52,8 +52,11 @@ std::vector<Robot> zoo() {
 
 class CpuKernel : public testing::TestWithParam<KernelCase> {
  protected:
+  Vec3 flow;
   Configuration configuration() const {
-    return {.solver = GetParam().solver, .environment = environment_named(GetParam().environment), .device = {.threads = 1}};
+    KernelCase of = GetParam();
+    of.flow = flow;
+    return of.configuration();
   }
 
   // The state after steps that are cut into calls, and what became of the robot.
@@ -109,6 +112,12 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
     const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
     expect_same(robots[i], start, pulls, 500, "robot " + std::to_string(i));
   }
+}
+
+TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopInACurrent) {
+  flow = {0.3f, -0.2f, 1.5f};
+  const std::vector<Robot> robots = zoo();
+  for (const std::size_t i : {0u, 3u, 5u}) expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
 }
 
 // 30 m/s: the list of near masses is made anew again and again, and the robots go far.

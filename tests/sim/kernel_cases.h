@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "sim/cpu/backend.h"
@@ -15,9 +16,13 @@ struct KernelCase {
   cpu::Kernel kernel;
   Solver solver;
   std::string_view environment;
+  Vec3 flow{};  // of the water, if there is any
 
   Configuration configuration() const {
-    return {.solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
+    Configuration configuration{.solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
+    if (Ocean* const ocean = std::get_if<Ocean>(&configuration.environment)) ocean->flow = flow;
+    if (OceanSimple* const simple = std::get_if<OceanSimple>(&configuration.environment)) simple->flow = flow;
+    return configuration;
   }
 };
 
@@ -26,7 +31,7 @@ inline std::vector<KernelCase> every_kernel_case() {
   for (const cpu::Kernel& kernel : cpu::kernels())
     for (const Solver solver : {Solver::force, Solver::xpbd})
       for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
-        cases.push_back({kernel, solver, environment});
+        cases.push_back({kernel, solver, environment, {}});
   return cases;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <set>
 
@@ -85,13 +86,15 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
   }
 
   // All in one batch, calls of 1 to 45 steps, beside the plain loop.
-  void expect_the_plain_loop(std::span<const Pull> pulls = {}) const {
-    Batch batch(GetParam(), robots);
+  void expect_the_plain_loop(std::span<const Pull> pulls = {}, Vec3 flow = {}) const {
+    KernelCase of = GetParam();
+    of.flow = flow;
+    Batch batch(of, robots);
     for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
     batch.backend().set_pulls(pulls);
     for (const std::int64_t call : {1, 2, 45, 7, 40, 1, 34}) batch.step(call);
     for (std::size_t i = 0; i < robots.size(); ++i) {
-      bench::PlainLoop loop(robots[i], GetParam().configuration());
+      bench::PlainLoop loop(robots[i], of.configuration());
       loop.set_state(starts[i]);
       std::vector<Pull> own;
       std::ranges::copy_if(pulls, std::back_inserter(own), [&](const Pull& pull) { return pull.robot == i; });
@@ -116,6 +119,8 @@ TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopAtSpeed) {
   expect_the_plain_loop();
 }
 
+TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopInACurrent) { expect_the_plain_loop({}, {0.3f, -0.2f, 1.5f}); }
+
 TEST_P(MixedBatch, WhatPullsARobotPullsNoOther) {
   const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}, {0, 5, {0.3f, 0.1f, 0.4f}, 2}, {7, 3, {-1, 0, 0.5f}, 50}, {9, 1, {1e6f, 0, 0}, 1e6f}};
   expect_the_plain_loop(pulls);
@@ -128,6 +133,21 @@ TEST_P(MixedBatch, AnExplosionIsItsRobotsOwn) {
   for (Material& material : robots[3].materials) material.stiffness *= 2e4f;  // too stiff for the time step
   robots[3].materials[air] = {};
   expect_the_plain_loop();
+}
+
+TEST_P(MixedBatch, AnInfiniteVelocityIsItsRobotsOwn) {
+  starts[2].velocities[5].x = std::numeric_limits<float>::infinity();
+  starts[7].velocities[3] += Vec3{0, -1e36f, 0};
+  expect_the_plain_loop();
+}
+
+// Compared as statuses, for a state that holds NaN differs from itself.
+TEST_P(MixedBatch, AVelocityThatIsNoNumberExplodesItsRobotOnly) {
+  starts[2].velocities[5].y = std::numeric_limits<float>::quiet_NaN();
+  Batch batch(GetParam(), robots);
+  for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
+  for (const std::int64_t call : {1, 40}) batch.step(call);
+  for (std::size_t i = 0; i < robots.size(); ++i) EXPECT_EQ(batch.backend().status(i).exploded_step, i == 2 ? 0 : -1) << i;
 }
 
 // Everything that can be done to a robot, done to some of the batch, and to each of them alone.
