@@ -1,0 +1,39 @@
+#include <array>
+
+#include "tests/render/triangle.h"
+
+namespace mercury::render {
+namespace {
+
+using Eigen::Vector2f;
+
+class AnnotationTest : public Offscreen {};
+
+TEST_F(AnnotationTest, ArrowsAndPathsAreDrawnWhereTheyPoint) {
+  Renderer renderer = make_renderer();
+  const Mesh mesh = triangle();
+  renderer.set_bodies(std::array{mesh.body()});
+  Scene scene = plain();
+  scene.show.skin = false;
+  const Image empty = drawn(renderer, scene);
+  const std::array arrows{Arrow{0, {-1, 0, 0}, {1.5f, 0, 0}, rgb(0xff8000)}};
+  scene.arrows = arrows;
+  const Image arrow = drawn(renderer, scene);
+  const Vector2f on = pinhole(front(), {-0.3f, 0, 0}, 160, 120), off = pinhole(front(), {0.7f, 0, 0}, 160, 120);
+  EXPECT_GT(largest_difference(pixel(arrow, int(on.x()), int(on.y())), pixel(empty, int(on.x()), int(on.y()))), 60);
+  EXPECT_LE(largest_difference(pixel(arrow, int(off.x()), int(off.y())), pixel(empty, int(off.x()), int(off.y()))), 1);
+  const std::array<float, 6> points{-1, 0, 0.5f, 1, 0, 0.5f};
+  const std::array paths{Path{0, points, rgb(0x40ff40)}};
+  scene.arrows = {};
+  scene.paths = paths;
+  const Image path = drawn(renderer, scene);
+  int changed = 0;
+  const Vector2f end = pinhole(front(), {0.95f, 0, 0.5f}, 160, 120);
+  for (int dy = -2; dy <= 2; ++dy)
+    changed += largest_difference(pixel(path, int(end.x()), int(end.y()) + dy),
+                                  pixel(empty, int(end.x()), int(end.y()) + dy)) > 20;
+  EXPECT_GT(changed, 0);
+}
+
+}  // namespace
+}  // namespace mercury::render
