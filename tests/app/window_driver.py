@@ -22,7 +22,7 @@ class Display:
     def __init__(self, width=1280, height=720):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as numbers:
@@ -163,7 +163,6 @@ class Window:
         return next((event["input"] for event in reversed(self.events) if event["event"] == "frame"), 0)
 
     def said(self):
-        self.messages.flush()
         return Path(self.messages.name).read_text()
 
     # What is done.

@@ -58,7 +58,8 @@ class WindowTest(unittest.TestCase):
         return window
 
     def finish(self, window):
-        self.assertEqual(window.close(), 0)
+        status = window.close()
+        self.assertEqual(status, 0, window.said())
         self.assertEqual(window.complaints(), [])
 
     def small(self, *arguments):

@@ -33,7 +33,9 @@ class Display {
     int ends[2];
     if (pipe(ends) != 0) return;
     const std::string end = std::to_string(ends[1]);
-    std::array<const char*, 8> arguments{"Xvfb", "-displayfd", end.c_str(), "-screen", "0", "640x480x24", "-nolisten", "tcp"};
+    // Without -noreset it starts over whenever a test ends, and refuses the next one meanwhile.
+    std::array<const char*, 9> arguments{"Xvfb", "-displayfd", end.c_str(), "-screen", "0", "640x480x24",
+                                         "-nolisten", "tcp", "-noreset"};
     std::vector<char*> argv;
     for (const char* argument : arguments) argv.push_back(const_cast<char*>(argument));
     argv.push_back(nullptr);
