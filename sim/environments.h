@@ -1,5 +1,5 @@
 // The three environments as the solvers see them. A new one is one struct with these hooks:
-//   has_faces, has_contacts, has_floor       what a step has to do, known at compile time
+//   has_faces, has_contacts, has_floor, calm what a step has to do, known at compile time
 //   on_mass(v)                               force on a unit mass of velocity v [N]
 //   on_face(area_normal, v)                  force on a face, if has_faces
 //   on_face(normal, u, u.u, drag, lift)      the same with fewer multiplications, for of_sums()
@@ -18,7 +18,7 @@ MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
 }
 
 struct OceanHooks {
-  static constexpr bool has_faces = true, has_contacts = false, has_floor = false;
+  static constexpr bool has_faces = true, has_contacts = false, has_floor = false, calm = false;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0;
 
@@ -62,8 +62,14 @@ struct OceanHooks {
   }
 };
 
+// Water that does not flow, without gravity: nothing acts on a mass but what acts on its faces.
+struct CalmOceanHooks : OceanHooks {
+  static constexpr bool calm = true;
+  static bool fits(const OceanHooks& hooks) { return hooks.flow == Vec3{} && hooks.gravity == Vec3{}; }
+};
+
 struct OceanSimpleHooks {
-  static constexpr bool has_faces = false, has_contacts = false, has_floor = false;
+  static constexpr bool has_faces = false, has_contacts = false, has_floor = false, calm = false;
   Vec3 gravity, flow;
   float drag = 0;
 
@@ -78,7 +84,7 @@ struct OceanSimpleHooks {
 };
 
 struct LandHooks {
-  static constexpr bool has_faces = false, has_contacts = true, has_floor = true;
+  static constexpr bool has_faces = false, has_contacts = true, has_floor = true, calm = false;
   Vec3 gravity;
   float friction = 0;
 

@@ -109,6 +109,7 @@ HWY_INLINE Integers round_to_int(Lanes a) {
 }
 HWY_INLINE Lanes float_of(Integers a) { return hn::ConvertTo(floats, a.v); }
 HWY_INLINE Integers integers_of(Words a) { return {hn::BitCast(integers, a.v)}; }
+HWY_INLINE Integers every_one(std::int32_t value) { return {hn::Set(integers, value)}; }
 HWY_INLINE Integers no_integers() { return {hn::Zero(integers)}; }
 
 HWY_INLINE Words operator+(Words a, Words b) { return hn::Add(a.v, b.v); }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/fixed_point.h"
+
 namespace mercury::cpu {
 namespace {
 
@@ -36,6 +38,9 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   group.lanes = bodies[members.front()].places.lanes;
   group.build = std::move(assembly.build);
   group.bodies = std::move(members);
+  // A sum holds rounding_magic_bits once for each slot that the seat is partner in, less those that it owns.
+  for (const auto& [owned, slots] : group.build->joints)
+    group.joints.push_back({owned, static_cast<std::int32_t>((2 * owned - slots) * std::uint32_t{rounding_magic_bits})});
   for (const std::uint32_t partner : group.build->partners) group.partners.push_back(group.start_of(partner));
   for (const auto& [a, b, c, d] : group.build->faces)
     group.faces.push_back({group.start_of(a), group.start_of(b), group.start_of(c), group.start_of(d)});

@@ -23,6 +23,11 @@ struct Lockstep {
   std::vector<std::size_t> bodies;  // one a lane; lanes that are left do what the first does
   // Of the build, with the place where a seat's values start in x instead of its number.
   std::vector<std::uint32_t> partners;
+  struct Joint {
+    std::uint32_t owned = 0;
+    std::int32_t bias = 0;  // takes out again what the integers of the springs carry (sim/fixed_point.h)
+  };
+  std::vector<Joint> joints;
   struct Corners {
     std::uint32_t a = 0, b = 0, c = 0, d = 0;
   };

@@ -14,7 +14,7 @@ template <class Hooks>
 class LockstepStepper {
  public:
   LockstepStepper(Lockstep& group, const Hooks& hooks, const StepSetting& setting)
-      : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), joints_(group.build->joints),
+      : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), joints_(group.joints),
         hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness), force_scale_(load_aligned(group.force_scale.data())),
         correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
         per_correction_(inverse(correction_scale_)), squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
@@ -35,8 +35,7 @@ class LockstepStepper {
     Box box;
     const bool sound = add_springs(factors, compact(load_aligned(group_.squared_diagonal.data())), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
-      Lanes3 v = accelerated(v0, per_force_ * float_of(sum) + hooks_.on_mass(v0), constants_);
-      Lanes3 x = multiply_add(constants_.dt, v, x0);
+      Lanes3 v = accelerated(v0, sum), x = multiply_add(constants_.dt, v, x0);
       end_step(x, v, hooks_, constants_);
       keep(x, v, mass);
       box.add(x);
@@ -49,8 +48,7 @@ class LockstepStepper {
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
-      const Lanes3 v0 = at(v_, mass);
-      const Lanes3 v = accelerated(v0, per_force_ * float_of(take(mass)) + hooks_.on_mass(v0), constants_);
+      const Lanes3 v = accelerated(at(v_, mass), take(mass));
       const Lanes3 x = multiply_add(constants_.dt, v, at(x_, mass));
       keep(x, v, mass);
       predicted.add(x);
@@ -67,6 +65,12 @@ class LockstepStepper {
     });
     store_aligned(squared_diagonal(box), group_.squared_diagonal.data());
     return sound && within_reach(box);
+  }
+
+  // The velocity before damping. Units in a newton are a power of two, so that it does not matter when they are taken out.
+  HWY_INLINE Lanes3 accelerated(Lanes3 v, Integers3 sum) const {
+    if constexpr (Hooks::calm) return multiply_add(constants_.dt * per_force_, float_of(sum), v);
+    return mercury::accelerated(v, per_force_ * float_of(sum) + hooks_.on_mass(v), constants_);
   }
 
   // Adds the forces of contacts, and sees to it that near pairs are listed.
@@ -98,17 +102,15 @@ class LockstepStepper {
 
   // False if a face's force is out of range. That is looked for only where no bound excludes it.
   bool add_faces() {
-    const bool still = hooks_.thrice_flow == Vec3{};
-    const Lanes fastest_squared = still ? add_face_forces<true>() : add_face_forces<false>();
+    const Lanes fastest_squared = add_face_forces();
     const Lanes most = load_aligned(group_.most_force.data()) * load_aligned(group_.squared_diagonal.data()) * fastest_squared;
     return every(most < 0.5f * face_limit_units) || face_forces_fit();
   }
   // Returns the greatest square of the sum of a face's velocities.
-  template <bool still>
   Lanes add_face_forces() {
     std::int32_t* const sums = sums_;
     Lanes fastest_squared = 0.0f;
-    for_each_pair_of_faces<still>([&](const Lockstep::Corners& corners, const FaceForces& f) HWY_ATTR {
+    for_each_pair_of_faces([&](const Lockstep::Corners& corners, const FaceForces& f) HWY_ATTR {
       fastest_squared = larger(fastest_squared, f.fastest_squared);
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
       add_to(sums + corners.a, on_both);
@@ -120,12 +122,12 @@ class LockstepStepper {
   }
   HWY_NOINLINE bool face_forces_fit() const {
     Integers largest_force = no_integers();
-    for_each_pair_of_faces<false>([&](const Lockstep::Corners&, const FaceForces& f)
+    for_each_pair_of_faces([&](const Lockstep::Corners&, const FaceForces& f)
                                       HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
     return largest(largest_force) < mercury::bits_of(face_limit_units);
   }
-  // Calls visit(corners, FaceForces). `still`: the water does not flow.
-  template <bool still, class Visit>
+  // Calls visit(corners, FaceForces).
+  template <class Visit>
   HWY_INLINE void for_each_pair_of_faces(const Visit& visit) const {
     const float *const x = x_, *const v = v_, *drag = group_.face_drag.data(), *lift = group_.face_lift.data();
     const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
@@ -133,7 +135,7 @@ class LockstepStepper {
       const auto& [a, b, c, d] = corners;
       const Lanes3 xa = at(x + a);
       Lanes3 common = at(v + a) + at(v + c);
-      if constexpr (!still) common = common - thrice_flow;
+      if constexpr (!Hooks::calm) common = common - thrice_flow;
       visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x + b) - xa, at(x + c) - xa, at(x + d) - xa,
                                         common + at(v + b), common + at(v + d)));
       drag += lane_count;
@@ -155,17 +157,16 @@ class LockstepStepper {
     std::int32_t* const sums = sums_;
     const std::uint32_t* partner = group_.partners.data();
     std::size_t mass = 0;
-    for (const auto& [owned, slots] : joints_) {
+    for (const auto& [owned, bias] : joints_) {
       const Lanes3 own = at(x_, mass);
-      Integers3 sum{no_integers(), no_integers(), no_integers()};
+      const Integers none = every_one(bias);
+      Integers3 sum{none, none, none};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
         const Integers3 f = law(own - at(x + *partner));
         sum = sum - f;
         add_to(sums + *partner, f);
       }
-      // The sum holds rounding_magic_bits once for each slot that the seat is partner in, less those that it owns.
-      const Integers magic = integers_of(Words((2 * owned - slots) * std::uint32_t{rounding_magic_bits}));
-      finish(mass, take(mass) + sum + Integers3{magic, magic, magic});
+      finish(mass, take(mass) + sum);
       ++mass;
     }
     return !checked || every(law.longest <= squared_stretch_limit_);
@@ -202,23 +203,28 @@ class LockstepStepper {
   Lockstep& group_;
   float *const x_, *const v_;
   std::int32_t* const sums_;
-  const std::vector<Build::Joint>& joints_;
+  const std::vector<Lockstep::Joint>& joints_;
   const Hooks hooks_;
   const StepConstants constants_;
   const float contact_stiffness_;
   const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
 };
 
+template <class Hooks>
+bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
+  LockstepStepper stepper(group, hooks, setting);
+  for (std::int64_t n = 0; n < steps; ++n)
+    if (!stepper.step(setting.solver, factors.of_step(n))) return false;
+  return true;
+}
+
 // Kernel::advance_together.
 inline bool advance_together(Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  return std::visit(
-      [&](const auto& hooks) {
-        LockstepStepper stepper(group, hooks, setting);
-        for (std::int64_t n = 0; n < steps; ++n)
-          if (!stepper.step(setting.solver, factors.of_step(n))) return false;
-        return true;
-      },
-      setting.hooks);
+  constexpr float least_dt = 1e-6f;  // [s]; with much smaller ones a product of it with a unit would not be exact
+  const auto* const ocean = std::get_if<OceanHooks>(&setting.hooks);
+  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt)
+    return advance_with(CalmOceanHooks{*ocean}, group, setting, factors, steps);
+  return std::visit([&](const auto& hooks) { return advance_with(hooks, group, setting, factors, steps); }, setting.hooks);
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE
