@@ -161,18 +161,18 @@ Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, G
   return {std::move(group), assemble(sitters, seats)};
 }
 
-// What a step costs, in full slots of a run; measured with eight lanes.
+// What a step costs, in slots of a group; measured with eight lanes.
 double cost_together(const Build& build, bool faces) {
-  return static_cast<double>(build.partners.size()) + 3.0 * static_cast<double>(build.joints.size()) +
-         (faces ? 4.4 * static_cast<double>(build.faces.size()) : 0.0);
+  return static_cast<double>(build.partners.size()) + 1.4 * static_cast<double>(build.joints.size()) +
+         (faces ? 3.0 * static_cast<double>(build.faces.size()) : 0.0);
 }
 double cost_alone(const Body& body, bool faces) {
   const SpringPlan& plan = body.springs;
   const auto lanes = static_cast<double>(body.places.lanes);
-  const double a_block = plan.has_rows() && faces ? 6 : plan.has_rows() || faces ? 5 : 3;
-  return 8 + static_cast<double>(plan.runs.size()) + 2.4 * static_cast<double>(plan.partners.size()) / lanes +
+  const double a_block = faces ? 5.5 : plan.has_rows() ? 5 : 4.5;
+  return 9 + 0.9 * static_cast<double>(plan.runs.size()) + 2.0 * static_cast<double>(plan.partners.size()) / lanes +
          a_block * static_cast<double>(body.places.blocks()) +
-         (faces ? 9.0 * static_cast<double>(body.faces.size()) / (4 * lanes) : 0.0);
+         (faces ? 8.5 * static_cast<double>(body.faces.size()) / (4 * lanes) : 0.0);
 }
 
 // A last round of groups that leaves many threads without one takes longer than its robots one by one, which are about
