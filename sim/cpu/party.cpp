@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
+
+#include "sim/cpu/similar.h"
 
 namespace mercury::cpu {
 namespace {
@@ -52,37 +52,10 @@ std::vector<Group> alike_groups(std::span<const Body> bodies, Group& left) {
   return groups;
 }
 
-// How many robots of a group have a mass in each cell.
-class Crowd {
- public:
-  Crowd() : count_(std::size_t{across} * across * across) {}
-
-  void add(std::span<const Cell> cells) {
-    for (const Cell c : cells)
-      if (count_[index(c)]++ == 0) ++cells_;
-  }
-  // Cells that a robot shares with the others, less those that it or they would leave empty.
-  double likeness(std::span<const Cell> cells) const {
-    std::size_t shared = 0;
-    for (const Cell c : cells) shared += count_[index(c)] != 0;
-    const auto common = static_cast<double>(shared);
-    return common - (static_cast<double>(cells.size()) - common) - 0.5 * (static_cast<double>(cells_) - common);
-  }
-  // Numbers the cells in use: z slowest, then y.
-  std::size_t number(std::vector<std::uint32_t>& seat_of_cell) const {
-    std::uint32_t seats = 0;
-    seat_of_cell.resize(count_.size());
-    for (std::size_t i = 0; i < count_.size(); ++i)
-      if (count_[i] != 0) seat_of_cell[i] = seats++;
-    return seats;
-  }
-  static std::size_t index(Cell c) { return c.x + across * (c.y + across * std::size_t{c.z}); }
-
- private:
-  static constexpr std::size_t across = most_cells_across;
-  std::vector<std::uint8_t> count_;
-  std::size_t cells_ = 0;
-};
+std::size_t index_of(Cell c) {
+  constexpr std::size_t across = most_cells_across;
+  return c.x + across * (c.y + across * std::size_t{c.z});
+}
 
 // By body; those without take part in nothing.
 using Patterns = std::vector<std::vector<Cell>>;
@@ -97,44 +70,17 @@ Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> 
   return patterns;
 }
 
-std::size_t most_alike(const Group& robots, const Patterns& patterns, const Crowd& crowd) {
-  std::size_t best = 0;
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < robots.size(); ++i)
-    if (const double likeness = crowd.likeness(patterns[robots[i]]); likeness > most) {
-      most = likeness;
-      best = i;
-    }
-  return best;
-}
-
-// Groups of robots with masses in much the same cells: to the largest robot left those that are most like it.
-std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns, std::span<const std::size_t> left) {
+// Groups of robots with masses and faces in much the same places.
+std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns, std::span<const std::size_t> left, bool faces) {
   Group candidates;
   std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
-  std::ranges::stable_sort(candidates, std::greater{}, [&](std::size_t i) { return patterns[i].size(); });
-  constexpr std::size_t most_compared = 64;
-  Group compared;  // the largest left
-  std::size_t next = 0;
-  std::vector<Group> groups;
-  while (true) {
-    Crowd crowd;
-    Group group;
-    const auto take = [&](Group::iterator chosen) {
-      crowd.add(patterns[*chosen]);
-      group.push_back(*chosen);
-      compared.erase(chosen);
-    };
-    const auto refill = [&] {
-      while (compared.size() < most_compared && next < candidates.size()) compared.push_back(candidates[next++]);
-      return !compared.empty();
-    };
-    if (!refill()) break;
-    take(compared.begin());
-    while (group.size() < bodies[group.front()].places.lanes && refill())
-      take(compared.begin() + static_cast<std::ptrdiff_t>(most_alike(compared, patterns, crowd)));
-    groups.push_back(std::move(group));
-  }
+  if (candidates.empty()) return {};
+  std::vector<Outline> outlines;
+  for (const std::size_t i : candidates)
+    outlines.push_back({patterns[i], bodies[i].robot->springs, faces ? std::span<const FacePair>(bodies[i].face_pairs) : std::span<const FacePair>()});
+  std::vector<Group> groups = cpu::similar_groups(outlines, bodies[candidates.front()].places.lanes);
+  for (Group& group : groups)
+    for (std::size_t& robot : group) robot = candidates[robot];
   return groups;
 }
 
@@ -149,14 +95,18 @@ Party party_of_alike(std::span<const Body> bodies, Group group) {
 }
 
 Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, Group group) {
-  Crowd crowd;
-  for (const std::size_t i : group) crowd.add(patterns[i]);
-  std::vector<std::uint32_t> seat_of_cell;
-  const std::size_t seats = crowd.number(seat_of_cell);
+  // Seats are the cells that any has a mass in: z slowest, then y.
+  constexpr std::uint32_t none = 0xffffffffu;
+  std::vector<std::uint32_t> seat_of_cell(std::size_t{most_cells_across} * most_cells_across * most_cells_across, none);
+  for (const std::size_t i : group)
+    for (const Cell c : patterns[i]) seat_of_cell[index_of(c)] = 0;
+  std::uint32_t seats = 0;
+  for (std::uint32_t& seat : seat_of_cell)
+    if (seat != none) seat = seats++;
   std::vector<Sitter> sitters;
   for (const std::size_t i : group) {
     sitters.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
-    for (const Cell c : patterns[i]) sitters.back().seats.push_back(seat_of_cell[Crowd::index(c)]);
+    for (const Cell c : patterns[i]) sitters.back().seats.push_back(seat_of_cell[index_of(c)]);
   }
   return {std::move(group), assemble(sitters, seats)};
 }
@@ -215,7 +165,7 @@ std::vector<Party> find_parties(std::span<const Body> bodies, std::size_t thread
   std::vector<Group> groups = alike_groups(bodies, left);
   const std::size_t alike = groups.size();
   const Patterns patterns = patterns_of(bodies, left, faces);
-  std::ranges::move(similar_groups(bodies, patterns, left), std::back_inserter(groups));
+  std::ranges::move(similar_groups(bodies, patterns, left, faces), std::back_inserter(groups));
   groups.resize(worth_keeping(groups.size(), threads));
 
   std::vector<Party> parties(groups.size());

@@ -14,6 +14,7 @@
 #include "kernel_cases.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/party.h"
+#include "sim/cpu/similar.h"
 
 namespace mercury {
 namespace {
@@ -264,6 +265,31 @@ TEST(Parties, AreMadeOfRobotsOfDifferentBuilds) {
       mixed += party.bodies.size() > 1 && !same_build(robots[party.bodies[0]], robots[party.bodies[1]]);
     EXPECT_GE(mixed, 1u) << kernel.name;
   }
+}
+
+// Long and flat robots by turns, 1,100 of them, which is more than are looked at at once: only what is left over at the end goes together.
+TEST(Parties, AreMadeOfRobotsOfOneKind) {
+  constexpr std::size_t robots = 1100, group_size = 8;
+  const Robot kinds[] = {bodies::random_voxels({.x = 8, .y = 1, .z = 1}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 4}, 2)};
+  std::vector<cpu::Cell> cells[2];
+  std::vector<FacePair> faces[2];
+  for (int kind = 0; kind < 2; ++kind) {
+    cells[kind] = cpu::cells_of(kinds[kind]);
+    faces[kind] = pair_faces(kinds[kind]);
+  }
+  std::vector<cpu::Outline> outlines;
+  for (std::size_t i = 0; i < robots; ++i) outlines.push_back({cells[i % 2], kinds[i % 2].springs, faces[i % 2]});
+  std::set<std::size_t> seen;
+  std::size_t mixed = 0, small = 0;
+  for (const std::vector<std::size_t>& group : cpu::similar_groups(outlines, group_size)) {
+    EXPECT_LE(group.size(), group_size);
+    small += group.size() < group_size;
+    mixed += std::ranges::any_of(group, [&](std::size_t i) { return i % 2 != group.front() % 2; });
+    for (const std::size_t i : group) EXPECT_TRUE(seen.insert(i).second) << i;
+  }
+  EXPECT_EQ(seen.size(), robots);
+  EXPECT_LE(mixed, 1u);
+  EXPECT_LE(small, 2u);
 }
 
 TEST(Parties, SeatEveryMassSpringAndFaceOnce) {
