@@ -47,8 +47,9 @@ const char* vector_instructions() {
 
 Finding processor() {
   const std::string model = proc_value("/proc/cpuinfo", "model name");
-  return {"processor", fmt::format("{}, {} cores, {}", model.empty() ? "unknown model" : model, usable_cores(),
-                                   vector_instructions()), {}};
+  const int cores = usable_cores();
+  return {"processor", fmt::format("{}, {} core{}, {}", model.empty() ? "unknown model" : model, cores,
+                                   cores == 1 ? "" : "s", vector_instructions()), {}};
 }
 
 Finding memory() {

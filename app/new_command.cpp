@@ -99,7 +99,7 @@ void add_new_command(CLI::App& program, const Choose& choose) {
       "The same seed and options give the same robots on every machine. The names of the files are printed.\n\n"
       "Examples:\n"
       "  mercury new voxel -o eel.json --seed 4 --voxels 12x2x3\n"
-      "  mercury new voxel -o robots/ --count 100 --seed 1 --format cbor\n"
+      "  mercury new voxel -o my-robots --count 100 --seed 1 --format cbor\n"
       "  mercury new voxel -o best/ --count 5 --best-of 1000 --environment land --seconds 10",
       random_voxel_robot);
   add_kind<NnRobotOptions>(
@@ -108,7 +108,7 @@ void add_new_command(CLI::App& program, const Choose& choose) {
       "keeps the network, so that the robot can be changed and grown again.\n\n"
       "Examples:\n"
       "  mercury new nn -o blob.json --seed 4 --points 1000\n"
-      "  mercury new nn -o robots/ --count 64 --seed 1\n"
+      "  mercury new nn -o my-robots --count 64 --seed 1\n"
       "  mercury new nn -o best/ --count 3 --best-of 500 --seconds 10",
       random_nn_robot);
 }

@@ -22,8 +22,8 @@ constexpr const char* examples =
     "  mercury view                                              a window with the sample robots\n"
     "  mercury render --random voxel:12 --seed 1 -o group.mp4    film twelve random robots\n"
     "  mercury run --random voxel:64 --seconds 2 --json          simulate and print the results\n"
-    "  mercury new voxel --count 10 --seed 7 -o robots/          make robot files\n"
-    "  mercury run robots/ --environment land --csv land.csv     try them on land\n"
+    "  mercury new voxel --count 10 --seed 7 -o my-robots        make robot files\n"
+    "  mercury run my-robots --environment land --csv land.csv   try them on land\n"
     "  mercury info                                              what this machine can do\n"
     "Every command explains itself: mercury render --help";
 

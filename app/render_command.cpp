@@ -162,12 +162,12 @@ void add_render_command(CLI::App& program, const Choose& choose) {
   command->footer(
       "Examples:\n"
       "  mercury render --random voxel:12 --seed 1 -o group.mp4\n"
-      "  mercury render robots/ --environment land --size 1080p --seconds 20 --speed 2 -o land.webm\n"
-      "  mercury render robots/ --layout race --environment land -o race.mp4\n"
-      "  mercury render robots/eel.json --camera turntable --color strain --seconds 4 -o eel.gif\n"
-      "  mercury render robots/ --contact-sheet 5x2 --seconds 9 -o poster.png\n"
+      "  mercury render my-robots --environment land --size 1080p --seconds 20 --speed 2 -o land.webm\n"
+      "  mercury render my-robots --layout race --environment land -o race.mp4\n"
+      "  mercury render eel.json --camera turntable --color strain --seconds 4 -o eel.gif\n"
+      "  mercury render my-robots --contact-sheet 5x2 --seconds 9 -o poster.png\n"
       "  mercury render run.h5 -o run.mp4                    a recording of mercury run --record\n"
-      "  mercury render robots/ --fps 60 -o frames/          a folder of PNG pictures");
+      "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
   command->callback([options, choose] { choose([options] { return render_robots(*options); }); });
 }
 

@@ -72,8 +72,8 @@ std::string table_of(const RunReport& report) {
     text += fmt::format("{:<{}}  {:>7}  {:>8}  {:>9.4f}  {:>11.4f}  {:>10.2f}  {}  {}\n", robot.name, width,
                         robot.masses, robot.springs, robot.displacement, robot.mean_speed, 100 * robot.largest_strain,
                         hash_text(robot.hash), state_of(robot));
-  text += fmt::format("\n{} robots, {} springs, {:.3g} s of wall time, {} springs/s\n", report.robots.size(),
-                      report.springs(), report.wall_seconds, with_magnitude(report.springs_per_second()));
+  text += fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", report.robots.size(),
+                      report.robots.size() == 1 ? "" : "s", report.springs(), report.wall_seconds, with_magnitude(report.springs_per_second()));
   return text;
 }
 

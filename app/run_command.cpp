@@ -204,9 +204,9 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "largest of any spring, both looked at every 0.1 s.\n\n"
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
-      "  mercury run robots/eel.json --record eel.h5 --every 10\n"
+      "  mercury run eel.json --record eel.h5 --every 10\n"
       "  mercury run eel.repro        (of an explosion that was seen in the window)\n"
-      "  mercury run robots/ --environment land --solver xpbd --dt 0.005 --json > land.json");
+      "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
   command->callback([options, choose] { choose([options] { return run(*options); }); });
 }
 

@@ -68,7 +68,7 @@ Vec3 gravity_from(const std::string& option, const std::string& text) {
 
 void SimulationOptions::add_to(CLI::App& command) {
   const auto group = [](CLI::Option* option, const char* name) { option->group(name); };
-  group(add_value(command, "--device", device_, "What computes (default auto: a GPU if there is one)",
+  group(add_value(command, "--device", device_, "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
                   "auto|cpu|cuda[:N]", [](const std::string&, const std::string& text) { return name_of(device_named(text)); }),
         "Simulation");
   group(add_number(command, "--threads", threads_, "CPU threads (default 0 = all cores)", "N"), "Simulation");

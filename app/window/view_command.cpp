@@ -93,7 +93,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
       "Without ROBOTS it shows the sample robots. F1 in the window lists all keys.\n"
       "Examples:\n"
       "  mercury view\n"
-      "  mercury view robots/ --environment land\n"
+      "  mercury view my-robots --environment land\n"
       "  mercury view --random voxel:12 --seed 3 --color strain");
   command->callback([options, choose] { choose([options] { return view(*options); }); });
 }
