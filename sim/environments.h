@@ -55,6 +55,8 @@ struct OceanHooks {
   // no multiplication; both vectors the other way around.
   struct Coefficients {
     float drag = 0, lift = 0;
+    // No component of a force is more than this times |normal| |u|^2.
+    float most() const { return std::fabs(drag) + std::fabs(lift); }
   };
   Coefficients of_sums(float scale) const {
     const float common = -half_density * scale / 54;

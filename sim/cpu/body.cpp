@@ -87,7 +87,7 @@ void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3
     set(body.x, place, positions[0]);
     set(body.v, place, {});
   }
-  body.compact = false;
+  body.squared_diagonal = std::numeric_limits<float>::infinity();
   body.rows_are_current = false;
   body.written = true;
   body.near_pairs.forget();

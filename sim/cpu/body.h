@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "sim/backend.h"
@@ -73,8 +74,8 @@ struct Body {
                                      // is without meaning
   Sums sums;
 
-  // No two masses are farther apart than a spring may be long, so that springs need not be looked at.
-  bool compact = false;
+  // Of a box around all masses [m2]; infinite if not known.
+  float squared_diagonal = std::numeric_limits<float>::infinity();
   bool rows_are_current = false;     // x_rows and v_rows
   bool written = true;               // the state came from outside and may be anything
   RobotStatus status;

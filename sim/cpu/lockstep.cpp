@@ -1,7 +1,6 @@
 #include "sim/cpu/lockstep.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "sim/fixed_point.h"
@@ -90,11 +89,11 @@ void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& ho
       group.factor[slot] = factors[member][spring.material];
     }
     if (ocean != nullptr) {
-      const auto [drag, lift] = ocean->of_sums(body.scale.force);
-      group.most_force[lane] = std::abs(drag) + std::abs(lift);
+      const OceanHooks::Coefficients coefficients = ocean->of_sums(body.scale.force);
+      group.most_force[lane] = coefficients.most();
       for (const std::uint32_t pair : seating.faces) {
-        group.face_drag[pair * group.lanes + lane] = drag;
-        group.face_lift[pair * group.lanes + lane] = lift;
+        group.face_drag[pair * group.lanes + lane] = coefficients.drag;
+        group.face_lift[pair * group.lanes + lane] = coefficients.lift;
       }
     }
     group.force_scale[lane] = body.scale.force;

@@ -35,7 +35,7 @@ class LockstepStepper {
     Box box;
     const bool sound = add_springs(factors, compact(load_aligned(group_.squared_diagonal.data())), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
-      Lanes3 v = accelerated(v0, sum), x = multiply_add(constants_.dt, v, x0);
+      Lanes3 v = accelerated_by(sum, per_force_, v0, hooks_, constants_), x = multiply_add(constants_.dt, v, x0);
       end_step(x, v, hooks_, constants_);
       keep(x, v, mass);
       box.add(x);
@@ -48,7 +48,7 @@ class LockstepStepper {
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
-      const Lanes3 v = accelerated(at(v_, mass), take(mass));
+      const Lanes3 v = accelerated_by(take(mass), per_force_, at(v_, mass), hooks_, constants_);
       const Lanes3 x = multiply_add(constants_.dt, v, at(x_, mass));
       keep(x, v, mass);
       predicted.add(x);
@@ -65,12 +65,6 @@ class LockstepStepper {
     });
     store_aligned(squared_diagonal(box), group_.squared_diagonal.data());
     return sound && within_reach(box);
-  }
-
-  // The velocity before damping. Units in a newton are a power of two, so that it does not matter when they are taken out.
-  HWY_INLINE Lanes3 accelerated(Lanes3 v, Integers3 sum) const {
-    if constexpr (Hooks::calm) return multiply_add(constants_.dt * per_force_, float_of(sum), v);
-    return mercury::accelerated(v, per_force_ * float_of(sum) + hooks_.on_mass(v), constants_);
   }
 
   // Adds the forces of contacts, and sees to it that near pairs are listed.
@@ -220,11 +214,7 @@ bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& settin
 
 // Kernel::advance_together.
 inline bool advance_together(Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  constexpr float least_dt = 1e-6f;  // [s]; with much smaller ones a product of it with a unit would not be exact
-  const auto* const ocean = std::get_if<OceanHooks>(&setting.hooks);
-  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt)
-    return advance_with(CalmOceanHooks{*ocean}, group, setting, factors, steps);
-  return std::visit([&](const auto& hooks) { return advance_with(hooks, group, setting, factors, steps); }, setting.hooks);
+  return with_hooks(setting, [&](const auto& hooks) { return advance_with(hooks, group, setting, factors, steps); });
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

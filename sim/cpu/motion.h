@@ -30,6 +30,22 @@ inline bool note_bad(Body& body, std::size_t place) {
   return mass != no_mass;
 }
 
+// The velocity before damping, from a sum in units of which a newton has 1 / `per_unit`. That is a power of two, so that it
+// does not matter when it is multiplied by.
+template <class Hooks>
+HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const Hooks& hooks, const StepConstants& constants) {
+  if constexpr (Hooks::calm) return multiply_add(constants.dt * per_unit, float_of(sum), v);
+  return accelerated(v, per_unit * float_of(sum) + hooks.on_mass(v), constants);
+}
+// Calls with the hooks of the environment, the calm ones if they fit.
+template <class Call>
+HWY_INLINE auto with_hooks(const StepSetting& setting, const Call& call) {
+  constexpr float least_dt = 1e-6f;  // [s]; with much smaller ones a product of it with a unit would not be exact
+  const auto* const ocean = std::get_if<OceanHooks>(&setting.hooks);
+  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt) return call(CalmOceanHooks{*ocean});
+  return std::visit(call, setting.hooks);
+}
+
 // One phase of a step. Masses that are collected one by one, for faces or springs in rows, are kept in rows as well.
 template <class Hooks, bool spring_rows>
 class Motion {
@@ -43,7 +59,7 @@ class Motion {
   // Algorithm 1: the end of the step.
   HWY_INLINE void end_with_forces(std::size_t place) {
     const Lanes3 x0 = load_aligned(arrays_.x, place), v0 = load_aligned(arrays_.v, place);
-    Lanes3 v = accelerated(v0, taken<true>(place) + hooks_.on_mass(v0), constants_);
+    Lanes3 v = accelerated_by(take<true>(place), inverse_scale_, v0, hooks_, constants_);
     Lanes3 x = multiply_add(constants_.dt, v, x0);
     end_step(x, v, hooks_, constants_);
     keep(x, v, x0, v0, place);
@@ -54,7 +70,7 @@ class Motion {
   // Algorithm 2: leaves the prediction in place of the position and v + dt F in place of the velocity.
   HWY_INLINE void predict(std::size_t place) {
     const Lanes3 x0 = load_aligned(arrays_.x, place), v0 = load_aligned(arrays_.v, place);
-    Lanes3 v = accelerated(v0, taken<false>(place) + hooks_.on_mass(v0), constants_);
+    Lanes3 v = accelerated_by(take<false>(place), inverse_scale_, v0, hooks_, constants_);
     Lanes3 x = multiply_add(constants_.dt, v, x0);
     keep(x, v, x0, v0, place);
     box_.add(x);
@@ -63,23 +79,23 @@ class Motion {
   // The end of the step after a prediction.
   HWY_INLINE void end_with_corrections(std::size_t place) {
     const Lanes3 x0 = load_aligned(arrays_.x, place), v0 = load_aligned(arrays_.v, place);
-    const Lanes3 correction = taken<true>(place);
+    const Lanes3 correction = Lanes(inverse_scale_) * float_of(take<true>(place));
     Lanes3 x = x0 + correction;
     Lanes3 v = multiply_add(constants_.inverse_dt, correction, v0);
     end_step(x, v, hooks_, constants_);
     keep(x, v, x0, v0, place);
+    box_.add(x);
     store_rows_of(x, v, place);
   }
 
-  // Whether all masses stayed within reach; the box that forces or predictions left them in.
+  // Whether all masses stayed within reach; the box around them.
   bool finite() const { return finite_; }
   HWY_INLINE float squared_diagonal() const { return box_.squared_diagonal(); }
 
  private:
-  // What was summed [N] or [m].
   template <bool springs>
-  HWY_INLINE Lanes3 taken(std::size_t place) const {
-    return Lanes(inverse_scale_) * float_of(arrays_.template take<springs, needs_rows>(place));
+  HWY_INLINE Integers3 take(std::size_t place) const {
+    return arrays_.template take<springs, needs_rows>(place);
   }
 
   // Stores the new state of those masses that are within reach. The others stay, and the robot has exploded.

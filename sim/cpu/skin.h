@@ -32,21 +32,23 @@ class Skin {
  public:
   Skin(Body& body, const Hooks& hooks)
       : arrays_(body), corners_(body.faces.data()), corners_end_(corners_ + body.faces.size()),
-        coefficients_(hooks.of_sums(body.scale.force)), thrice_flow_(row_in_every(hooks.thrice_flow)) {}
+        coefficients_(hooks.of_sums(body.scale.force)), most_per_squared_speed_(coefficients_.most() * body.squared_diagonal),
+        thrice_flow_(row_in_every(hooks.thrice_flow)) {}
 
-  // Adds a third of each face's force to each of its masses. False if a force is out of range.
+  // Adds a third of each face's force to each of its masses. False if a force is out of range. That is looked for only where
+  // no bound excludes it.
   bool add_forces() const {
-    Integers largest_force = no_integers();
+    Lanes fastest_squared = 0.0f;
     for (const std::uint32_t* corner = corners_; corner != corners_end_; corner += 4 * lane_count) {
       const FaceForces f = forces(corner);
-      largest_force = larger(largest_force, f.largest_component());
+      fastest_squared = larger(fastest_squared, f.fastest_squared);
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
       add_to_rows(on_both, arrays_.row_sums, corner);
       add_to_rows(on_b, arrays_.row_sums, corner + lane_count);
       add_to_rows(on_both, arrays_.row_sums, corner + 2 * lane_count);
       add_to_rows(on_d, arrays_.row_sums, corner + 3 * lane_count);
     }
-    return largest(largest_force) < mercury::bits_of(face_limit_units);
+    return every(fastest_squared * most_per_squared_speed_ < 0.5f * face_limit_units) || forces_fit();
   }
 
   // Calls visit(place) for the corners of all pairs of faces with a force out of range.
@@ -64,9 +66,17 @@ class Skin {
   // Of pairs of faces, whose corners stand one after the other.
   HWY_INLINE FaceForces forces(const std::uint32_t* corner) const {
     const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count, *const d = c + lane_count;
-    const Rows xa = x(a), common = v(a) + v(c) - thrice_flow_;
+    const Rows xa = x(a);
+    Rows common = v(a) + v(c);
+    if constexpr (!Hooks::calm) common = common - thrice_flow_;
     return face_forces<Hooks>(coefficients_.drag, coefficients_.lift, vectors(x(b) - xa), vectors(x(c) - xa),
                               vectors(x(d) - xa), vectors(common + v(b)), vectors(common + v(d)));
+  }
+  HWY_NOINLINE bool forces_fit() const {
+    Integers largest_force = no_integers();
+    for (const std::uint32_t* corner = corners_; corner != corners_end_; corner += 4 * lane_count)
+      largest_force = larger(largest_force, forces(corner).largest_component());
+    return largest(largest_force) < mercury::bits_of(face_limit_units);
   }
   HWY_INLINE Rows x(const std::uint32_t* corner) const { return collect(arrays_.x_rows, corner); }
   HWY_INLINE Rows v(const std::uint32_t* corner) const { return collect(arrays_.v_rows, corner); }
@@ -74,6 +84,7 @@ class Skin {
   const Arrays arrays_;
   const std::uint32_t *const corners_, *const corners_end_;
   const OceanHooks::Coefficients coefficients_;
+  const float most_per_squared_speed_;
   const Rows thrice_flow_;
 };
 

@@ -49,6 +49,7 @@ bool accept_state(Body& body) {
 void explode(Body& body, std::int64_t step) {
   body.status.exploded_step = step;
   body.rows_are_current = false;
+  body.squared_diagonal = std::numeric_limits<float>::infinity();
   clear(body.sums);
 }
 

@@ -39,9 +39,9 @@ class Stepper {
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.force);
-    if (!add_springs(factors, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); })) return false;
+    if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); })) return false;
     settle_stand_ins();
-    body_.compact = end.squared_diagonal() <= body_.measures.squared_stretch_limit();
+    body_.squared_diagonal = end.squared_diagonal();
     return end.finite();
   }
 
@@ -50,19 +50,21 @@ class Stepper {
     if (!add_environment()) return false;
     Moving prediction(body_, hooks_, constants_, body_.scale.force);
     for (std::size_t place = 0; place < body_.places.mass_at.size(); place += lane_count) prediction.predict(place);
-    body_.compact = prediction.squared_diagonal() <= body_.measures.squared_stretch_limit();
     if (!prediction.finite()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.correction);
-    if (!add_springs(factors, [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); })) return false;
+    if (!add_springs(factors, prediction.squared_diagonal(), [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); }))
+      return false;
     settle_stand_ins();
-    body_.compact = false;
+    body_.squared_diagonal = end.squared_diagonal();
     return end.finite();
   }
 
+  // No spring is longer than the diagonal of the box around all masses.
   template <class Finish>
-  bool add_springs(const float* factors, const Finish& finish) {
-    return body_.compact ? HWY_NAMESPACE::add_springs<false, spring_rows>(body_, factors, finish)
-                         : HWY_NAMESPACE::add_springs<true, spring_rows>(body_, factors, finish);
+  bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
+    return squared_diagonal <= body_.measures.squared_stretch_limit()
+               ? HWY_NAMESPACE::add_springs<false, spring_rows>(body_, factors, finish)
+               : HWY_NAMESPACE::add_springs<true, spring_rows>(body_, factors, finish);
   }
 
   // Forces that do not depend on one mass alone.
@@ -124,17 +126,13 @@ std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& set
   return steps;
 }
 
-template <class Hooks>
-std::int64_t advance_in(const Hooks& hooks, Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  return body.springs.has_rows() ? advance_body<Hooks, true>(body, hooks, setting, factors, steps)
-                                 : advance_body<Hooks, false>(body, hooks, setting, factors, steps);
-}
-
 // Kernel::advance.
 inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  if (const auto* ocean = std::get_if<OceanHooks>(&setting.hooks)) return advance_in(*ocean, body, setting, factors, steps);
-  if (const auto* simple = std::get_if<OceanSimpleHooks>(&setting.hooks)) return advance_in(*simple, body, setting, factors, steps);
-  return advance_in(std::get<LandHooks>(setting.hooks), body, setting, factors, steps);
+  return with_hooks(setting, [&](const auto& hooks) {
+    using Hooks = std::decay_t<decltype(hooks)>;
+    return body.springs.has_rows() ? advance_body<Hooks, true>(body, hooks, setting, factors, steps)
+                                   : advance_body<Hooks, false>(body, hooks, setting, factors, steps);
+  });
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE
