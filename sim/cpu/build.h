@@ -40,6 +40,15 @@ struct Assembly {
   std::vector<std::shared_ptr<const Seating>> seatings;  // one a sitter
 };
 
+// Pairs of faces that only robots in the first half of these have, and those that only others have.
+struct FaceHalves {
+  std::vector<std::uint32_t> lower, upper;
+};
+FaceHalves halves_of(std::size_t pairs, std::span<const std::shared_ptr<const Seating>> seatings);
+
+// Vectors shorter than this are not split in two.
+inline constexpr std::size_t least_lanes_to_split = 8;
+
 // The smallest build that has room for all of these, of so many seats (at most max_masses).
 Assembly assemble(std::span<const Sitter> sitters, std::size_t seats);
 

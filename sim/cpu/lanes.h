@@ -127,6 +127,18 @@ HWY_INLINE Lanes float_of_signed(Words a) { return hn::ConvertTo(floats, hn::Bit
 HWY_INLINE Lanes load_aligned(const float* from) { return hn::Load(floats, from); }
 HWY_INLINE Integers load_aligned(const std::int32_t* from) { return {hn::Load(integers, from)}; }
 HWY_INLINE Words load_aligned(const std::uint32_t* from) { return hn::Load(words, from); }
+// The lower half of the lanes of one vector in memory, the upper half of those of another.
+inline constexpr hn::Half<decltype(floats)> half_of_floats;
+inline constexpr hn::Half<decltype(integers)> half_of_integers;
+HWY_INLINE Lanes load_halves(const float* lower, const float* upper) {
+  return hn::Combine(floats, hn::Load(half_of_floats, upper + lane_count / 2), hn::Load(half_of_floats, lower));
+}
+HWY_INLINE void add_halves(Integers a, std::int32_t* lower, std::int32_t* upper) {
+  constexpr auto half = half_of_integers;
+  hn::Store(hn::Add(hn::Load(half, lower), hn::LowerHalf(half, a.v)), half, lower);
+  upper += lane_count / 2;
+  hn::Store(hn::Add(hn::Load(half, upper), hn::UpperHalf(half, a.v)), half, upper);
+}
 HWY_INLINE Lanes load(const float* from) { return hn::LoadU(floats, from); }
 HWY_INLINE Integers load(const std::int32_t* from) { return {hn::LoadU(integers, from)}; }
 HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); }

@@ -30,6 +30,32 @@ std::vector<std::uint64_t> present_lists(const Lockstep& group) {
   return lists;
 }
 
+// A slot for each of the build's pairs of faces; two share one where only lanes of the lower half have the one and only
+// lanes of the upper half the other.
+void share_slots_of_faces(Lockstep& group) {
+  const std::vector<FacePair>& pairs = group.build->faces;
+  const auto corners = [&](std::uint32_t pair) {
+    const auto& [a, b, c, d] = pairs[pair];
+    return Lockstep::Corners<std::uint32_t>{group.start_of(a), group.start_of(b), group.start_of(c), group.start_of(d)};
+  };
+  const FaceHalves halves = halves_of(group.build->faces.size(), group.seatings);
+  const std::size_t shared = group.lanes < least_lanes_to_split ? 0 : std::min(halves.lower.size(), halves.upper.size());
+  std::vector<bool> is_split(pairs.size());
+  for (const std::vector<std::uint32_t>* half : {&halves.lower, &halves.upper})
+    for (std::size_t i = 0; i < shared; ++i) is_split[(*half)[i]] = true;
+  group.face_slots.resize(pairs.size());
+  for (std::uint32_t pair = 0; pair < pairs.size(); ++pair)
+    if (!is_split[pair]) {
+      group.face_slots[pair] = static_cast<std::uint32_t>(group.faces.size());
+      group.faces.push_back(corners(pair));
+    }
+  for (std::size_t i = 0; i < shared; ++i) {
+    group.face_slots[halves.lower[i]] = group.face_slots[halves.upper[i]] = static_cast<std::uint32_t>(group.faces.size() + i);
+    const auto lower = corners(halves.lower[i]), upper = corners(halves.upper[i]);
+    group.split_faces.push_back({{lower.a, upper.a}, {lower.b, upper.b}, {lower.c, upper.c}, {lower.d, upper.d}});
+  }
+}
+
 }  // namespace
 
 Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts) {
@@ -41,15 +67,14 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   for (const auto& [owned, slots] : group.build->joints)
     group.joints.push_back({owned, static_cast<std::int32_t>((2 * owned - slots) * std::uint32_t{rounding_magic_bits})});
   for (const std::uint32_t partner : group.build->partners) group.partners.push_back(group.start_of(partner));
-  for (const auto& [a, b, c, d] : group.build->faces)
-    group.faces.push_back({group.start_of(a), group.start_of(b), group.start_of(c), group.start_of(d)});
   for (std::size_t lane = 0; lane < group.lanes; ++lane) group.seatings.push_back(assembly.seatings[member_of(group, lane)]);
   const std::size_t slots = group.build->partners.size() * group.lanes, seats = group.build->joints.size() * group.lanes;
   group.rest_length.resize(slots);
   group.hardness.resize(slots);
   group.factor.resize(slots);
-  group.face_drag.resize(group.build->faces.size() * group.lanes);
-  group.face_lift.resize(group.build->faces.size() * group.lanes);
+  share_slots_of_faces(group);
+  for (Aligned<float>* coefficients : {&group.face_drag, &group.face_lift})
+    coefficients->resize((group.faces.size() + group.split_faces.size()) * group.lanes);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * seats);
   group.sums.resize(3 * seats);
   for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance,
@@ -92,8 +117,8 @@ void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& ho
       const OceanHooks::Coefficients coefficients = ocean->of_sums(body.scale.force);
       group.most_force[lane] = coefficients.most();
       for (const std::uint32_t pair : seating.faces) {
-        group.face_drag[pair * group.lanes + lane] = coefficients.drag;
-        group.face_lift[pair * group.lanes + lane] = coefficients.lift;
+        group.face_drag[group.face_slots[pair] * group.lanes + lane] = coefficients.drag;
+        group.face_lift[group.face_slots[pair] * group.lanes + lane] = coefficients.lift;
       }
     }
     group.force_scale[lane] = body.scale.force;

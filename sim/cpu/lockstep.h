@@ -28,10 +28,18 @@ struct Lockstep {
     std::int32_t bias = 0;  // takes out again what the integers of the springs carry (sim/fixed_point.h)
   };
   std::vector<Joint> joints;
-  struct Corners {
-    std::uint32_t a = 0, b = 0, c = 0, d = 0;
+  // Slots of pairs of faces. In those that are split, lanes of the lower half stand at other seats than those of the upper:
+  // two of the build's pairs that few robots have.
+  struct Halves {
+    std::uint32_t lower = 0, upper = 0;
   };
-  std::vector<Corners> faces;
+  template <class Seat>
+  struct Corners {
+    Seat a{}, b{}, c{}, d{};
+  };
+  std::vector<Corners<std::uint32_t>> faces;
+  std::vector<Corners<Halves>> split_faces;
+  std::vector<std::uint32_t> face_slots;  // by the build's pairs; split ones are numbered after the others
   // Of every lane.
   std::vector<std::shared_ptr<const Seating>> seatings;
   std::vector<Body*> members;       // from load() on
@@ -39,7 +47,7 @@ struct Lockstep {
   // [slot][lane], as in SpringPlan; no force where a robot has no spring
   Aligned<float> rest_length, hardness;
   Aligned<FactorId> factor;
-  // [pair of faces][lane]: OceanHooks::of_sums() in units; 0 where a robot has no such faces
+  // [slot of pairs of faces][lane]: OceanHooks::of_sums() in units; 0 where a robot has no such faces
   Aligned<float> face_drag, face_lift;
 
   // [seat][x, y, z][lane]

@@ -34,7 +34,7 @@ class LockstepStepper {
   bool step_force(const float* factors) {
     Box box;
     const bool sound = add_springs(factors, compact(load_aligned(group_.squared_diagonal.data())), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
-      const Lanes3 x0 = at(x_, mass), v0 = at(v_, mass);
+      const Lanes3 x0 = of_mass(x_, mass), v0 = of_mass(v_, mass);
       Lanes3 v = accelerated_by(sum, per_force_, v0, hooks_, constants_), x = multiply_add(constants_.dt, v, x0);
       end_step(x, v, hooks_, constants_);
       keep(x, v, mass);
@@ -48,8 +48,8 @@ class LockstepStepper {
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
-      const Lanes3 v = accelerated_by(take(mass), per_force_, at(v_, mass), hooks_, constants_);
-      const Lanes3 x = multiply_add(constants_.dt, v, at(x_, mass));
+      const Lanes3 v = accelerated_by(take(mass), per_force_, of_mass(v_, mass), hooks_, constants_);
+      const Lanes3 x = multiply_add(constants_.dt, v, of_mass(x_, mass));
       keep(x, v, mass);
       predicted.add(x);
     }
@@ -57,8 +57,8 @@ class LockstepStepper {
     Box box;
     const bool sound = add_springs(factors, compact(squared_diagonal(predicted)), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 correction = per_correction_ * float_of(sum);
-      Lanes3 x = at(x_, mass) + correction;
-      Lanes3 v = multiply_add(constants_.inverse_dt, correction, at(v_, mass));
+      Lanes3 x = of_mass(x_, mass) + correction;
+      Lanes3 v = multiply_add(constants_.inverse_dt, correction, of_mass(v_, mass));
       end_step(x, v, hooks_, constants_);
       keep(x, v, mass);
       box.add(x);
@@ -85,11 +85,11 @@ class LockstepStepper {
         now[axis * lane_count + lane] = x_[first];
         then[axis * lane_count + lane] = listed[first];
       }
-    const Lanes3 common = at(now, 0) - at(then, 0);
+    const Lanes3 common = of_mass(now, 0) - of_mass(then, 0);
     Lanes farthest_squared = 0.0f;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
       const Lanes is_mass = load_aligned(group_.is_mass.data() + mass * lane_count);
-      farthest_squared = larger(farthest_squared, is_mass * squared_length(at(x_, mass) - at(listed, mass) - common));
+      farthest_squared = larger(farthest_squared, is_mass * squared_length(of_mass(x_, mass) - of_mass(listed, mass) - common));
     }
     return farthest_squared > reach * reach;
   }
@@ -104,34 +104,39 @@ class LockstepStepper {
   Lanes add_face_forces() {
     std::int32_t* const sums = sums_;
     Lanes fastest_squared = 0.0f;
-    for_each_pair_of_faces([&](const Lockstep::Corners& corners, const FaceForces& f) HWY_ATTR {
+    for_each_pair_of_faces([&](const auto& corners, const FaceForces& f) HWY_ATTR {
       fastest_squared = larger(fastest_squared, f.fastest_squared);
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
-      add_to(sums + corners.a, on_both);
-      add_to(sums + corners.b, on_b);
-      add_to(sums + corners.c, on_both);
-      add_to(sums + corners.d, on_d);
+      add_to(sums, corners.a, on_both);
+      add_to(sums, corners.b, on_b);
+      add_to(sums, corners.c, on_both);
+      add_to(sums, corners.d, on_d);
     });
     return fastest_squared;
   }
   HWY_NOINLINE bool face_forces_fit() const {
     Integers largest_force = no_integers();
-    for_each_pair_of_faces([&](const Lockstep::Corners&, const FaceForces& f)
-                                      HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
+    for_each_pair_of_faces([&](const auto&, const FaceForces& f) HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
     return largest(largest_force) < mercury::bits_of(face_limit_units);
   }
   // Calls visit(corners, FaceForces).
   template <class Visit>
   HWY_INLINE void for_each_pair_of_faces(const Visit& visit) const {
-    const float *const x = x_, *const v = v_, *drag = group_.face_drag.data(), *lift = group_.face_lift.data();
+    const std::size_t whole = group_.faces.size() * lane_count;
+    for_each_pair_of_faces(group_.faces, group_.face_drag.data(), group_.face_lift.data(), visit);
+    for_each_pair_of_faces(group_.split_faces, group_.face_drag.data() + whole, group_.face_lift.data() + whole, visit);
+  }
+  template <class Corners, class Visit>
+  HWY_INLINE void for_each_pair_of_faces(const std::vector<Corners>& slots, const float* drag, const float* lift, const Visit& visit) const {
+    const float *const x = x_, *const v = v_;
     const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
-    for (const Lockstep::Corners& corners : group_.faces) {
+    for (const Corners& corners : slots) {
       const auto& [a, b, c, d] = corners;
-      const Lanes3 xa = at(x + a);
-      Lanes3 common = at(v + a) + at(v + c);
+      const Lanes3 xa = at(x, a);
+      Lanes3 common = at(v, a) + at(v, c);
       if constexpr (!Hooks::calm) common = common - thrice_flow;
-      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x + b) - xa, at(x + c) - xa, at(x + d) - xa,
-                                        common + at(v + b), common + at(v + d)));
+      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x, b) - xa, at(x, c) - xa, at(x, d) - xa,
+                                        common + at(v, b), common + at(v, d)));
       drag += lane_count;
       lift += lane_count;
     }
@@ -152,13 +157,13 @@ class LockstepStepper {
     const std::uint32_t* partner = group_.partners.data();
     std::size_t mass = 0;
     for (const auto& [owned, bias] : joints_) {
-      const Lanes3 own = at(x_, mass);
+      const Lanes3 own = of_mass(x_, mass);
       const Integers none = every_one(bias);
       Integers3 sum{none, none, none};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
-        const Integers3 f = law(own - at(x + *partner));
+        const Integers3 f = law(own - at(x, *partner));
         sum = sum - f;
-        add_to(sums + *partner, f);
+        add_to(sums, *partner, f);
       }
       finish(mass, take(mass) + sum);
       ++mass;
@@ -169,14 +174,29 @@ class LockstepStepper {
   // x, y and z of a seat start so far apart.
   template <class T>
   static HWY_INLINE Pointers3<T> lanes_of(T* first) { return {first, first + lane_count, first + 2 * lane_count}; }
-  static HWY_INLINE Lanes3 at(const float* first) {
+  // Of the seat whose values start there.
+  static HWY_INLINE Lanes3 at(const float* values, std::uint32_t seat) {
+    const float* const first = values + seat;
     return {load_aligned(first), load_aligned(first + lane_count), load_aligned(first + 2 * lane_count)};
   }
-  static HWY_INLINE void add_to(std::int32_t* first, Integers3 a) {
-    const Pointers3<std::int32_t> sum = lanes_of(first);
+  static HWY_INLINE Lanes3 at(const float* values, Lockstep::Halves seats) {
+    const float *const lower = values + seats.lower, *const upper = values + seats.upper;
+    return {load_halves(lower, upper), load_halves(lower + lane_count, upper + lane_count),
+            load_halves(lower + 2 * lane_count, upper + 2 * lane_count)};
+  }
+  static HWY_INLINE void add_to(std::int32_t* sums, std::uint32_t seat, Integers3 a) {
+    const Pointers3<std::int32_t> sum = lanes_of(sums + seat);
     store_aligned(load_aligned(sum, 0) + a, sum, 0);
   }
-  static HWY_INLINE Lanes3 at(const float* values, std::size_t mass) { return at(values + 3 * lane_count * mass); }
+  static HWY_INLINE void add_to(std::int32_t* sums, Lockstep::Halves seats, Integers3 a) {
+    const Pointers3<std::int32_t> lower = lanes_of(sums + seats.lower), upper = lanes_of(sums + seats.upper);
+    add_halves(a.x, lower.x, upper.x);
+    add_halves(a.y, lower.y, upper.y);
+    add_halves(a.z, lower.z, upper.z);
+  }
+  static HWY_INLINE Lanes3 of_mass(const float* values, std::size_t mass) {
+    return at(values + 3 * lane_count * mass, 0u);
+  }
   HWY_INLINE Integers3 take(std::size_t mass) const {
     const Pointers3<std::int32_t> from = lanes_of(sums_ + 3 * lane_count * mass);
     const Integers3 sum = load_aligned(from, 0);

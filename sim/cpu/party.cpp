@@ -94,6 +94,29 @@ Party party_of_alike(std::span<const Body> bodies, Group group) {
   return party;
 }
 
+// Orders robots so that many pairs of faces are in one half of them only; two such pairs share a slot.
+void put_like_faces_in_one_half(Party& party) {
+  std::vector<std::shared_ptr<const Seating>>& seatings = party.assembly.seatings;
+  const std::size_t robots = party.bodies.size(), half = robots / 2;
+  const auto shared = [&] {
+    const auto [lower, upper] = halves_of(party.assembly.build->faces.size(), seatings);
+    return std::min(lower.size(), upper.size());
+  };
+  const auto exchange = [&](std::size_t i, std::size_t j) {
+    std::swap(seatings[i], seatings[j]);
+    std::swap(party.bodies[i], party.bodies[j]);
+  };
+  std::size_t most = shared();
+  for (std::size_t i = 0; i < half; ++i)
+    for (std::size_t j = half; j < robots; ++j) {
+      exchange(i, j);
+      if (const std::size_t now = shared(); now > most)
+        most = now;
+      else
+        exchange(i, j);
+    }
+}
+
 Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, Group group) {
   // Seats are the cells that any has a mass in: z slowest, then y.
   constexpr std::uint32_t none = 0xffffffffu;
@@ -108,7 +131,9 @@ Party party_of_similar(std::span<const Body> bodies, const Patterns& patterns, G
     sitters.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
     for (const Cell c : patterns[i]) sitters.back().seats.push_back(seat_of_cell[index_of(c)]);
   }
-  return {std::move(group), assemble(sitters, seats)};
+  Party party{std::move(group), assemble(sitters, seats)};
+  if (bodies[party.bodies.front()].places.lanes >= least_lanes_to_split) put_like_faces_in_one_half(party);
+  return party;
 }
 
 // What a step costs, in slots of a group; measured with eight lanes.

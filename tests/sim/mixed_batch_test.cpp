@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "bodies.h"
 #include "kernel_cases.h"
 #include "sim/cpu/backend.h"
+#include "sim/cpu/lockstep.h"
 #include "sim/cpu/party.h"
 #include "sim/cpu/similar.h"
 
@@ -316,6 +318,41 @@ TEST(Parties, SeatEveryMassSpringAndFaceOnce) {
         EXPECT_TRUE(seat.a == seats[own.a] && seat.b == seats[own.b] && seat.c == seats[own.c] && seat.d == seats[own.d]);
       }
     }
+  }
+}
+
+// The corners that a lane's half of a slot holds are those of its robot's pair of faces, also where two pairs share a slot.
+TEST(Parties, PairsOfFacesThatShareASlotAreTheirRobotsOwn) {
+  for (const std::size_t lanes : {4u, 8u, 16u}) {
+    const std::vector<Robot> robots = crowd(lanes);
+    std::vector<cpu::Body> bodies;
+    for (const Robot& robot : robots) bodies.push_back(cpu::make_body(robot, lanes));
+    std::size_t shared = 0;
+    for (const cpu::Party& party : cpu::find_parties(bodies, 1, {})) {
+      const cpu::Lockstep group = cpu::make_lockstep(bodies, party.bodies, party.assembly, false);
+      shared += group.split_faces.size();
+      for (std::size_t lane = 0; lane < party.bodies.size(); ++lane) {
+        const cpu::Seating& seating = *group.seatings[lane];
+        const std::vector<FacePair>& pairs = bodies[party.bodies[lane]].face_pairs;
+        std::set<std::uint32_t> slots;
+        for (std::size_t p = 0; p < pairs.size(); ++p) {
+          const std::uint32_t slot = group.face_slots[seating.faces[p]];
+          EXPECT_TRUE(slots.insert(slot).second) << "two pairs of a robot in one slot";
+          std::array<std::uint32_t, 4> corners{};
+          if (slot < group.faces.size()) {
+            const auto& [a, b, c, d] = group.faces[slot];
+            corners = {a, b, c, d};
+          } else {
+            const auto& [a, b, c, d] = group.split_faces[slot - group.faces.size()];
+            const auto mine = [&](cpu::Lockstep::Halves seats) { return 2 * lane < lanes ? seats.lower : seats.upper; };
+            corners = {mine(a), mine(b), mine(c), mine(d)};
+          }
+          const auto start = [&](std::uint16_t mass) { return group.start_of(seating.seats[mass]); };
+          EXPECT_EQ(corners, (std::array{start(pairs[p].a), start(pairs[p].b), start(pairs[p].c), start(pairs[p].d)}));
+        }
+      }
+    }
+    EXPECT_EQ(shared > 0, lanes > 4) << lanes << " lanes";
   }
 }
 
