@@ -42,7 +42,9 @@ class Playback final : public Backend {
   void write_materials(std::span<const Material> tables) override { robots_->write_materials(tables); }
   void write_materials(std::size_t robot, std::span<const Material> table) override { robots_->write_materials(robot, table); }
   void set_pulls(std::span<const Pull>) override {}
-  std::vector<RobotReport> report(const Clock& clock) const override { return at_present().report(clock); }
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
+    at_present().report(clock, telemetry, statuses);
+  }
 
  private:
   void go_to(std::int64_t step) {

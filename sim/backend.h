@@ -24,11 +24,6 @@ struct RobotStatus {
   std::uint32_t bad_mass = no_mass;  // lowest mass that left the finite, if one did
 };
 
-struct RobotReport {
-  Telemetry telemetry;  // everything but what follows from the status
-  RobotStatus status;
-};
-
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -66,8 +61,8 @@ class Backend {
   virtual void write_materials(std::size_t robot, std::span<const Material> table) = 0;
 
   virtual void set_pulls(std::span<const Pull> pulls) = 0;
-  // One a robot.
-  virtual std::vector<RobotReport> report(const Clock& clock) const = 0;
+  // One element a robot; of its telemetry all but what follows from its status.
+  virtual void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const = 0;
 };
 
 std::unique_ptr<Backend> make_cpu_backend(const Device& device);

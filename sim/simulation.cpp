@@ -73,6 +73,7 @@ struct Simulation::Parts {
   std::vector<std::size_t> offsets{0};
   std::vector<Material> materials;
   mutable std::vector<KnownExplosion> explosions;  // one a robot
+  mutable std::vector<RobotStatus> reported;       // statuses, filled by telemetry()
   std::unique_ptr<Backend> backend;
 
   std::size_t size() const { return robots.size(); }
@@ -323,12 +324,11 @@ void Simulation::set_state(std::size_t robot, const State& state) {
 }
 
 std::vector<Telemetry> Simulation::telemetry() const {
-  const std::vector<RobotReport> reports = parts_->backend->report(parts_->clock);
-  std::vector<Telemetry> all(reports.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i] = reports[i].telemetry;
-    parts_->complete(all[i], i, reports[i].status);
-  }
+  std::vector<Telemetry> all(parts_->size());
+  std::vector<RobotStatus>& statuses = parts_->reported;
+  statuses.resize(all.size());
+  parts_->backend->report(parts_->clock, all, statuses);
+  for (std::size_t i = 0; i < all.size(); ++i) parts_->complete(all[i], i, statuses[i]);
   return all;
 }
 Telemetry Simulation::telemetry(std::size_t robot) const {

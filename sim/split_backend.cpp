@@ -107,8 +107,11 @@ class SplitBackend final : public Backend {
     for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_pulls(shares[p]);
   }
 
-  std::vector<RobotReport> report(const Clock& clock) const override {
-    return gather<RobotReport>([&](const Backend& part) { return part.report(clock); });
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
+    for_each_part([&](std::size_t p) {
+      const std::size_t first = first_robot_[p], count = first_robot_[p + 1] - first;
+      parts_[p]->report(clock, telemetry.subspan(first, count), statuses.subspan(first, count));
+    });
   }
 
  private:

@@ -126,10 +126,11 @@ class CpuBackend final : public Backend {
     for (const Pull& pull : pulls) bodies_[pull.robot].pulls.push_back(pull);
   }
 
-  std::vector<RobotReport> report(const Clock& clock) const override {
-    std::vector<RobotReport> all(bodies_.size());
-    for_each_body([&](std::size_t i) { all[i] = {measure_state(bodies_[i], configuration_, clock), bodies_[i].status}; });
-    return all;
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
+    for_each_body([&](std::size_t i) {
+      telemetry[i] = measure_state(bodies_[i], configuration_, clock);
+      statuses[i] = bodies_[i].status;
+    });
   }
 
  private:

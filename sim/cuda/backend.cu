@@ -9,7 +9,6 @@
 #include "sim/cuda/batch.h"
 #include "sim/cuda/block.cuh"
 #include "sim/cuda/step.h"
-#include "sim/cuda/telemetry.h"
 
 namespace mercury {
 namespace {
@@ -67,21 +66,19 @@ class CudaBackend final : public Backend {
   void step(const Clock& clock, std::int64_t steps) override {
     if (batch_.size() == 0) return;
     use_device();
-    batch_.update_phases(clock);
-    StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
-    if (const Land* land = std::get_if<Land>(&configuration_.environment))
-      arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
+    StepArguments arguments = prepare(clock);
+    // Who asked for a report after the last call will ask again.
+    report_made_ = std::exchange(report_expected_, false);
+    DeviceTelemetry* const report = report_made_ ? reports_on_device() : nullptr;
     Event start, end;
     start.record();
     for (std::int64_t done = 0; done < steps; done += arguments.steps) {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));
+      arguments.report = done + arguments.steps == steps ? report : nullptr;
       launch_steps(configuration_.solver, hooks_, arguments, nullptr);
     }
     end.record();
-    // Who asked for a report after the last call will ask again: it is on its way before the host has heard of the end.
-    report_started_ = std::exchange(report_expected_, false);
-    if (report_started_) start_report({clock.dt, clock.base_time, clock.base_step, clock.step + steps});
     busy_seconds_ += end.seconds_since(start);
   }
 
@@ -135,28 +132,27 @@ class CudaBackend final : public Backend {
     batch_.set_pulls(pulls);
   }
 
-  std::vector<RobotReport> report(const Clock& clock) const override {
-    std::vector<RobotReport> all(batch_.size());
-    if (all.empty()) return all;
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
+    if (telemetry.empty()) return;
     use_device();
-    if (!std::exchange(report_started_, false)) start_report(clock);
     report_expected_ = true;
-    check(cudaDeviceSynchronize(), "reading telemetry");
-    const auto first_mass = batch_.first_mass();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const DeviceTelemetry& device = sums_[i];
-      const auto masses = static_cast<double>(first_mass[i + 1] - first_mass[i]);
-      const auto mean = [&](const double* sum) {
-        return Vec3{static_cast<float>(sum[0] / masses), static_cast<float>(sum[1] / masses), static_cast<float>(sum[2] / masses)};
-      };
-      all[i].telemetry.center_of_mass = mean(device.sums);
-      all[i].telemetry.velocity = mean(device.sums + 3);
-      all[i].telemetry.kinetic_energy = device.sums[6];
-      all[i].telemetry.elastic_energy = device.sums[7];
-      all[i].telemetry.largest_strain = device.largest_strain;
-      all[i].status = {device.exploded_step, device.bad_mass};
+    if (!report_made_) {
+      StepArguments arguments = prepare(clock);
+      arguments.report = reports_on_device();
+      launch_steps(configuration_.solver, hooks_, arguments, nullptr);
+      check(cudaDeviceSynchronize(), "reading telemetry");
+      report_made_ = true;
     }
-    return all;
+    for (std::size_t i = 0; i < telemetry.size(); ++i) {
+      const DeviceTelemetry& device = reports_[i];
+      Telemetry& told = telemetry[i];  // field by field: a whole one would be built beside it, and copied
+      told.center_of_mass = device.center_of_mass;
+      told.velocity = device.velocity;
+      told.kinetic_energy = device.kinetic_energy;
+      told.elastic_energy = device.elastic_energy;
+      told.largest_strain = device.largest_strain;
+      statuses[i] = {device.exploded_step, device.bad_mass};
+    }
   }
 
  private:
@@ -182,23 +178,31 @@ class CudaBackend final : public Backend {
     packed_.read(0, std::span(&out.front().x, 3 * out.size()));
   }
 
-  // What the caller changes makes a report that was begun before void.
+  // What the caller changes makes a report that was made before void.
   void begin_change() {
     use_device();
-    report_started_ = false;
+    report_made_ = false;
   }
 
-  void start_report(const Clock& clock) const {
+  // No steps yet, from the clock on.
+  StepArguments prepare(const Clock& clock) const {
     batch_.update_phases(clock);
-    if (sums_.size() != batch_.size()) sums_ = MappedArray<DeviceTelemetry>(batch_.size());
-    launch_telemetry(batch_.view(), clock, stiffness_scale_of(configuration_.environment), batch_.rows_placed(), sums_.on_device());
+    StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
+    if (const Land* land = std::get_if<Land>(&configuration_.environment))
+      arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
+    return arguments;
+  }
+
+  DeviceTelemetry* reports_on_device() const {
+    if (reports_.size() != batch_.size()) reports_ = MappedArray<DeviceTelemetry>(batch_.size());
+    return reports_.on_device();
   }
 
   int device_;
   std::string name_;
   mutable Batch batch_;  // its phases follow the clock when somebody asks
-  mutable MappedArray<DeviceTelemetry> sums_;
-  mutable bool report_expected_ = false, report_started_ = false;
+  mutable MappedArray<DeviceTelemetry> reports_;  // of the present state, once made
+  mutable bool report_made_ = false, report_expected_ = false;
   mutable DeviceArray<float> packed_;  // what is read of all masses
   Configuration configuration_;
   AnyHooks hooks_ = OceanHooks(Ocean{});

@@ -17,7 +17,6 @@ class Batch {
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
   std::uint32_t groups() const { return group_stride_; }  // of the largest robot
   std::span<const Robot* const> robots() const { return robots_; }
-  std::span<const std::uint64_t> first_mass() const { return first_mass_; }  // size + 1 elements
 
   // Follows a change of configuration: scales, and where a record's partner lies in the working memory.
   void configure(const Configuration& configuration);

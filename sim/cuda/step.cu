@@ -3,16 +3,11 @@
 
 #include "sim/cuda/material_table.cuh"
 #include "sim/cuda/memory.h"
+#include "sim/cuda/report.cuh"
 #include "sim/cuda/step.cuh"
 
 namespace mercury::cuda {
 namespace {
-
-extern __shared__ char shared_memory[];
-
-__device__ std::uint32_t shared_address(const void* pointer) {
-  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
-}
 
 // With 72 registers a multiprocessor holds 28 warps.
 template <Solver solver, class Hooks, class Memory, int record_words>
@@ -20,41 +15,20 @@ __global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Hooks hooks) {
   using Stepper = RobotStepper<solver, Hooks, Memory, record_words>;
   const Shape& shape = arguments.shape;
-  const BatchView& batch = arguments.batch;
-  const std::uint32_t lane = threadIdx.x % lanes, block_warp = threadIdx.x / lanes;
-  const std::uint32_t seat = block_warp / shape.warps_per_robot, warp = block_warp % shape.warps_per_robot;
-  const std::uint32_t first_robot = blockIdx.x * shape.robots_per_block;
-  const std::uint32_t robot = min(first_robot + seat, batch.robot_count - 1);
-  const BlockLayout layout = block_layout(shape, batch.group_stride, Stepper::rows);
-  const std::uint32_t working_bytes = batch.group_stride * Stepper::group_bytes;
-
-  auto* const failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + seat;
-  char* const workspace = batch.workspace + std::size_t{robot} * batch.workspace_stride;
-  typename Memory::Address masses;
-  if constexpr (Memory::on_chip)
-    masses = shared_address(shared_memory) + layout.contacts + seat * working_bytes;
-  else
-    masses = workspace;
-  char* const contacts = shape.contacts_on_chip
-                             ? shared_memory + layout.lengths + seat * contact_bytes(shape.contact_buckets, batch.group_stride)
-                             : workspace + (Memory::on_chip ? 0 : working_bytes);
-
-  const std::uint32_t table_copies = 1u << shape.table_copy_bits;
-  SpringLaw* const table = reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : seat * table_copies * max_materials);
-  MaterialTable materials(arguments, shape.shared_table ? 0 : robot, shape.shared_table ? block_warp : warp,
-                          shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, lane, table);
-  materials.template fill<solver>(arguments, batch.robots[shape.shared_table ? first_robot : robot]);
-
-  float* const lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + seat * max_lengths;
+  const BlockPlaces<Memory> places(arguments, Stepper::rows);
+  const Seat<Memory>& seat = places.seat;
+  MaterialTable materials(arguments, shape.shared_table ? places.first_robot : seat.robot,
+                          shape.shared_table ? threadIdx.x / lanes : seat.warp,
+                          shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, seat.lane, places.table);
+  materials.template fill<solver>(arguments, arguments.batch.robots[shape.shared_table ? places.first_robot : seat.robot]);
   if constexpr (record_words == 1)
-    for (std::uint32_t i = warp * lanes + lane; i < max_lengths; i += shape.warps_per_robot * lanes)
-      lengths[i] = batch.lengths[std::size_t{robot} * max_lengths + i];
+    for (std::uint32_t i = seat.warp * lanes + seat.lane; i < max_lengths; i += shape.warps_per_robot * lanes)
+      places.lengths[i] = arguments.batch.lengths[std::size_t{seat.robot} * max_lengths + i];
 
-  Stepper stepper(arguments, hooks, robot, warp, lane, masses, shared_address(table + lane % table_copies),
-                  shared_address(lengths), failure, contacts);
+  Stepper stepper(arguments, hooks, seat, places.failure, places.contacts);
   // The last block may have seats left; those and robots that exploded earlier only keep the barriers company.
-  const bool seated = first_robot + seat < batch.robot_count && stepper.alive();
-  if (warp == 0 && lane == 0) *failure = {seated ? never : 0, never};
+  const bool seated = places.has_robot && stepper.alive();
+  if (seat.warp == 0 && seat.lane == 0) *places.failure = {seated ? never : 0, never};
   stepper.load_state();
   stepper.expect_environment();
   __syncthreads();
@@ -79,6 +53,9 @@ __global__ void __maxnreg__(72)
     else
       __syncthreads();
   }
+  if (seated) stepper.store_status();
+  if (arguments.report)
+    report<solver, Memory, record_words>(stepper, places.has_robot ? arguments.report + seat.robot : nullptr);
   if (seated) stepper.store_state();
 }
 

@@ -1,38 +1,29 @@
-// The step kernel's work: every robot of a block is carried through many steps with its masses on the chip.
-//
-// A block steps `robots_per_block` robots side by side; each has `warps_per_robot` warps, which share its groups of 32
-// masses among them. All sums are integers (sim/fixed_point.h), so neither the number of warps nor the other robots of
-// the batch can change a bit of the result.
+// The step kernel's work: every robot of a block is carried through many steps with its masses on the chip. All sums are
+// integers (sim/fixed_point.h), so neither the number of warps nor the other robots of the batch can change a bit of the
+// result.
 #pragma once
 
-#include "sim/cuda/block.cuh"
+#include "sim/cuda/block_robot.cuh"
 #include "sim/cuda/contacts.cuh"
-#include "sim/cuda/mass_memory.cuh"
 #include "sim/fixed_point.h"
 #include "sim/springs.h"
 
 namespace mercury::cuda {
 
-// One robot of a block, as one of its threads sees it.
+// A robot that is stepped.
 template <Solver solver, class Hooks, class Memory, int record_words>
-class RobotStepper {
+class RobotStepper : public BlockRobot<solver, Memory, record_words> {
+  using Robot = BlockRobot<solver, Memory, record_words>;
+  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_, Robot::last_group_,
+      Robot::warps, Robot::thread, Robot::own, Robot::is_mass, Robot::offset_of, Robot::at, Robot::state, Robot::row_start,
+      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::law_of, Robot::for_each_rows;
+
  public:
-  static constexpr std::uint32_t rows = working_rows(solver, Memory::keeps_splits);
-  static constexpr std::uint32_t group_bytes = rows * row_bytes;
-  using Address = typename Memory::Address;
-
-  // Shared addresses: `table` of this lane's copy of the material table, `lengths` of the rest lengths.
-  __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, std::uint32_t robot, std::uint32_t warp,
-                          std::uint32_t lane, Address masses, std::uint32_t table, std::uint32_t lengths, Failure* failure,
+  __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat, Failure* failure,
                           char* contacts)
-      : arguments_(arguments), hooks_(hooks), record_(arguments.batch.robots[robot]), robot_(robot), warp_(warp),
-        lane_(lane), masses_(masses), table_(table), lengths_(lengths), failure_(failure), contacts_(contacts) {
-    const std::uint32_t turns = (record_.groups + warps() - 1) / warps();
-    first_group_ = min(warp * turns, record_.groups);
-    last_group_ = min(first_group_ + turns, record_.groups);
-  }
+      : Robot(arguments, seat), hooks_(hooks), failure_(failure), contacts_(contacts) {}
 
-  __device__ bool alive() const { return arguments_.batch.statuses[robot_].exploded_step < 0; }
+  __device__ bool alive() const { return arguments_.batch.statuses[seat_.robot].exploded_step < 0; }
 
   __device__ void load_state() {
     for (std::uint32_t g = first_group_; g < last_group_; ++g) {
@@ -40,7 +31,7 @@ class RobotStepper {
       const float* from = state(g);
       for (std::uint32_t row = 0; row < state_rows; ++row) mass.set_value(row, from[row * lanes]);
       mass.set_sum(solver == Solver::force ? springs_bias(g) : 0);
-      if constexpr (solver == Solver::xpbd && Memory::keeps_splits) mass.set_value(row_splits, splits_of(g * lanes + lane_));
+      if constexpr (solver == Solver::xpbd && Memory::keeps_splits) mass.set_value(row_splits, splits_of(g * lanes + seat_.lane));
     }
   }
 
@@ -49,10 +40,11 @@ class RobotStepper {
       float* to = state(g);
       for (std::uint32_t row = 0; row < state_rows; ++row) to[row * lanes] = own(g).value(row);
     }
-    if (thread() == 0 && failure_->when != never) {
-      arguments_.batch.statuses[robot_].exploded_step = arguments_.clock.step + failure_->when / 4;
-      arguments_.batch.statuses[robot_].bad_mass = failure_->bad_mass;
-    }
+  }
+  // By thread 0.
+  __device__ void store_status() const {
+    if (thread() != 0 || failure_->when == never) return;
+    arguments_.batch.statuses[seat_.robot] = {arguments_.clock.step + failure_->when / 4, failure_->bad_mass};
   }
 
   // Lists the near pairs anew; holds barriers of the block.
@@ -65,7 +57,7 @@ class RobotStepper {
     const float inverse_size = 1 / (list_radius * record_.contact_distance);
     for (std::uint32_t g = first_group_; collides() && g < last_group_; ++g) {
       if (!is_mass(g)) continue;
-      const std::uint32_t mass = g * lanes + lane_;
+      const std::uint32_t mass = g * lanes + seat_.lane;
       const std::uint32_t bucket = bucket_of(cell_of(own(g).vector(row_x), inverse_size), buckets() - 1);
       memory.links[mass] = static_cast<std::uint16_t>(atomicExch(memory.heads + bucket, mass));
     }
@@ -148,42 +140,13 @@ class RobotStepper {
   }
 
  private:
-  __device__ std::uint32_t warps() const { return arguments_.shape.warps_per_robot; }
-  __device__ std::uint32_t thread() const { return warp_ * lanes + lane_; }
-  __device__ Mass<Memory> own(std::uint32_t group) const { return {masses_ + group * group_bytes + lane_ * 4}; }
-  __device__ bool is_mass(std::uint32_t group) const { return group * lanes + lane_ < record_.masses; }
-  __device__ static std::uint32_t offset_of(std::uint32_t mass) { return mass / lanes * group_bytes + mass % lanes * 4; }
-  __device__ Mass<Memory> at(std::uint32_t mass) const { return {masses_ + offset_of(mass)}; }
-
-  __device__ float* state(std::uint32_t group) const {
-    return arguments_.batch.state + (std::size_t{robot_} * arguments_.batch.group_stride + group) * state_rows * lanes + lane_;
-  }
   __device__ std::size_t mass_index(std::uint32_t group) const {
-    return (std::size_t{robot_} * arguments_.batch.group_stride + group) * lanes + lane_;
-  }
-  __device__ const std::uint32_t* row_start() const {
-    return arguments_.batch.row_start + std::size_t{robot_} * (arguments_.batch.group_stride + 1);
-  }
-  using Record = std::conditional_t<record_words == 1, uint1, uint2>;
-  __device__ const Record* springs() const {
-    return reinterpret_cast<const Record*>(arguments_.batch.springs) + std::size_t{robot_} * arguments_.batch.row_stride * lanes;
-  }
-  __device__ Mass<Memory> partner_of(const Record& record) const {
-    if constexpr (Memory::on_chip)
-      return {masses_ + __byte_perm(record.x, 0, 0x4432) * 4};  // one instruction less than record.x >> 16
-    else
-      return at(record.x >> 16);
-  }
-  __device__ float rest_length_of(const Record& record) const {
-    if constexpr (record_words == 1)
-      return OnChip::load(lengths_ + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
-    else
-      return __uint_as_float(record.y);
+    return (std::size_t{seat_.robot} * arguments_.batch.group_stride + group) * lanes + seat_.lane;
   }
 
   // The number of springs at a mass, in units of corrections.
   __device__ float splits_of(std::uint32_t mass) const {
-    const float* splits = arguments_.batch.splits + std::size_t{robot_} * arguments_.batch.group_stride * lanes;
+    const float* splits = arguments_.batch.splits + std::size_t{seat_.robot} * arguments_.batch.group_stride * lanes;
     return __ldg(splits + mass) / record_.correction_scale;
   }
   __device__ float own_splits(std::uint32_t group, const Mass<Memory>& mass) const {
@@ -192,13 +155,13 @@ class RobotStepper {
     else if constexpr (Memory::keeps_splits)
       return mass.value(row_splits);
     else
-      return splits_of(group * lanes + lane_);
+      return splits_of(group * lanes + seat_.lane);
   }
   __device__ float partner_splits(const Record& record, const Mass<Memory>& partner) const {
     if constexpr (Memory::keeps_splits)
       return partner.value(row_splits);
     else
-      return splits_of(slot_at(record.x >> 16, rows));
+      return splits_of(slot_at(record.x >> 16, Robot::rows));
   }
 
   // What every spring that ends at a mass adds to its sum besides its force: the bits of the rounding constant.
@@ -232,7 +195,7 @@ class RobotStepper {
       own(group).set_vector(row_x, x);
       own(group).set_vector(row_v, v);
     } else {
-      fail(step, phase, slot_order(record_).mass_of(group * lanes + lane_));
+      fail(step, phase, slot_order(record_).mass_of(group * lanes + seat_.lane));
     }
   }
 
@@ -255,7 +218,7 @@ class RobotStepper {
       partner[i] = partner_of(records[i]);
       rest_length[i] = rest_length_of(records[i]);
       d[i] = owner.x - partner[i].vector(row_x);
-      law[i] = load_pair(table_ + (records[i].x & 0xff) * law_bytes());
+      law[i] = law_of(records[i]);
       if constexpr (solver == Solver::xpbd) splits[i] = owner.splits + partner_splits(records[i], partner[i]);
     }
 #pragma unroll
@@ -278,64 +241,23 @@ class RobotStepper {
     }
   }
 
-  __device__ std::uint32_t law_bytes() const {
-    return static_cast<std::uint32_t>(sizeof(SpringLaw)) << arguments_.shape.table_copy_bits;
-  }
-
-  // Past the L1 cache, which is left to what is read again.
-  __device__ static void load_records(const Record* from, Record (&records)[rows_at_once]) {
-#pragma unroll
-    for (int i = 0; i < rows_at_once; ++i) {
-      if constexpr (record_words == 1)
-        asm volatile("ld.global.nc.L1::no_allocate.u32 %0, [%1];" : "=r"(records[i].x) : "l"(from + i * lanes));
-      else
-        asm volatile("ld.global.nc.L1::no_allocate.v2.u32 {%0, %1}, [%2];"
-                     : "=r"(records[i].x), "=r"(records[i].y)
-                     : "l"(from + i * lanes));
-    }
-  }
-
-  // All springs of this warp's masses, whose rows follow one another; the records of the next rows are on their way
-  // while the present ones are computed. Returns the longest |d|^2.
+  // All springs of this warp's masses. Returns the longest |d|^2.
   __device__ float add_all_springs() const {
     float longest = 0;
-    if (first_group_ == last_group_) return longest;
-    const std::uint32_t* start = row_start();
-    std::uint32_t row = start[first_group_];
-    const Record* next = springs() + std::size_t{row} * lanes + lane_;
-    Record records[rows_at_once];
-    load_records(next, records);
-    for (std::uint32_t g = first_group_; g < last_group_; ++g) {
-      const Mass<Memory> mass = own(g);
-      const std::uint32_t last = start[g + 1];
-      const int bias = static_cast<int>(last - row) * rounding_magic_bits;
-      Owner owner{mass.vector(row_x), own_splits(g, mass), bias, bias, bias};
-      for (; row < last; row += rows_at_once) {
-        Record present[rows_at_once];
-#pragma unroll
-        for (int i = 0; i < rows_at_once; ++i) present[i] = records[i];
-        const std::uint32_t left = last - row;
-        next += min(left, static_cast<std::uint32_t>(rows_at_once)) * lanes;
-        load_records(next, records);
-        if (left >= 4)
-          add_rows<4>(present, owner, longest);
-        else if (left == 3)
-          add_rows<3>(present, owner, longest);
-        else if (left == 2)
-          add_rows<2>(present, owner, longest);
-        else
-          add_rows<1>(present, owner, longest);
-      }
-      row = last;
-      mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z);
-    }
+    for_each_rows(
+        [&](std::uint32_t group, const Mass<Memory>& mass, std::uint32_t rows_owned) {
+          const int bias = static_cast<int>(rows_owned) * rounding_magic_bits;
+          return Owner{mass.vector(row_x), own_splits(group, mass), bias, bias, bias};
+        },
+        [&](auto count, const Record* records, Owner& owner) { add_rows<decltype(count)::value>(records, owner, longest); },
+        [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
     return longest;
   }
 
   // The last warps begin, since the first ones have the material table to look after.
-  __device__ std::uint32_t first_face_pair() const { return (warps() - 1 - warp_) * lanes + lane_; }
+  __device__ std::uint32_t first_face_pair() const { return (warps() - 1 - seat_.warp) * lanes + seat_.lane; }
   __device__ ushort4 face_pair(std::uint32_t p) const {
-    const FacePair* pairs = arguments_.batch.face_pairs + std::size_t{robot_} * arguments_.batch.face_stride;
+    const FacePair* pairs = arguments_.batch.face_pairs + std::size_t{seat_.robot} * arguments_.batch.face_stride;
     return __ldg(reinterpret_cast<const ushort4*>(pairs + p));
   }
 
@@ -344,8 +266,8 @@ class RobotStepper {
     float longest = 0;
     for (std::uint32_t g = first_group_; g < last_group_; ++g)
       for (std::uint32_t row = row_start()[g]; row < row_start()[g + 1]; ++row) {
-        const Record record = springs()[std::size_t{row} * lanes + lane_];
-        if ((record.x & 0xff) == air) continue;
+        const Record record = springs()[std::size_t{row} * lanes + seat_.lane];
+        if (material_of(record) == air) continue;
         longest = fmaxf(longest, squared_length(own(g).vector(row_x) - partner_of(record).vector(row_x)));
       }
     return longest;
@@ -383,7 +305,7 @@ class RobotStepper {
   __device__ void add_pulls() {
     for (std::uint32_t p = 0; p < arguments_.batch.pull_count; ++p) {
       const DevicePull& pull = arguments_.batch.pulls[p];
-      if (pull.robot != robot_) continue;
+      if (pull.robot != seat_.robot) continue;
       const Vec3 units = pull.stiffness * record_.force_scale * (pull.target - at(pull.slot).vector(row_x));
       if (fits(units)) at(pull.slot).add_to_sum(units);
     }
@@ -399,7 +321,7 @@ class RobotStepper {
     const auto position = [&](std::uint32_t j) { return at(j).vector(row_x); };
     for (std::uint32_t g = first_group_; g < last_group_; ++g) {
       if (!is_mass(g)) continue;
-      const std::uint32_t i = g * lanes + lane_;
+      const std::uint32_t i = g * lanes + seat_.lane;
       const Vec3 x = own(g).vector(row_x);
       for_each_near(contact_memory(), buckets(), record_.contact_distance, i, x, position,
                     [&](std::uint32_t j) { visit(i, x, j); });
@@ -442,15 +364,9 @@ class RobotStepper {
     return false;
   }
 
-  const StepArguments& arguments_;
   const Hooks& hooks_;
-  const RobotRecord record_;
-  const std::uint32_t robot_, warp_, lane_;
-  std::uint32_t first_group_, last_group_;
   float travelled_ = 0;  // no mass of this thread has gone farther since contacts were listed
   ushort4 first_faces_{};
-  const Address masses_;
-  const std::uint32_t table_, lengths_;
   Failure* const failure_;
   char* const contacts_;
 };

@@ -5,6 +5,7 @@
 
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/layout.h"
+#include "sim/cuda/telemetry.h"
 #include "sim/environments.h"
 #include "sim/integration.h"
 
@@ -18,6 +19,7 @@ struct StepArguments {
   float contact_stiffness = 0;  // [N/m], times the stiffness scale
   std::uint32_t steps = 0;
   Shape shape;
+  DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
 };
 
 using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;

@@ -1,20 +1,19 @@
-// Telemetry reduced on the device.
+// Telemetry as the device reports it.
 #pragma once
 
-#include "sim/cuda/layout.h"
+#include <cstdint>
+
+#include "sim/vec3.h"
 
 namespace mercury::cuda {
 
-struct DeviceTelemetry {
-  double sums[8];  // over the masses and springs: position, velocity, kinetic energy, elastic energy
+// One line of the host's memory, written at once.
+struct alignas(64) DeviceTelemetry {
+  Vec3 center_of_mass, velocity;
   float largest_strain;
   std::uint32_t bad_mass;
+  double kinetic_energy, elastic_energy;
   long long exploded_step;
 };
-
-// One block a robot; the order of every sum is fixed by the robot alone. `rows` = as the records are placed
-// (Batch::place_records).
-void launch_telemetry(const BatchView& batch, const Clock& clock, float stiffness_scale, std::uint32_t rows,
-                      DeviceTelemetry* out);
 
 }  // namespace mercury::cuda

@@ -39,10 +39,11 @@ TEST(SplitBackend, GivesWhatOnePartGivesForEveryRobot) {
   one->read_positions(all1);
   split->read_positions(all2);
   EXPECT_EQ(all1, all2);
-  const auto report1 = one->report(start), report2 = split->report(start);
-  ASSERT_EQ(report2.size(), robots.size());
-  for (std::size_t i = 0; i < robots.size(); ++i)
-    EXPECT_EQ(report1[i].telemetry.elastic_energy, report2[i].telemetry.elastic_energy);
+  std::vector<Telemetry> telemetry1(robots.size()), telemetry2(robots.size());
+  std::vector<RobotStatus> statuses(robots.size());
+  one->report(start, telemetry1, statuses);
+  split->report(start, telemetry2, statuses);
+  for (std::size_t i = 0; i < robots.size(); ++i) EXPECT_EQ(telemetry1[i].elastic_energy, telemetry2[i].elastic_energy);
 }
 
 }  // namespace

@@ -69,6 +69,32 @@ TEST_P(TelemetryOf, ARobotIsThatOfTheMomentItIsAskedFor) {
   EXPECT_NEAR(simulation.telemetry(0).elastic_energy, 2 * soft, 1e-5 * soft);
 }
 
+// Whether it is made while stepping or apart, and whoever else is in the batch.
+TEST_P(TelemetryOf, ARobotIsTheSameHoweverItIsAskedFor) {
+  const Robot robot = bodies::random_voxels({}, 1);
+  const State start = bodies::shaken(robot, 0.01f, 0.2f, 3);
+  const auto told = [&](std::vector<Robot> robots, int calls) {
+    Simulation simulation(configuration(), robots);
+    simulation.set_state(0, start.positions, start.velocities);
+    Telemetry last;
+    for (int call = 0; call < calls; ++call) {
+      simulation.step(60 / calls);
+      last = simulation.telemetry(0);
+    }
+    return last;
+  };
+  const Telemetry once = told({robot}, 1);
+  const std::vector<Robot> several = {robot, bodies::random_voxels({.x = 9, .y = 8, .z = 7}, 2), bodies::point({1, 2, 3}),
+                                      bodies::pair({50, 0.3f, 4, 1})};
+  for (const Telemetry& other : {told({robot}, 3), told(several, 1), told(several, 4)}) {
+    EXPECT_EQ(other.center_of_mass, once.center_of_mass);
+    EXPECT_EQ(other.velocity, once.velocity);
+    EXPECT_EQ(other.kinetic_energy, once.kinetic_energy);
+    EXPECT_EQ(other.elastic_energy, once.elastic_energy);
+    EXPECT_EQ(other.largest_strain, once.largest_strain);
+  }
+}
+
 class Reading : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, BackendTest::name);
 
