@@ -12,24 +12,24 @@ MERCURY_HOST_DEVICE auto squared_length(Vector d) {
   return multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, 1e-20f)));
 }
 
-// (|d| - L) / |d|, the part of d that a spring wants to lose.
+// (|d| - L) / |d|, the part of d that a spring wants to lose. With a power of two for `one`, and L times it, the result is
+// times it, too, bit for bit.
 template <class Real>
-MERCURY_HOST_DEVICE Real excess(Real squared, Real length) {
-  return negative_multiply_add(length, inverse_sqrt(squared), 1.0f);
+MERCURY_HOST_DEVICE Real excess(Real squared, Real length, Real one = 1.0f) {
+  return negative_multiply_add(length, inverse_sqrt(squared), one);
 }
 
 // Eq. 2 (Hooke's law): the force on the first mass is this times d = x_second - x_first.
 template <class Real>
-MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness) {
-  return stiffness * excess(squared, length);
+MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness, Real one = 1.0f) {
+  return stiffness * excess(squared, length, one);
 }
 
 // Eq. 3 and 4, with the missing -L restored and the gradient's square replaced by the split masses (Tonge et al. 2012):
-// lambda / |d| with lambda = (|d| - L) / (s_a + s_b + 1/(k dt^2)). The first mass moves by this times d. Splits and
-// compliance come divided by the fixed-point scale, so that the result is in units.
+// lambda / |d| with lambda = (|d| - L) / (s_a + s_b + 1/(k dt^2)). The first mass moves by this times d.
 template <class Real>
-MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real splits, Real compliance) {
-  return excess(squared, length) * inverse(splits + compliance);
+MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real splits, Real compliance, Real one = 1.0f) {
+  return excess(squared, length, one) * inverse(splits + compliance);
 }
 // The last factor, which a spring keeps from step to step: with it for stiffness, hooke() gives xpbd() bit for bit.
 template <class Real>

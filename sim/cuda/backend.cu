@@ -160,7 +160,7 @@ class CudaBackend final : public Backend {
 
   void choose() {
     if (batch_.size() == 0) return;
-    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.view(), batch_.same_laws());
+    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.view(), batch_.same_materials());
     const std::uint32_t rows = working_rows(configuration_.solver, shape_.splits_on_chip);
     batch_.place_records(shape_.on_chip ? rows : 0);
     std::size_t workspace = 0;

@@ -183,10 +183,9 @@ void Batch::update_scales(const Configuration& configuration) {
   });
   device_records_.write(0, records_);
   const auto first_table = materials_.begin();
-  same_laws_ = std::ranges::all_of(records_, [&](const RobotRecord& record) {
+  same_materials_ = std::ranges::all_of(records_, [&](const RobotRecord& record) {
     const auto i = &record - records_.data();
-    return record.force_scale == records_[0].force_scale && record.correction_scale == records_[0].correction_scale &&
-           std::equal(first_table, first_table + max_materials, first_table + i * max_materials);
+    return std::equal(first_table, first_table + max_materials, first_table + i * max_materials);
   });
 }
 

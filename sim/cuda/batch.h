@@ -31,7 +31,7 @@ class Batch {
   void reserve_workspace(std::size_t bytes_a_robot);
 
   std::uint32_t record_words() const { return record_words_; }
-  bool same_laws() const { return same_laws_; }  // all robots share materials and scales
+  bool same_materials() const { return same_materials_; }  // all robots have the same table
   BatchView view() const;
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const;
@@ -55,7 +55,7 @@ class Batch {
   std::vector<std::uint64_t> first_mass_{0};
   std::uint32_t group_stride_ = 0, row_stride_ = 0, face_stride_ = 0, rows_placed_ = 0, record_words_ = 1;
   std::size_t workspace_stride_ = 0;
-  bool same_laws_ = false;
+  bool same_materials_ = false;
   bool phases_stale_ = true;
   Clock phase_clock_;
 

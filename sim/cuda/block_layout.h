@@ -38,7 +38,7 @@ struct Shape {
 
 // What a spring of one material is at the present step.
 struct alignas(8) SpringLaw {
-  float hardness;  // stiffness in units of force a metre, or 1/(k dt^2) divided by the scale of corrections
+  float hardness;  // stiffness [N/m], or 1/(k dt^2) [1/kg]
   float factor;    // L / L0
 };
 

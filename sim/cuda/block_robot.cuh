@@ -103,11 +103,14 @@ class BlockRobot {
     else
       return at(record.x >> 16);
   }
+  // What springs give is in units of fixed point: their laws are those of the material table, which robots may share, and
+  // their lengths are multiplied by the units in a newton, or in a metre of correction, a power of two.
+  __device__ float unit() const { return solver == Solver::force ? record_.force_scale : record_.correction_scale; }
   __device__ float rest_length_of(const Record& record) const {
     if constexpr (record_words == 1)
       return OnChip::load(seat_.lengths + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
     else
-      return __uint_as_float(record.y);
+      return unit() * __uint_as_float(record.y);
   }
   __device__ static std::uint32_t material_of(const Record& record) { return record.x & 0xff; }
   // .x = hardness, .y = factor

@@ -19,13 +19,13 @@ class MaterialTable {
 
   // Hardness of every material, and the factors of the first step.
   template <Solver solver>
-  __device__ void fill(const StepArguments& arguments, const RobotRecord& record) {
+  __device__ void fill(const StepArguments& arguments) {
     for (std::uint32_t block = warp_; block < blocks; block += warps_) {
       const Material material = materials_[block * lanes + lane_];
       const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
-      float hardness = static_cast<float>(stiffness) * record.force_scale;
+      float hardness = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
-        hardness = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt)) / record.correction_scale;
+        hardness = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       for (std::uint32_t copy = 0; copy < copies_; ++copy)
         table_[(block * lanes + lane_) * copies_ + copy].hardness = hardness;
     }

@@ -14,7 +14,7 @@ template <Solver solver, class Memory, int record_words>
 class RobotReporter : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
   using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::warps, Robot::thread, Robot::own,
-      Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::law_of, Robot::for_each_rows;
+      Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of, Robot::for_each_rows;
 
  public:
   __device__ explicit RobotReporter(const Robot& robot) : Robot(robot) {}
@@ -71,7 +71,7 @@ class RobotReporter : public BlockRobot<solver, Memory, record_words> {
     float rest_length[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      rest_length[i] = rest_length_of(records[i]);
+      rest_length[i] = rest_length_of(records[i]) * (1 / unit());
       d[i] = owned.x - partner_of(records[i]).vector(row_x);
       law[i] = law_of(records[i]);
     }
@@ -89,8 +89,7 @@ class RobotReporter : public BlockRobot<solver, Memory, record_words> {
     }
   }
   __device__ double energy_of_unit() const {
-    if constexpr (solver == Solver::force) return 0.5 / static_cast<double>(record_.force_scale);
-    return 0.5 / (static_cast<double>(record_.correction_scale) * arguments_.clock.dt * arguments_.clock.dt);
+    return solver == Solver::force ? 0.5 : 0.5 / (arguments_.clock.dt * arguments_.clock.dt);
   }
 
   // Of all masses; eight loads a lane are under way together.

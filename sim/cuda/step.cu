@@ -20,15 +20,12 @@ __global__ void __maxnreg__(72)
   MaterialTable materials(arguments, shape.shared_table ? places.first_robot : seat.robot,
                           shape.shared_table ? threadIdx.x / lanes : seat.warp,
                           shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, seat.lane, places.table);
-  materials.template fill<solver>(arguments, arguments.batch.robots[shape.shared_table ? places.first_robot : seat.robot]);
-  if constexpr (record_words == 1)
-    for (std::uint32_t i = seat.warp * lanes + seat.lane; i < max_lengths; i += shape.warps_per_robot * lanes)
-      places.lengths[i] = arguments.batch.lengths[std::size_t{seat.robot} * max_lengths + i];
-
+  materials.template fill<solver>(arguments);
   Stepper stepper(arguments, hooks, seat, places.failure, places.contacts);
   // The last block may have seats left; those and robots that exploded earlier only keep the barriers company.
   const bool seated = places.has_robot && stepper.alive();
   if (seat.warp == 0 && seat.lane == 0) *places.failure = {seated ? never : 0, never};
+  stepper.load_lengths(places.lengths);
   stepper.load_state();
   stepper.expect_environment();
   __syncthreads();
@@ -152,11 +149,11 @@ bool fit_one(Shape& shape, std::uint32_t groups, std::uint32_t rows, const Limit
 
 std::size_t most_shared_bytes() { return device_limits().shared_per_block; }
 
-Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws) {
+Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_materials) {
   const Limits limits = device_limits();
   const std::uint32_t groups = batch.group_stride, robots = batch.robot_count;
   Shape shape;
-  shape.shared_table = same_laws;
+  shape.shared_table = same_materials;
   shape.record_words = batch.record_words;
   shape.contact_buckets = contact_buckets(environment, groups);
   // Fewer robots than multiprocessors: each gets one to itself.

@@ -16,7 +16,7 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
   using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_, Robot::last_group_,
       Robot::warps, Robot::thread, Robot::own, Robot::is_mass, Robot::offset_of, Robot::at, Robot::state, Robot::row_start,
-      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::law_of, Robot::for_each_rows;
+      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of, Robot::for_each_rows;
 
  public:
   __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat, Failure* failure,
@@ -24,6 +24,12 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       : Robot(arguments, seat), hooks_(hooks), failure_(failure), contacts_(contacts) {}
 
   __device__ bool alive() const { return arguments_.batch.statuses[seat_.robot].exploded_step < 0; }
+
+  __device__ void load_lengths(float* lengths) const {
+    if constexpr (record_words == 1)
+      for (std::uint32_t i = thread(); i < max_lengths; i += warps() * lanes)
+        lengths[i] = unit() * arguments_.batch.lengths[std::size_t{seat_.robot} * max_lengths + i];
+  }
 
   __device__ void load_state() {
     for (std::uint32_t g = first_group_; g < last_group_; ++g) {
@@ -144,10 +150,10 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
     return (std::size_t{seat_.robot} * arguments_.batch.group_stride + group) * lanes + seat_.lane;
   }
 
-  // The number of springs at a mass, in units of corrections.
+  // The number of springs at a mass.
   __device__ float splits_of(std::uint32_t mass) const {
     const float* splits = arguments_.batch.splits + std::size_t{seat_.robot} * arguments_.batch.group_stride * lanes;
-    return __ldg(splits + mass) / record_.correction_scale;
+    return __ldg(splits + mass);
   }
   __device__ float own_splits(std::uint32_t group, const Mass<Memory>& mass) const {
     if constexpr (solver == Solver::force)
@@ -228,9 +234,9 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       const float length = rest_length[i] * law[i].y;
       float per_distance;
       if constexpr (solver == Solver::force)
-        per_distance = hooke(squared, length, law[i].x);
+        per_distance = hooke(squared, length, law[i].x, unit());
       else
-        per_distance = xpbd(squared, length, splits[i], law[i].x);
+        per_distance = xpbd(squared, length, splits[i], law[i].x, unit());
       const int x = bits_of(multiply_add(per_distance, d[i].x, rounding_magic));
       const int y = bits_of(multiply_add(per_distance, d[i].y, rounding_magic));
       const int z = bits_of(multiply_add(per_distance, d[i].z, rounding_magic));

@@ -25,7 +25,7 @@ struct StepArguments {
 using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
 
 // The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
-Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_laws);
+Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_materials);
 
 // Shared memory that a block may have on the present device [bytes].
 std::size_t most_shared_bytes();
