@@ -19,7 +19,7 @@ std::array<FacePair, 4> tellings(const FacePair& p) {
   return {p, FacePair{p.c, p.d, p.a, p.b}, FacePair{p.a, p.d, p.c, p.b}, FacePair{p.c, p.b, p.a, p.d}};
 }
 
-// Deals pairs out to a given number of bundles so that none wants a bank twice in a column: each goes where it is in the
+// Deals pairs out to a given number of bundles so that few want a bank twice in a column: each goes where it is in the
 // way of the fewest; then, again and again, those in each other's way go elsewhere. (Minton et al. 1992, min-conflicts.)
 class Bundles {
  public:
@@ -31,18 +31,17 @@ class Bundles {
     for (std::size_t p = 0; p < pairs.size(); ++p) place(p);
   }
 
-  // True if no conflict is left.
-  bool settle() {
+  // Until no conflict is left, or each pair could have moved once.
+  void settle() {
     std::size_t moves = told_.size();
     for (std::size_t p = 0, at_peace = 0; at_peace < told_.size(); p = (p + 1) % told_.size()) {
       ++at_peace;
       if (!in_conflict(p)) continue;
-      if (moves-- == 0) return false;
+      if (moves-- == 0) return;
       at_peace = 0;
       count(p, -1);
       place(p);
     }
-    return true;
   }
 
   std::vector<FacePair> in_order(std::span<const FacePair> pairs) const {
@@ -122,12 +121,9 @@ std::uint32_t busiest_bank(std::span<const FacePair> pairs) {
 
 std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs) {
   if (pairs.empty()) return {};
-  // Four fifths full is what can be found quickly.
-  std::size_t count = std::max<std::size_t>(busiest_bank(pairs), (pairs.size() * 5 + 4 * lanes - 1) / (4 * lanes));
-  for (;; count += 1 + count / 25) {
-    Bundles bundles(pairs, count);
-    if (bundles.settle()) return bundles.in_order(pairs);
-  }
+  Bundles bundles(pairs, (pairs.size() + lanes - 1) / lanes);
+  bundles.settle();
+  return bundles.in_order(pairs);
 }
 
 }  // namespace mercury::cuda

@@ -38,11 +38,12 @@ Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs);
 // An empty place.
 inline constexpr FacePair no_faces{0, 0, 0, 0};
 
-// Bundles that pairs need at least, for what they want of the bank that they want most.
+// Accesses that pairs need at least in a column, for what they want of the bank that they want most.
 std::uint32_t busiest_bank(std::span<const FacePair> pairs);
 
-// The same pairs in another order, each perhaps told from another corner, in bundles of 32: of one bundle no two have
-// masses of the same bank in the same column; places that this leaves free are empty.
+// The same pairs in another order, each perhaps told from another corner, in as few bundles of 32 as there can be, the last
+// filled up with empty places. Few of a bundle have masses of the same bank in the same column: those wait for each other,
+// which costs less than another bundle would.
 std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs);
 
 }  // namespace mercury::cuda
