@@ -64,7 +64,7 @@ def main():
     axes.set_yscale("log")
     axes.set_ylabel("springs evaluated per second")
     axes.grid(True, which="both", alpha=0.25)
-    axes.legend(fontsize=8, loc="lower right")
+    axes.legend(fontsize=8, loc="best")
     figure.tight_layout()
     figure.savefig(options.output)
 
