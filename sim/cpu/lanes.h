@@ -69,8 +69,20 @@ HWY_INLINE Lanes negated_where(Mask condition, Lanes a) {
   return hn::Xor(a.v, hn::IfThenElseZero(condition.m, sign));
 #endif
 }
+// Either of the two where one is NaN.
+#if HWY_TARGET == HWY_EMU128
+HWY_INLINE Lanes smaller(Lanes a, Lanes b) {
+  for (std::size_t i = 0; i < lane_count; ++i) a.v.raw[i] = b.v.raw[i] < a.v.raw[i] ? b.v.raw[i] : a.v.raw[i];
+  return a;
+}
+HWY_INLINE Lanes larger(Lanes a, Lanes b) {
+  for (std::size_t i = 0; i < lane_count; ++i) a.v.raw[i] = b.v.raw[i] > a.v.raw[i] ? b.v.raw[i] : a.v.raw[i];
+  return a;
+}
+#else
 HWY_INLINE Lanes smaller(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
 HWY_INLINE Lanes larger(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
+#endif
 HWY_INLINE Mask all_of(Mask a, Mask b, Mask c) { return {hn::And(hn::And(a.m, b.m), c.m)}; }
 HWY_INLINE Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
 HWY_INLINE bool every(Mask a) { return hn::AllTrue(floats, a.m); }
