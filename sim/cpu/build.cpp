@@ -90,8 +90,10 @@ Assembly assemble(std::span<const Sitter> sitters, std::size_t seats) {
 
 FaceHalves halves_of(std::size_t pairs, std::span<const std::shared_ptr<const Seating>> seatings) {
   std::vector<std::uint8_t> in_halves(pairs);  // 1 = lower, 2 = upper
-  for (std::size_t s = 0; s < seatings.size(); ++s)
-    for (const std::uint32_t pair : seatings[s]->faces) in_halves[pair] = static_cast<std::uint8_t>(in_halves[pair] | (2 * s < seatings.size() ? 1 : 2));
+  for (std::size_t s = 0; s < seatings.size(); ++s) {
+    const int half = 2 * s < seatings.size() ? 1 : 2;
+    for (const std::uint32_t pair : seatings[s]->faces) in_halves[pair] = static_cast<std::uint8_t>(in_halves[pair] | half);
+  }
   FaceHalves halves;
   for (std::uint32_t pair = 0; pair < pairs; ++pair) {
     if (in_halves[pair] == 1) halves.lower.push_back(pair);

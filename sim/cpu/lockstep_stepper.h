@@ -33,7 +33,8 @@ class LockstepStepper {
   // Algorithm 1. A mass ends its step as soon as its own springs are done: those that it is partner in came before.
   bool step_force(const float* factors) {
     Box box;
-    const bool sound = add_springs(factors, compact(load_aligned(group_.squared_diagonal.data())), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+    const bool is_compact = compact(load_aligned(group_.squared_diagonal.data()));
+    const bool sound = add_springs(factors, is_compact, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = of_mass(x_, mass), v0 = of_mass(v_, mass);
       Lanes3 v = accelerated_by(sum, per_force_, v0, hooks_, constants_), x = multiply_add(constants_.dt, v, x0);
       end_step(x, v, hooks_, constants_);
@@ -127,7 +128,8 @@ class LockstepStepper {
     for_each_pair_of_faces(group_.split_faces, group_.face_drag.data() + whole, group_.face_lift.data() + whole, visit);
   }
   template <class Corners, class Visit>
-  HWY_INLINE void for_each_pair_of_faces(const std::vector<Corners>& slots, const float* drag, const float* lift, const Visit& visit) const {
+  HWY_INLINE void for_each_pair_of_faces(const std::vector<Corners>& slots, const float* drag, const float* lift,
+                                         const Visit& visit) const {
     const float *const x = x_, *const v = v_;
     const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
     for (const Corners& corners : slots) {

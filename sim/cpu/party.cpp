@@ -76,8 +76,10 @@ std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& 
   std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
   if (candidates.empty()) return {};
   std::vector<Outline> outlines;
-  for (const std::size_t i : candidates)
-    outlines.push_back({patterns[i], bodies[i].robot->springs, faces ? std::span<const FacePair>(bodies[i].face_pairs) : std::span<const FacePair>()});
+  for (const std::size_t i : candidates) {
+    outlines.push_back({patterns[i], bodies[i].robot->springs, {}});
+    if (faces) outlines.back().faces = bodies[i].face_pairs;
+  }
   std::vector<Group> groups = cpu::similar_groups(outlines, bodies[candidates.front()].places.lanes);
   for (Group& group : groups)
     for (std::size_t& robot : group) robot = candidates[robot];
