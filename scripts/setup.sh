@@ -81,9 +81,14 @@ cuda_architectures() {
   if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then echo native; else echo 90; fi
 }
 
-# build_targets TARGET...: builds them in build/.
+# build_targets TARGET...: builds them in build/. Says so, unless no source has changed since it did.
 build_targets() {
-  echo "Building; all of its output: build/build.log" >&2
-  sed -n 's/^-- Mercury: //p' build/configure.log >&2
+  local built="build/built-$*"
+  if [[ ! -e $built || -n $(find CMakeLists.txt CMakePresets.json cmake sim robots render app shaders bench tests examples \
+                              -newer "$built" -type f ! -name '*.pyc' -print -quit) ]]; then
+    echo "Building; all of its output: build/build.log" >&2
+    sed -n 's/^-- Mercury: //p' build/configure.log >&2
+  fi
   logged build.log cmake --build build --parallel "$(build_jobs)" --target "$@"
+  touch "$built"
 }
