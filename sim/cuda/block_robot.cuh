@@ -88,7 +88,8 @@ class BlockRobot {
   __device__ Mass<Memory> at(std::uint32_t mass) const { return {seat_.masses + offset_of(mass)}; }
 
   __device__ float* state(std::uint32_t group) const {
-    return arguments_.batch.state + (std::size_t{seat_.robot} * arguments_.batch.group_stride + group) * state_rows * lanes + seat_.lane;
+    const std::size_t place = std::size_t{seat_.robot} * arguments_.batch.group_stride + group;
+    return arguments_.batch.state + place * state_rows * lanes + seat_.lane;
   }
   __device__ const std::uint32_t* row_start() const {
     return arguments_.batch.row_start + std::size_t{seat_.robot} * (arguments_.batch.group_stride + 1);

@@ -51,7 +51,8 @@ class RobotReporter : public BlockRobot<solver, Memory, record_words> {
 
   // Behind another barrier.
   __device__ void write(DeviceTelemetry& out) const {
-    if (thread() < sizeof(DeviceTelemetry) / 4) reinterpret_cast<float*>(&out)[thread()] = ready(4 * thread()).value(row_ready);
+    if (thread() < sizeof(DeviceTelemetry) / 4)
+      reinterpret_cast<float*>(&out)[thread()] = ready(4 * thread()).value(row_ready);
   }
 
  private:

@@ -16,7 +16,8 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
   using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_, Robot::last_group_,
       Robot::warps, Robot::thread, Robot::own, Robot::is_mass, Robot::offset_of, Robot::at, Robot::state, Robot::row_start,
-      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of, Robot::for_each_rows;
+      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of,
+      Robot::for_each_rows;
 
  public:
   __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat, Failure* failure,
