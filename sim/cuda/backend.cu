@@ -68,8 +68,8 @@ class CudaBackend final : public Backend {
     use_device();
     StepArguments arguments = prepare(clock);
     // Who asked for a report after the last call will ask again.
-    report_made_ = std::exchange(report_expected_, false);
-    DeviceTelemetry* const report = report_made_ ? reports_on_device() : nullptr;
+    DeviceTelemetry* const report = std::exchange(report_expected_, false) ? reports_on_device() : nullptr;
+    report_made_ = false;
     Event start, end;
     start.record();
     for (std::int64_t done = 0; done < steps; done += arguments.steps) {
@@ -80,6 +80,7 @@ class CudaBackend final : public Backend {
     }
     end.record();
     busy_seconds_ += end.seconds_since(start);
+    report_made_ = report != nullptr && steps > 0;
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
