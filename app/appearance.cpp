@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/appearance.h"
 
 #include <algorithm>
@@ -104,7 +105,8 @@ void set_activations(std::span<const Material> materials, double time, std::span
   for (const Material& material : materials) largest = std::max(largest, std::abs(material.amplitude));
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];
-    const double angle = std::remainder(static_cast<double>(m.frequency) * time + static_cast<double>(m.phase), 2 * M_PI);
+    const double angle =
+        std::remainder(static_cast<double>(m.frequency) * time + static_cast<double>(m.phase), 2 * M_PI);
     looks[i].activation = largest > 0 ? -m.amplitude / largest * static_cast<float>(std::sin(angle)) : 0;
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a robot looks like: the shape that stays, and the looks of its materials as the muscles work.
 #pragma once
 
@@ -26,8 +27,8 @@ class BodyShape {
 // robot this is the diagonal of the voxel's side, which belongs to that voxel alone. Air if no edge is a spring.
 std::vector<MaterialId> face_materials(const Robot& robot);
 
-// The colour of each material of a table, by id. `names` may be empty; in the default table a pair's colour lies between
-// those of its two materials.
+// The colour of each material of a table, by id. `names` may be empty; in the default table a pair's colour lies
+// between those of its two materials.
 std::vector<render::Color> material_colors(std::span<const Material> materials, bool defaults);
 
 // How far each material's muscle is contracted at a time: -1 longest to +1 shortest, by the table's largest amplitude;

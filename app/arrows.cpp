@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/arrows.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,8 @@ constexpr render::Color velocity_color = render::rgb(0xaed581);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
 constexpr render::Color contact_color = render::rgb(0xffca28);
 
-// The largest of the middle one of the robots that have any, so that one strong robot does not make all others' invisible.
+// The largest of the middle one of the robots that have any, so that one strong robot does not make all others'
+// invisible.
 float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
   std::vector<float> largest(robots);
   for (const render::Arrow& arrow : arrows)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrows that show forces and motion.
 #pragma once
 
@@ -19,8 +20,9 @@ struct ArrowKinds {
   bool any() const { return drag || lift || velocity || gravity || contact; }
 };
 
-// Turns forces and velocities into arrows. The scale is chosen so that the longest arrow of the middle robot is about half
-// a robot long, and changes only by steps of 1, 2 and 5 as larger ones come; no arrow is drawn more than twice as long.
+// Turns forces and velocities into arrows. The scale is chosen so that the longest arrow of the middle robot is about
+// half a robot long, and changes only by steps of 1, 2 and 5 as larger ones come; no arrow is drawn more than twice as
+// long.
 class Arrows {
  public:
   // Throws InputError("--show: ...") for drag or lift in an environment that does not act on faces, and for contact in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury bench: springs evaluated per second, the paper's figure of merit.
 #include <fmt/format.h>
 
@@ -31,10 +32,10 @@ struct BenchOptions {
 struct Measurement {
   std::size_t robots = 0, masses = 0, springs = 0;  // of the whole batch
   std::int64_t steps = 0;
-  double seconds = 0;        // on the device
+  double seconds = 0;              // on the device
   double making = 0, loading = 0;  // of the robots, and of the batch up to its first step [s]
   double limit = 0;
-  std::uint64_t hash = 0;    // of the first robot, after `steps_hashed` steps
+  std::uint64_t hash = 0;  // of the first robot, after `steps_hashed` steps
   std::string device;
   Configuration configuration;
 
@@ -102,7 +103,8 @@ Measurement measure(const BenchOptions& options, const Configuration& configurat
     before = after;
     if (options.sweep) continue;
     const double a_step = result.seconds / static_cast<double>(result.steps);
-    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / a_step), std::int64_t{1}, std::int64_t{1000000});
+    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / a_step), std::int64_t{1},
+                       std::int64_t{1000000});
   }
   return result;
 }
@@ -115,7 +117,8 @@ std::string table_of(const Measurement& m) {
   std::string text;
   const auto row = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
   row("device", m.device);
-  row("solver, environment", fmt::format("{}, {}", name_of(m.configuration.solver), name_of(m.configuration.environment)));
+  row("solver, environment",
+      fmt::format("{}, {}", name_of(m.configuration.solver), name_of(m.configuration.environment)));
   row("robots", fmt::format("{} of {} masses, {} springs", m.robots, m.masses / m.robots, m.springs / m.robots));
   row("steps", fmt::format("{} in {:.3f} s on the device", m.steps, m.seconds));
   row("springs per second", fmt::format("{:.3e}", m.springs_a_second()));
@@ -143,12 +146,15 @@ nlohmann::ordered_json json_of(const Measurement& m) {
 }
 
 // springs_evaluated is what one call evaluates: 1000 steps in a sweep.
-constexpr const char* csv_head = "device,solver,environment,robots,masses_per_robot,springs_per_robot,steps,device_seconds,springs_evaluated,springs_per_second\n";
+constexpr const char* csv_head =
+    "device,solver,environment,robots,masses_per_robot,springs_per_robot,steps,device_seconds,springs_evaluated,"
+    "springs_per_second\n";
 
 std::string csv_row(const Measurement& m) {
   return fmt::format("\"{}\",{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", m.device, name_of(m.configuration.solver),
                      name_of(m.configuration.environment), m.robots, m.masses / m.robots, m.springs / m.robots, m.steps,
-                     m.seconds, static_cast<double>(m.springs) * static_cast<double>(m.longest_call), m.springs_a_second());
+                     m.seconds, static_cast<double>(m.springs) * static_cast<double>(m.longest_call),
+                     m.springs_a_second());
 }
 
 // From one robot upwards, doubling, until the device's memory is full (paper, figure 4).
@@ -171,9 +177,9 @@ std::vector<Measurement> sweep(const BenchOptions& options, const Configuration&
 int bench(const BenchOptions& options) {
   const Configuration configuration = options.simulation.configuration();
   require_positive("--least-seconds", options.least_seconds, "s");
-  const std::vector<Measurement> all = options.sweep
-                                           ? sweep(options, configuration)
-                                           : std::vector{measure(options, configuration, choose_count(options, configuration))};
+  const std::vector<Measurement> all =
+      options.sweep ? sweep(options, configuration)
+                    : std::vector{measure(options, configuration, choose_count(options, configuration))};
   std::string csv = csv_head;
   for (const Measurement& m : all) csv += csv_row(m);
   if (!options.csv.empty()) write_whole_file(options.csv, csv);
@@ -198,12 +204,16 @@ void add_bench_command(CLI::App& program, const Choose& choose) {
             [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); });
   add_number(*command, "--count", options->count, "Robots; without it, a few times what the device steps at once", "N");
   add_number(*command, "--seed", options->seed, "Of the robots", "S");
-  add_number(*command, "--least-seconds", options->least_seconds, "Measure at least this long, after a warm-up", "SECONDS");
+  add_number(*command, "--least-seconds", options->least_seconds, "Measure at least this long, after a warm-up",
+             "SECONDS");
   command->add_flag("--json", options->json, "Print JSON rather than a table");
-  command->add_flag("--sweep", options->sweep, "From one robot, doubling, until the memory is full or --count is reached");
-  add_text(*command, "--csv", options->csv, "Also write the measurements into this file (bench/plot.py draws it)", "FILE");
+  command->add_flag("--sweep", options->sweep,
+                    "From one robot, doubling, until the memory is full or --count is reached");
+  add_text(*command, "--csv", options->csv, "Also write the measurements into this file (bench/plot.py draws it)",
+           "FILE");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more", "FILE.toml");
+  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+           "FILE.toml");
   command->footer(
       "Springs per second = robots x springs x steps / time, with everything a step does: muscles, springs,\n"
       "environment, contact, integration; the time is the device's own, uploading excluded.\n\n"

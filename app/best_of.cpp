@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/best_of.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ double distance_between(const Telemetry& start, const Telemetry& end, bool on_la
 // Adds the heat's robots to the winners so far, and keeps the best.
 void keep_best(std::vector<Winner>& winners, std::vector<Winner> more, std::uint64_t count) {
   winners.insert(winners.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  std::stable_sort(winners.begin(), winners.end(), [](const Winner& a, const Winner& b) { return a.distance > b.distance; });
+  std::stable_sort(winners.begin(), winners.end(),
+                   [](const Winner& a, const Winner& b) { return a.distance > b.distance; });
   if (winners.size() > count) winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(count), winners.end());
 }
 

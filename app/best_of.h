@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A search among many random robots: each is simulated, the ones that get farthest are kept.
 #pragma once
 
@@ -24,9 +25,9 @@ struct Winner {
   double distance;  // that its centre of mass got from where it was once settled; on land along the ground [m]
 };
 
-// The `count` robots of a seed that get farthest, the best first; equals in the order of their index. Robots that cannot
-// be made or explode take no prize. Fewer are returned when fewer can be, or when the user interrupts.
-// The result does not depend on how many are simulated at once.
+// The `count` robots of a seed that get farthest, the best first; equals in the order of their index. Robots that
+// cannot be made or explode take no prize. Fewer are returned when fewer can be, or when the user interrupts. The
+// result does not depend on how many are simulated at once.
 std::vector<Winner> best_of(const Contest& contest, const MakeRobot& make, std::uint64_t seed, std::uint64_t count);
 
 }  // namespace mercury

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A queue between two threads that holds at most so many elements.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/camera_plan.h"
 
 #include <fmt/format.h>
@@ -18,10 +19,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::pair<CameraMode, std::string_view>, 5> modes{{{CameraMode::group, "group"},
-                                                                       {CameraMode::follow, "follow"},
-                                                                       {CameraMode::turntable, "turntable"},
-                                                                       {CameraMode::top, "top"},
-                                                                       {CameraMode::still, "still"}}};
+                                                                        {CameraMode::follow, "follow"},
+                                                                        {CameraMode::turntable, "turntable"},
+                                                                        {CameraMode::top, "top"},
+                                                                        {CameraMode::still, "still"}}};
 
 std::optional<CameraMode> mode_named(std::string_view name) {
   for (const auto& [mode, known] : modes)
@@ -91,8 +92,8 @@ CameraPlan camera_named(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto mode = mode_named(text.substr(0, colon));
   if (!mode || (colon != std::string::npos && *mode != CameraMode::follow))
-    throw InputError("--camera", fmt::format("\"{}\" is not accepted; give {}, follow:ROBOT or a camera file (.json)", text,
-                                             mode_names()));
+    throw InputError("--camera", fmt::format("\"{}\" is not accepted; give {}, follow:ROBOT or a camera file (.json)",
+                                             text, mode_names()));
   CameraPlan plan{.mode = *mode};
   if (colon != std::string::npos) plan.robot = text.substr(colon + 1);
   return plan;

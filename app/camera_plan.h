@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the camera behaves: given on the command line, kept in a file.
 #pragma once
 
@@ -22,14 +23,14 @@ enum class CameraMode {
 
 struct CameraPlan {
   CameraMode mode = CameraMode::group;
-  std::string robot;                // follow: its name, or its number from 0; empty = the group
-  std::optional<float> azimuth;     // direction from the robots to the eye, from +x towards +y [rad]
-  std::optional<float> elevation;   // of the eye above the horizon [rad]
-  float zoom = 1;                   // above 1 = closer
-  float field_of_view = 0.6f;       // of the picture's height [rad]
-  double period = 20;               // turntable: of a turn [s of video]
+  std::string robot;                      // follow: its name, or its number from 0; empty = the group
+  std::optional<float> azimuth;           // direction from the robots to the eye, from +x towards +y [rad]
+  std::optional<float> elevation;         // of the eye above the horizon [rad]
+  float zoom = 1;                         // above 1 = closer
+  float field_of_view = 0.6f;             // of the picture's height [rad]
+  double period = 20;                     // turntable: of a turn [s of video]
   std::optional<Eigen::Vector3f> target;  // still: what it looks at, in the picture's coordinates [m]; else all robots
-  std::optional<float> distance;    // still: from the target [m]
+  std::optional<float> distance;          // still: from the target [m]
 };
 
 // "group", "follow", "turntable", "top", "still".
@@ -38,9 +39,9 @@ std::string_view name_of(CameraMode mode);
 // "turntable", "follow:eel", or the name of a camera file (*.json). Throws InputError("--camera: ...").
 CameraPlan camera_named(const std::string& text);
 
-// A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1], ...},
-// members as in CameraPlan, angles in radians; all but the format may be left out.
-// Throws InputError in one line that says where and why.
+// A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1],
+// ...}, members as in CameraPlan, angles in radians; all but the format may be left out. Throws InputError in one line
+// that says where and why.
 CameraPlan load_camera(const std::filesystem::path& path);
 void save_camera(const std::filesystem::path& path, const CameraPlan& plan);
 

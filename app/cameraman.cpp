@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/cameraman.h"
 
 #include <fmt/format.h>
@@ -14,8 +15,8 @@
 namespace mercury {
 namespace {
 
-constexpr double lag = 0.8;          // of the camera behind what it should see [s]
-constexpr float margin = 1.1f;       // of the framing, as a share of the distance
+constexpr double lag = 0.8;     // of the camera behind what it should see [s]
+constexpr float margin = 1.1f;  // of the framing, as a share of the distance
 constexpr float follow_margin = 1.8f;
 
 // The eye's axes in the world, as rows: right, up and forward.
@@ -84,9 +85,15 @@ Cameraman::Cameraman(const CameraPlan& plan, const PictureFrame& picture, std::s
 render::Camera Cameraman::at(std::span<const render::Bounds> robots, double dt) {
   switch (plan_.mode) {
     case CameraMode::group:
-    case CameraMode::top: keep_in_view(robots, dt); break;
-    case CameraMode::follow: go_along(robots, dt); break;
-    case CameraMode::turntable: circle(robots, dt); break;
+    case CameraMode::top:
+      keep_in_view(robots, dt);
+      break;
+    case CameraMode::follow:
+      go_along(robots, dt);
+      break;
+    case CameraMode::turntable:
+      circle(robots, dt);
+      break;
     case CameraMode::still:
       if (started_) break;
       orbit_.frame(robots, picture_.aspect, margin / plan_.zoom, picture_.free);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Carries a camera plan out, frame by frame.
 #pragma once
 
@@ -15,8 +16,8 @@ namespace mercury {
 // The picture that the camera makes.
 struct PictureFrame {
   float aspect = 16.0f / 9;
-  render::Insets free;       // parts of it that are covered by a legend and the like
-  bool on_ground = false;    // robots stand on the ground, seen from higher up than swimming ones
+  render::Insets free;     // parts of it that are covered by a legend and the like
+  bool on_ground = false;  // robots stand on the ground, seen from higher up than swimming ones
 };
 
 // The direction a plan begins with: its angles, or those that suit the mode; target and distance are not set.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/coloring.h"
 
 #include <fmt/format.h>
@@ -86,7 +87,8 @@ GroupState read_state(const Simulation& simulation) {
 Coloring::Coloring(const Simulation& simulation, ColorBy by) : simulation_(simulation), by_(by) {
   const Environment& environment = simulation.configuration().environment;
   if (by == ColorBy::pressure && !has_face_forces(environment))
-    throw InputError("--color", fmt::format("pressure: {} has no drag on faces; it applies to ocean", name_of(environment)));
+    throw InputError("--color",
+                     fmt::format("pressure: {} has no drag on faces; it applies to ocean", name_of(environment)));
   face_offsets_.push_back(0);
   spring_offsets_.push_back(0);
   for (std::size_t i = 0; i < simulation.size(); ++i) {
@@ -99,7 +101,9 @@ Coloring::Coloring(const Simulation& simulation, ColorBy by) : simulation_(simul
 
 ColorValues Coloring::values(const GroupState& state) const {
   ColorValues values;
-  const auto is = [&](std::initializer_list<ColorBy> any) { return std::find(any.begin(), any.end(), by_) != any.end(); };
+  const auto is = [&](std::initializer_list<ColorBy> any) {
+    return std::find(any.begin(), any.end(), by_) != any.end();
+  };
   if (is({ColorBy::activation, ColorBy::pressure})) values.face.resize(face_offsets_.back());
   const bool of_springs = is({ColorBy::strain, ColorBy::force, ColorBy::energy, ColorBy::stiffness});
   if (of_springs || by_ == ColorBy::activation) values.spring.resize(spring_offsets_.back());
@@ -145,7 +149,8 @@ float round_up(float value) {
   return 10 * power;
 }
 
-GrowingScale::GrowingScale(ColorBy by, std::optional<std::pair<float, float>> fixed) : by_(by), fixed_(fixed.has_value()) {
+GrowingScale::GrowingScale(ColorBy by, std::optional<std::pair<float, float>> fixed)
+    : by_(by), fixed_(fixed.has_value()) {
   const Quantity& q = quantity(by);
   scale_ = {.low = q.is_signed ? -q.least : 0, .high = q.least, .map = q.map};
   if (fixed) std::tie(scale_.low, scale_.high) = *fixed;
@@ -154,7 +159,9 @@ GrowingScale::GrowingScale(ColorBy by, std::optional<std::pair<float, float>> fi
 void GrowingScale::fit(const ColorValues& values) {
   if (fixed_ || by_ == ColorBy::material) return;
   // Faces and masses are what the skin shows; a few springs go far beyond them.
-  const std::vector<float>& shown = !values.face.empty() ? values.face : !values.mass.empty() ? values.mass : values.spring;
+  const std::vector<float>& shown = !values.face.empty()   ? values.face
+                                    : !values.mass.empty() ? values.mass
+                                                           : values.spring;
   float largest = 0;
   for (const float value : shown)
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers to colour robots by: what they are at a moment, and the scale that turns them into colours.
 #pragma once
 
@@ -30,8 +31,8 @@ ColorBy color_named(std::string_view name);
 
 // What can be said about a group at a moment from its positions and velocities; computed on all cores.
 struct GroupState {
-  double time = 0;               // [s]
-  std::vector<Vec3> positions;   // of all masses, as Simulation::read_positions
+  double time = 0;              // [s]
+  std::vector<Vec3> positions;  // of all masses, as Simulation::read_positions
   std::vector<Vec3> velocities;
 };
 GroupState read_state(const Simulation& simulation);

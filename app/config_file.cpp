@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/config_file.h"
 
 #include <fmt/format.h>
@@ -15,9 +16,7 @@
 namespace mercury {
 namespace {
 
-CLI::Option* find_option(CLI::App& command, const std::string& key) {
-  return command.get_option_no_throw("--" + key);
-}
+CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
 
 // Whether this command or one below it has the option.
 bool known_anywhere(CLI::App& command, const std::string& key) {
@@ -44,7 +43,8 @@ std::string scalar_text(const toml::node& node) {
   return {};
 }
 
-// The arguments of one key. Empty result for a flag that is false; throws std::invalid_argument for what no option takes.
+// The arguments of one key. Empty result for a flag that is false; throws std::invalid_argument for what no option
+// takes.
 std::vector<std::string> arguments_of(const CLI::Option& option, const std::string& name, const toml::node& value) {
   const bool is_flag = option.get_expected_max() == 0;
   if (const auto flag = value.value_exact<bool>()) {
@@ -64,7 +64,8 @@ std::vector<std::string> arguments_of(const CLI::Option& option, const std::stri
     }
     return {fmt::format("{}={}", name, fmt::join(parts, ","))};
   }
-  if (!value.is_string() && scalar_text(value).empty()) throw std::invalid_argument("is of a kind that no option takes");
+  if (!value.is_string() && scalar_text(value).empty())
+    throw std::invalid_argument("is of a kind that no option takes");
   return {name + "=" + scalar_text(value)};
 }
 
@@ -93,8 +94,8 @@ ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& com
       const std::string where = fmt::format("{}:{}", path, line);
       if (value.is_table()) continue;
       if (key.str() == "config" || !known_anywhere(scope, std::string(key.str())))
-        throw InputError(where, fmt::format("\"{}\" is not an option; mercury {} --help lists them", key.str(),
-                                            command.get_name()));
+        throw InputError(
+            where, fmt::format("\"{}\" is not an option; mercury {} --help lists them", key.str(), command.get_name()));
       CLI::Option* option = find_option(command, std::string(key.str()));
       if (!option || is_given(*option, given)) continue;
       try {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/configuration_json.h"
 
 #include <charconv>
@@ -46,7 +47,8 @@ struct Reader {
     if (!json.contains(name)) return;
     const Json& list = json[name];
     if (!list.is_array() || list.size() != 3) throw InputError(name, "is not a list of three numbers");
-    value = {static_cast<float>(number(name, list[0])), static_cast<float>(number(name, list[1])), static_cast<float>(number(name, list[2]))};
+    value = {static_cast<float>(number(name, list[0])), static_cast<float>(number(name, list[1])),
+             static_cast<float>(number(name, list[2]))};
   }
   static double number(const std::string& name, const Json& value) {
     if (!value.is_number()) throw InputError(name, "is not a number");
@@ -73,7 +75,8 @@ Configuration configuration_from(const Json& json) {
   };
   Configuration configuration;
   configuration.device = device_named(text("device", "auto"));
-  if (json.contains("threads")) configuration.device.threads = static_cast<int>(Reader::number("threads", json["threads"]));
+  if (json.contains("threads"))
+    configuration.device.threads = static_cast<int>(Reader::number("threads", json["threads"]));
   configuration.solver = solver_named(text("solver", "force"));
   configuration.environment = environment_named(text("environment", "ocean"));
   if (json.contains("dt")) configuration.dt = Reader::number("dt", json["dt"]);
@@ -84,12 +87,9 @@ Configuration configuration_from(const Json& json) {
 }
 
 nlohmann::ordered_json json_of(const Configuration& configuration) {
-  Json json{{"device", name_of(configuration.device)},
-            {"threads", configuration.device.threads},
-            {"solver", name_of(configuration.solver)},
-            {"dt", configuration.dt},
-            {"damping", configuration.damping},
-            {"environment", name_of(configuration.environment)}};
+  Json json{{"device", name_of(configuration.device)}, {"threads", configuration.device.threads},
+            {"solver", name_of(configuration.solver)}, {"dt", configuration.dt},
+            {"damping", configuration.damping},        {"environment", name_of(configuration.environment)}};
   std::visit([&](const auto& environment) { add(json, environment); }, configuration.environment);
   json["gravity"] = json_of(gravity_of(configuration.environment));
   json["stiffness_scale"] = shortest(stiffness_scale_of(configuration.environment));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions from CUDA's memory into OpenGL's, on the card that both use.
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
@@ -172,7 +173,8 @@ std::unique_ptr<PositionBridge> make_cuda_bridge(const Simulation& simulation, c
   const int drawing = cuda_device_of_current_context();
   if (drawing < 0) throw NoInterop("OpenGL does not draw on a card that CUDA knows");
   if (drawing != simulating)
-    throw NoInterop("CUDA device " + std::to_string(simulating) + " simulates, device " + std::to_string(drawing) + " draws");
+    throw NoInterop("CUDA device " + std::to_string(simulating) + " simulates, device " + std::to_string(drawing) +
+                    " draws");
   check(cudaSetDevice(simulating), "choosing the device");
   return std::make_unique<CudaBridge>(simulating, renderer.position_buffer());
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for cuda_bridge.cpp in a build without CUDA.
 #include "app/position_bridge.h"
 

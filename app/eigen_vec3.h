@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between the simulation's vectors and the renderer's.
 #pragma once
 

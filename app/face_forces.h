@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The water's force on a face, taken apart for the eye.
 #pragma once
 
@@ -10,10 +11,10 @@
 namespace mercury {
 
 struct FaceForce {
-  Vec3 center;    // of the face [m]
-  float area = 0; // [m2]
-  Vec3 drag;      // the part along the flow past the face [N]
-  Vec3 lift;      // the part across it [N]
+  Vec3 center;     // of the face [m]
+  float area = 0;  // [m2]
+  Vec3 drag;       // the part along the flow past the face [N]
+  Vec3 lift;       // the part across it [N]
 };
 
 // Whether an environment acts on faces.

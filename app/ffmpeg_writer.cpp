@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/ffmpeg_writer.h"
 
 #include <fcntl.h>
@@ -5,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <sys/wait.h>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <sys/wait.h>
 
 #include "sim/error.h"
 
@@ -24,13 +25,14 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
   std::vector<std::string> arguments;
   switch (kind) {
     case VideoKind::mp4:
-      arguments = {"-c:v", "libx264", "-preset", "veryfast", "-profile:v", "high",
-                   "-crf",    fmt::to_string(settings.crf < 0 ? 18 : settings.crf), "-movflags", "+faststart"};
+      arguments = {"-c:v",       "libx264",   "-preset", "veryfast",
+                   "-profile:v", "high",      "-crf",    fmt::to_string(settings.crf < 0 ? 18 : settings.crf),
+                   "-movflags",  "+faststart"};
       break;
     case VideoKind::webm:
-      arguments = {"-c:v",     "libvpx-vp9", "-b:v",    "0", "-crf",
-                   fmt::to_string(settings.crf < 0 ? 30 : settings.crf), "-deadline", "good", "-cpu-used", "5",
-                   "-row-mt",   "1"};
+      arguments = {
+          "-c:v",      "libvpx-vp9", "-b:v",      "0", "-crf",    fmt::to_string(settings.crf < 0 ? 30 : settings.crf),
+          "-deadline", "good",       "-cpu-used", "5", "-row-mt", "1"};
       break;
     case VideoKind::gif: {
       const double bytes = 4.0 * settings.size.width * settings.size.height;
@@ -38,9 +40,13 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
       return {"-filter_complex",
               fmt::format("split[a][b];[a]palettegen=stats_mode={}[p];[b][p]paletteuse=dither=bayer:bayer_scale=4{}",
                           own_palettes ? "single" : "full", own_palettes ? ":new=1" : ":diff_mode=rectangle"),
-              "-loop", "0", "-f", "gif"};
+              "-loop",
+              "0",
+              "-f",
+              "gif"};
     }
-    case VideoKind::png_folder: break;
+    case VideoKind::png_folder:
+      break;
   }
   arguments.insert(arguments.end(), color.begin(), color.end());
   arguments.insert(arguments.end(), {"-f", kind == VideoKind::mp4 ? "mp4" : "webm"});
@@ -60,11 +66,19 @@ void create(const std::string& output, const UnfinishedFile& file) {
 
 std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& settings, const std::string& file) {
   const bool yuv = pixel_format_of(kind) == render::PixelFormat::yuv420;
-  std::vector<std::string> arguments{
-      "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format",
-      yuv ? "yuv420p" : "rgb24", "-video_size",
-      fmt::format("{}x{}", settings.size.width, settings.size.height), "-framerate",
-      fmt::format("{}", settings.frames_per_second)};
+  std::vector<std::string> arguments{"-hide_banner",
+                                     "-loglevel",
+                                     "error",
+                                     "-nostdin",
+                                     "-y",
+                                     "-f",
+                                     "rawvideo",
+                                     "-pixel_format",
+                                     yuv ? "yuv420p" : "rgb24",
+                                     "-video_size",
+                                     fmt::format("{}x{}", settings.size.width, settings.size.height),
+                                     "-framerate",
+                                     fmt::format("{}", settings.frames_per_second)};
   if (yuv) arguments.insert(arguments.end(), {"-colorspace", "bt709", "-color_range", "tv"});
   arguments.insert(arguments.end(), {"-i", "pipe:0", "-an"});
   const std::vector<std::string> codec = codec_arguments(kind, settings);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Video files, encoded by the ffmpeg program as a child process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/film.h"
 
 #include <chrono>
@@ -86,8 +87,8 @@ class Production {
       }
       std::vector<Telemetry> telemetry = set_.simulation.telemetry();
       SceneDetails details = set_.details.observe(telemetry);
-      if (!moments_.push({set_.simulation.time(), set_.bridge.take(set_.simulation), std::move(telemetry),
-                          std::move(details)}))
+      if (!moments_.push(
+              {set_.simulation.time(), set_.bridge.take(set_.simulation), std::move(telemetry), std::move(details)}))
         return;
     }
     moments_.close();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a simulation to pictures: simulating, drawing and encoding, each on a thread of its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the ground does to robots that stand on it, for the eye.
 #pragma once
 
@@ -13,9 +14,9 @@ struct FloorForce {
   Vec3 force;              // [N]
 };
 
-// The floor's push and friction on each mass of a robot that lies on it, as the next step will have them if nothing else
-// touches the mass: what holds it against its springs, gravity and its own momentum, friction at most its coefficient
-// times the push. Empty where there is no floor.
+// The floor's push and friction on each mass of a robot that lies on it, as the next step will have them if nothing
+// else touches the mass: what holds it against its springs, gravity and its own momentum, friction at most its
+// coefficient times the push. Empty where there is no floor.
 std::vector<FloorForce> floor_forces(const Simulation& simulation, std::size_t robot, const GroupState& state);
 
 }  // namespace mercury

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where finished frames go: a video file or a folder of pictures.
 #pragma once
 
@@ -20,8 +21,8 @@ struct VideoSettings {
   PictureSize size;
   double frames_per_second = 30;
   std::int64_t expected_frames = 0;  // how many will come, as far as is known; 0 = unknown
-  int crf = -1;                      // constant rate factor of H.264 and VP9, lower is better; -1 = the format's default
-  std::string ffmpeg;                // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
+  int crf = -1;        // constant rate factor of H.264 and VP9, lower is better; -1 = the format's default
+  std::string ffmpeg;  // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
 };
 
 enum class VideoKind { mp4, webm, gif, png_folder };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/group_layout.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,8 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
   for (int columns = 1; columns <= cells; ++columns) {
     const int rows = (cells + columns - 1) / columns;
     const float fill = static_cast<float>(cells) / static_cast<float>(columns * rows);
-    const float scale = std::min(picture_aspect / (static_cast<float>(columns) * cell_aspect), 1 / static_cast<float>(rows));
+    const float scale =
+        std::min(picture_aspect / (static_cast<float>(columns) * cell_aspect), 1 / static_cast<float>(rows));
     // Empty cells look unfinished: they are avoided where that costs little size.
     if (scale * (0.6f + 0.4f * fill) <= best_scale) continue;
     best_scale = scale * (0.6f + 0.4f * fill);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the robots of a group stand in the picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/group_scene.h"
 
 #include <fmt/format.h>
@@ -50,7 +51,8 @@ std::vector<std::pair<render::Color, std::string>> swatches_of(const Group& grou
   std::array<bool, max_materials> springs_of{};  // by id
   for (std::size_t i = 0; i < group.robots.size(); ++i) {
     if (!group.robots[i]->materials.empty()) continue;
-    for (std::size_t id = 0; id < springs_of.size(); ++id) springs_of[id] = springs_of[id] || group.shapes[i]->materials[id];
+    for (std::size_t id = 0; id < springs_of.size(); ++id)
+      springs_of[id] = springs_of[id] || group.shapes[i]->materials[id];
   }
   std::vector<bool> used(base_material_count + 1, false);
   for (int id = 1; id < default_material_count; ++id) {
@@ -90,12 +92,14 @@ Group group_of(const Simulation& simulation) {
 }
 
 GroupScene::GroupScene(const Group& given, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
-    : settings_(settings), scale_(settings.color, settings.scale), names_(given.names), environment_(given.environment) {
+    : settings_(settings), scale_(settings.color, settings.scale), names_(given.names),
+      environment_(given.environment) {
   Group group = given;
   if (group.shapes.empty())
     for (const Robot* robot : group.robots) group.shapes.push_back(shape_of(*robot));
   swatches_ = swatches_of(group);
-  for (std::size_t i = 0; i < group.robots.size(); ++i) add(*group.robots[i], group.materials[i], *group.shapes[i], offsets.at(i));
+  for (std::size_t i = 0; i < group.robots.size(); ++i)
+    add(*group.robots[i], group.materials[i], *group.shapes[i], offsets.at(i));
   bodies_ = group.bodies ? group.bodies : bodies_of(group.shapes);
   restart(group.telemetry);
   place(group.telemetry);
@@ -156,7 +160,8 @@ void GroupScene::set_materials(std::size_t robot, std::span<const Material> mate
 // One that is as wanted, or a free one made so.
 std::size_t GroupScene::table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults) {
   const auto same = [&](const Table& table) {
-    return table.robots > 0 && table.defaults == defaults && std::ranges::equal(table.materials, materials) && std::ranges::equal(table.own, own);
+    return table.robots > 0 && table.defaults == defaults && std::ranges::equal(table.materials, materials) &&
+           std::ranges::equal(table.own, own);
   };
   const auto free = [&](const Table& table) { return table.robots == 0 && table.own.size() == own.size(); };
   auto found = std::ranges::find_if(tables_, same);
@@ -237,10 +242,13 @@ void GroupScene::lengthen_paths(std::span<const Telemetry> telemetry) {
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     std::vector<float>& points = trails_[i].points;
     const Vec3 now = telemetry[i].center_of_mass;
-    const bool moved = points.empty() || points[points.size() - 3] != now.x || points[points.size() - 2] != now.y || points.back() != now.z;
+    const bool moved = points.empty() || points[points.size() - 3] != now.x || points[points.size() - 2] != now.y ||
+                       points.back() != now.z;
     if (!telemetry[i].exploded && moved) points.insert(points.end(), {now.x, now.y, now.z});
     if (points.size() > 3 * most_points) points.erase(points.begin(), points.begin() + 3);
-    paths_.push_back({.body = static_cast<std::uint32_t>(i), .points = points, .color = render::category_color(static_cast<int>(i))});
+    paths_.push_back({.body = static_cast<std::uint32_t>(i),
+                      .points = points,
+                      .color = render::category_color(static_cast<int>(i))});
   }
   scene_.paths = paths_;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A group of simulated robots as a scene to draw.
 #pragma once
 
@@ -73,10 +74,11 @@ class GroupScene {
   struct Table {
     std::size_t first_look = 0;
     std::vector<Material> own, materials;
-    bool defaults = true;   // it has the default table
+    bool defaults = true;    // it has the default table
     std::size_t robots = 0;  // that use it; 0 = free for others
   };
-  void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape, const Eigen::Vector3f& offset);
+  void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
+           const Eigen::Vector3f& offset);
   std::size_t table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults);
   void use_table(std::size_t robot, std::size_t table);
   void show_surroundings();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury info: what a robot file or trajectory holds, or what this machine can do.
 #include <fmt/format.h>
 
@@ -64,12 +65,12 @@ void describe_fit(const Robot& robot) {
                                                     : "more than the 48 kB of the smallest CUDA devices"));
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
-    const char* where = !fit.on_chip            ? "does not fit, stepped in device memory, more slowly"
+    const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
                         : !fit.contacts_on_chip && std::holds_alternative<Land>(configuration.environment)
                             ? "fits but for its contacts"
                             : "fits";
-    line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device), kilobytes(fit.most_bytes),
-                         where, fit.robots_at_once));
+    line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
+                         kilobytes(fit.most_bytes), where, fit.robots_at_once));
   }
   line("", "the CPU takes any size");
 }
@@ -79,9 +80,11 @@ void describe(const Robot& robot) {
   const std::string kind = kind_of(robot), environment = environment_of(robot);
   fmt::print("{}\n", robot.name);
   if (!kind.empty() || !environment.empty())
-    line("made", fmt::format("{}{}{}", kind.empty() ? "" : (kind == "nn" ? "as an " : "as a ") + kind + " robot", kind.empty() || environment.empty() ? "" : ", ",
-                             environment.empty() ? "" : "for " + environment));
-  line("masses", fmt::format("{}{}", found.masses, found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
+    line("made",
+         fmt::format("{}{}{}", kind.empty() ? "" : (kind == "nn" ? "as an " : "as a ") + kind + " robot",
+                     kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
+  line("masses", fmt::format("{}{}", found.masses,
+                             found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
   line("springs", fmt::format("{}, {:.1f} a mass, {:.3g} to {:.3g} m, {} muscles", found.springs, found.springs_a_mass,
                               found.shortest_spring, found.longest_spring, found.muscles));
   line("faces", fmt::to_string(found.faces));
@@ -115,17 +118,19 @@ void describe(const TrajectoryReader& trajectory) {
   const Configuration& configuration = trajectory.configuration();
   fmt::print("{}\n", trajectory.path().string());
   line("recorded by", trajectory.program() + " on " + trajectory.device_name());
-  line("frames", trajectory.frames() == 0 ? "none"
-                                          : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(),
-                                                        trajectory.every(), trajectory.time(0),
-                                                        trajectory.time(trajectory.frames() - 1)));
-  line("solver", fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt, configuration.damping));
+  line("frames", trajectory.frames() == 0
+                     ? "none"
+                     : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(), trajectory.every(),
+                                   trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
+  line("solver", fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt,
+                             configuration.damping));
   line("environment", environment_text(configuration));
   if (trajectory.seed()) line("seed", fmt::to_string(*trajectory.seed()));
   line("robots", fmt::format("{}, {} masses", trajectory.robots().size(), trajectory.mass_count()));
   for (std::size_t i = 0; i < std::min(shown, trajectory.robots().size()); ++i) {
     const auto& [robot, group, exploded_at, bad_spring] = trajectory.robots()[i];
-    std::string text = fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
+    std::string text =
+        fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
     if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
     if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
     fmt::print("    {}: {}\n", group, text);
@@ -149,8 +154,10 @@ int tell(const InfoOptions& options) {
 
 void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = program.add_subcommand("info", "What a robot or trajectory file holds; without one, what this machine can do");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, trajectories (.h5)")->type_name("PATH");
+  CLI::App* command =
+      program.add_subcommand("info", "What a robot or trajectory file holds; without one, what this machine can do");
+  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, trajectories (.h5)")
+      ->type_name("PATH");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The encoder to look at (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
   command->callback([options, choose] { choose([options] { return tell(*options); }); });

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C, kill and a closed terminal: noted, so that work ends in good order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/machine.h"
 
 #include <fmt/format.h>
@@ -30,7 +31,8 @@ std::string proc_value(const char* path, const std::string& name) {
 
 int usable_cores() {
   cpu_set_t set;
-  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
+                                                     : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
 }
 
 const char* vector_instructions() {
@@ -48,8 +50,10 @@ const char* vector_instructions() {
 Finding processor() {
   const std::string model = proc_value("/proc/cpuinfo", "model name");
   const int cores = usable_cores();
-  return {"processor", fmt::format("{}, {} core{}, {}", model.empty() ? "unknown model" : model, cores,
-                                   cores == 1 ? "" : "s", vector_instructions()), {}};
+  return {"processor",
+          fmt::format("{}, {} core{}, {}", model.empty() ? "unknown model" : model, cores, cores == 1 ? "" : "s",
+                      vector_instructions()),
+          {}};
 }
 
 Finding memory() {
@@ -63,7 +67,8 @@ Finding memory() {
 
 std::vector<Finding> gpus() {
   if (!built_with_cuda())
-    return {{"GPU", "not used: this build has no CUDA backend", "build again with nvcc on PATH to simulate on an NVIDIA GPU"}};
+    return {{"GPU", "not used: this build has no CUDA backend",
+             "build again with nvcc on PATH to simulate on an NVIDIA GPU"}};
   std::vector<Finding> findings;
   for (int i = 0; i < cuda_device_count(); ++i)
     findings.push_back({"GPU", fmt::format("{} (--device cuda:{})", cuda_device_name(i), i), {}});
@@ -115,7 +120,8 @@ Finding encoder(const std::string& ffmpeg) {
   std::string formats, missing;
   for (const auto& [codec, format] : {std::pair{"libx264", ".mp4"}, {"libvpx-vp9", ".webm"}, {" gif ", ".gif"}})
     (codecs.find(codec) == std::string::npos ? missing : formats) += std::string(" ") + format;
-  return {"encoder", fmt::format("{} {}, writes{}", program, version_in(version), formats.empty() ? " nothing" : formats),
+  return {"encoder",
+          fmt::format("{} {}, writes{}", program, version_in(version), formats.empty() ? " nothing" : formats),
           missing.empty() ? "" : fmt::format("this ffmpeg cannot write{}; install the distribution's", missing)};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What this machine can do for the program.
 #pragma once
 
@@ -8,9 +9,9 @@ namespace mercury {
 
 // One thing the program uses: what was found, and if it is missing or could be better, what to do.
 struct Finding {
-  std::string what;   // "encoder"
-  std::string found;  // "ffmpeg 5.1.9 (H.264, VP9, GIF)", or "none"
-  std::string advice; // empty = all is well
+  std::string what;    // "encoder"
+  std::string found;   // "ffmpeg 5.1.9 (H.264, VP9, GIF)", or "none"
+  std::string advice;  // empty = all is well
 };
 
 // Processor, memory, GPUs, ways to draw, encoder. `ffmpeg` as in encoder_program().

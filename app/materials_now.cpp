@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/materials_now.h"
 
 #include <cmath>
@@ -11,7 +12,8 @@ std::vector<MaterialNow> materials_at(const Simulation& simulation, std::size_t 
   for (std::size_t id = 0; id < count; ++id) {
     const Material m = simulation.material(robot, static_cast<MaterialId>(id));
     const double angle = static_cast<double>(m.frequency) * time + static_cast<double>(m.phase);
-    now.push_back({scale * m.stiffness, 1 + m.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI)))});
+    now.push_back(
+        {scale * m.stiffness, 1 + m.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI)))});
   }
   return now;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury new: robot files.
 #include <fmt/format.h>
 
@@ -26,7 +27,8 @@ struct NewOptions {
   void add_to(CLI::App& command) {
     output.add_to(command);
     add_number(command, "--best-of", best_of, "Simulate so many, and keep the --count that get farthest", "N");
-    add_number(command, "--settle", settle, "Of --best-of: distances count from this time on, when robots have fallen (default 0)", "S");
+    add_number(command, "--settle", settle,
+               "Of --best-of: distances count from this time on, when robots have fallen (default 0)", "S");
     simulation.add_to(command);
   }
 };
@@ -34,9 +36,11 @@ struct NewOptions {
 int keep_best(const NewOptions& options, const MakeRobot& make) {
   const RobotOutput& output = options.output;
   if (options.best_of < output.count())
-    throw InputError("--best-of", fmt::format("{} is not accepted; give at least --count, {}", options.best_of, output.count()));
+    throw InputError("--best-of",
+                     fmt::format("{} is not accepted; give at least --count, {}", options.best_of, output.count()));
   if (!(options.settle >= 0 && options.settle <= options.simulation.seconds()))
-    throw InputError("--settle", fmt::format("{} is not accepted; give 0 to --seconds, {} s", options.settle, options.simulation.seconds()));
+    throw InputError("--settle", fmt::format("{} is not accepted; give 0 to --seconds, {} s", options.settle,
+                                             options.simulation.seconds()));
   const Contest contest{.candidates = options.best_of,
                         .configuration = options.simulation.configuration(),
                         .steps = options.simulation.steps(),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/nn_options.h"
 
 #include <fmt/format.h>
@@ -25,8 +26,8 @@ void NnRobotOptions::add_to(CLI::App& command) {
   const auto number = [&](const char* name, auto& value, const std::string& description, const char* form) {
     add_number(command, name, value, description, form)->group("Network robots");
   };
-  number("--points", options_.points,
-         fmt::format("Points of the cloud, 64 to 65535 (default {})", options_.points), "N");
+  number("--points", options_.points, fmt::format("Points of the cloud, 64 to 65535 (default {})", options_.points),
+         "N");
   add_value(command, "--hidden", options_.hidden,
             fmt::format("Neurons of the hidden layers (default {})", fmt::join(options_.hidden, ",")), "N,N,...",
             layers_from)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/option_values.h"
 
 #include <fmt/format.h>
@@ -71,8 +72,8 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& val
   return add_value(app, name, value, description, form,
                    [choices = std::move(choices)](const std::string& option, const std::string& text) {
                      if (std::find(choices.begin(), choices.end(), text) == choices.end())
-                       throw InputError(option, fmt::format("\"{}\" is not accepted; give {}", text,
-                                                            fmt::join(choices, ", ")));
+                       throw InputError(option,
+                                        fmt::format("\"{}\" is not accepted; give {}", text, fmt::join(choices, ", ")));
                      return text;
                    });
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options whose values are checked as they are read: every error names the option and says what is accepted.
 #pragma once
 

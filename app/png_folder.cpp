@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/png_folder.h"
 
 #include <fmt/format.h>
@@ -20,7 +21,8 @@ PngFolder::PngFolder(const std::filesystem::path& folder) : folder_(folder), que
   made_folder_ = std::filesystem::create_directory(folder_, error);
   if (error) throw InputError("-o", "cannot make the folder " + folder.string() + ": " + error.message());
   if (!std::filesystem::is_directory(folder_)) throw InputError("-o", folder.string() + " is a file, not a folder");
-  if (access(folder_.c_str(), W_OK) != 0) throw InputError("-o", "the folder " + folder.string() + " cannot be written into");
+  if (access(folder_.c_str(), W_OK) != 0)
+    throw InputError("-o", "the folder " + folder.string() + " cannot be written into");
   for (std::size_t i = 0; i < worker_count(); ++i) workers_.emplace_back([this] { work(); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/position_bridge.h"
 
 #include <mutex>
@@ -65,7 +66,8 @@ ChosenBridge choose_bridge(const Simulation& simulation, const render::Renderer&
   try {
     return {.bridge = make_cuda_bridge(simulation, renderer), .on_card = true};
   } catch (const NoInterop& error) {
-    return {.bridge = make_host_bridge(), .note = std::string("positions are copied through the host: ") + error.what()};
+    return {.bridge = make_host_bridge(),
+            .note = std::string("positions are copied through the host: ") + error.what()};
   }
 }
 

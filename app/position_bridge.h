@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How positions come from the simulation into the renderer's buffer.
 #pragma once
 

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/program.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <exception>
@@ -63,7 +64,8 @@ class Program {
       parse(std::move(arguments));
       if (!body_) return help_ ? status_done : status_failed;
       const int status = body_();
-      if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw std::runtime_error("standard output cannot be written");
+      if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw std::runtime_error("standard output cannot be written");
       return status;
     } catch (const InputError& error) {
       say(config_ ? config_->located(error.what()) : error.what());
@@ -97,7 +99,8 @@ class Program {
     const auto children = command.get_subcommands([](const CLI::App*) { return true; });
     if (children.empty()) return;
     for (std::size_t i = words; i < arguments.size(); ++i)
-      if (arguments[i] == "-h" || arguments[i] == "--help" || (&command == &app_ && arguments[i] == "--version")) return;
+      if (arguments[i] == "-h" || arguments[i] == "--help" || (&command == &app_ && arguments[i] == "--version"))
+        return;
     std::vector<std::string> names;
     for (const CLI::App* child : children) names.push_back(child->get_name());
     const std::string called = &command == &app_ ? "mercury" : "mercury " + command.get_name();
@@ -135,7 +138,8 @@ class Program {
   static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
     for (const std::string& argument : arguments)
       if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
-        throw InputError(argument.substr(0, argument.size() - 1), "needs a value; see " + full_name(command) + " --help");
+        throw InputError(argument.substr(0, argument.size() - 1),
+                         "needs a value; see " + full_name(command) + " --help");
   }
 
   static std::string full_name(const CLI::App& command) {

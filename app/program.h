@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program `mercury`: from a command line to an exit status.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/progress.h"
 
 #include <fmt/format.h>
@@ -62,9 +63,9 @@ std::string progress_bar(const std::string& what, const std::string& unit, std::
                          double elapsed, int columns) {
   constexpr int width = 24;
   const int filled = static_cast<int>(share_of(done, total) * width);
-  std::string text = fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
-                                 100 * share_of(done, total), done, total, unit,
-                                 rate_and_rest(unit, done, total, elapsed));
+  std::string text =
+      fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
+                  100 * share_of(done, total), done, total, unit, rate_and_rest(unit, done, total, elapsed));
   // A line as wide as the terminal would wrap, and then could not be drawn over.
   if (const auto room = static_cast<std::size_t>(std::max(1, columns - 1)); text.size() > room) text.resize(room);
   return text;

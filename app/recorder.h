@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records a simulation while it runs: every so many steps a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury render: videos and pictures, without a window.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/report.h"
 
 #include <fmt/format.h>
@@ -73,7 +74,8 @@ std::string table_of(const RunReport& report) {
                         robot.masses, robot.springs, robot.displacement, robot.mean_speed, 100 * robot.largest_strain,
                         hash_text(robot.hash), state_of(robot));
   text += fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", report.robots.size(),
-                      report.robots.size() == 1 ? "" : "s", report.springs(), report.wall_seconds, with_magnitude(report.springs_per_second()));
+                      report.robots.size() == 1 ? "" : "s", report.springs(), report.wall_seconds,
+                      with_magnitude(report.springs_per_second()));
   return text;
 }
 
@@ -81,11 +83,12 @@ std::string csv_of(const RunReport& report) {
   std::string text =
       "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash\n";
   for (const RobotResult& robot : report.robots)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
-                        csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),
-                        robot.exploded, robot.exploded ? csv_number(robot.exploded_at) : "",
-                        robot.exploded && robot.first_bad_spring != no_spring ? fmt::to_string(robot.first_bad_spring) : "",
-                        hash_text(robot.hash));
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
+                    csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),
+                    robot.exploded, robot.exploded ? csv_number(robot.exploded_at) : "",
+                    robot.exploded && robot.first_bad_spring != no_spring ? fmt::to_string(robot.first_bad_spring) : "",
+                    hash_text(robot.hash));
   return text;
 }
 

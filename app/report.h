@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `mercury run` found, as a table, CSV or JSON.
 #pragma once
 
@@ -17,22 +18,22 @@ struct RobotResult {
   double mean_speed = 0;      // length of the way of the centre of mass over time [m/s]
   double largest_strain = 0;  // the largest of all samples [1]
   bool exploded = false;
-  double exploded_at = 0;     // [s]
+  double exploded_at = 0;  // [s]
   std::uint32_t first_bad_spring = no_spring;
-  std::uint64_t hash = 0;     // of the final positions and velocities
+  std::uint64_t hash = 0;  // of the final positions and velocities
 };
 
 struct RunReport {
   Configuration configuration;
-  std::string device;               // what ran it, for people
+  std::string device;  // what ran it, for people
   std::int64_t steps = 0;
-  double seconds = 0;               // simulated
-  double wall_seconds = 0;          // spent in stepping
-  bool interrupted = false;         // the user stopped it before the end
+  double seconds = 0;        // simulated
+  double wall_seconds = 0;   // spent in stepping
+  bool interrupted = false;  // the user stopped it before the end
   std::vector<std::string> notes;
   std::vector<RobotResult> robots;
 
-  std::size_t springs() const;      // of all robots
+  std::size_t springs() const;  // of all robots
   double springs_per_second() const;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot that explodes, with all that it takes to see it happen again: *.repro.
 #pragma once
 
@@ -23,16 +24,16 @@ struct ReproChange {
 };
 
 struct Repro {
-  Robot robot;                      // with its materials as at the start
-  Configuration configuration;      // at the start
-  Clock clock;                      // the start; its dt is the configuration's
-  State state;                      // at the start
-  std::vector<Pull> pulls;          // at the start
+  Robot robot;                       // with its materials as at the start
+  Configuration configuration;       // at the start
+  Clock clock;                       // the start; its dt is the configuration's
+  State state;                       // at the start
+  std::vector<Pull> pulls;           // at the start
   std::vector<ReproChange> changes;  // in order
-  double exploded_at = 0;           // [s]
+  double exploded_at = 0;            // [s]
   std::uint32_t first_bad_spring = no_spring;
-  std::int64_t last_step = 0;       // by which it has exploded
-  std::string device_name;          // what ran it: on the same kind of device it happens again bit for bit
+  std::int64_t last_step = 0;  // by which it has exploded
+  std::string device_name;     // what ran it: on the same kind of device it happens again bit for bit
 };
 
 // By the extension.

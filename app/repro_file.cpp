@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repros as JSON.
 #include <fmt/format.h>
 
@@ -75,7 +76,8 @@ std::vector<Vec3> vectors_of(const Json& json, std::size_t count) {
 
 std::int64_t step_of(const Json& json, std::int64_t least) {
   const auto step = json.is_number_integer() ? json.get<std::int64_t>() : -1;
-  if (step < least || step > most_steps) throw InputError(fmt::format("{} is not accepted as a step here; give {} or more", json.dump(), least));
+  if (step < least || step > most_steps)
+    throw InputError(fmt::format("{} is not accepted as a step here; give {} or more", json.dump(), least));
   return step;
 }
 
@@ -122,8 +124,10 @@ std::vector<ReproChange> changes_from(const Json& json, const Repro& repro) {
 }
 
 Repro repro_from(const Json& json) {
-  if (!json.is_object() || json.value("format", "") != format) throw InputError("is not a repro: its format is not \"mercury-repro\"");
-  if (json.at("version") != version) throw InputError(fmt::format("is of version {}, this program reads {}", json["version"].dump(), version));
+  if (!json.is_object() || json.value("format", "") != format)
+    throw InputError("is not a repro: its format is not \"mercury-repro\"");
+  if (json.at("version") != version)
+    throw InputError(fmt::format("is of version {}, this program reads {}", json["version"].dump(), version));
   Repro repro;
   try {
     repro.robot = parse_robot(json.at("robot").dump(), RobotFormat::json);
@@ -132,7 +136,9 @@ Repro repro_from(const Json& json) {
   }
   repro.configuration = configuration_from(json.at("configuration"));
   const Json& start = json.at("start");
-  repro.clock = {.dt = repro.configuration.dt, .base_time = start.at("base_time").get<double>(), .base_step = step_of(start.at("base_step"), 0)};
+  repro.clock = {.dt = repro.configuration.dt,
+                 .base_time = start.at("base_time").get<double>(),
+                 .base_step = step_of(start.at("base_step"), 0)};
   repro.clock.step = step_of(start.at("step"), repro.clock.base_step);
   repro.state.positions = vectors_of(start.at("positions"), repro.robot.masses.size());
   repro.state.velocities = vectors_of(start.at("velocities"), repro.robot.masses.size());
@@ -140,7 +146,8 @@ Repro repro_from(const Json& json) {
   repro.changes = changes_from(json.at("changes"), repro);
   const Json& exploded = json.at("exploded");
   repro.exploded_at = exploded.at("time").get<double>();
-  if (exploded.contains("first_bad_spring")) repro.first_bad_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
+  if (exploded.contains("first_bad_spring"))
+    repro.first_bad_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
   repro.last_step = step_of(exploded.at("last_step"), repro.clock.step);
   repro.device_name = json.value("device_name", "");
   return repro;
@@ -165,7 +172,9 @@ std::string serialize_repro(const Repro& repro) {
   json["changes"] = Json::array();
   // Changes of one step are of different kinds, which do not touch each other: told in one order, however they came.
   std::vector<ReproChange> changes = repro.changes;
-  std::ranges::stable_sort(changes, {}, [](const ReproChange& c) { return std::pair(c.step, c.configuration ? 2 : c.pulls ? 1 : 0); });
+  std::ranges::stable_sort(changes, {}, [](const ReproChange& c) {
+    return std::pair(c.step, c.configuration ? 2 : c.pulls ? 1 : 0);
+  });
   for (const ReproChange& change : changes) json["changes"].push_back(json_of(change, materials));
   json["robot"] = Json::parse(serialize_robot(repro.robot, RobotFormat::json));
   return json.dump() + "\n";

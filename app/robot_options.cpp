@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/robot_options.h"
 
 #include <fmt/format.h>
@@ -31,7 +32,10 @@ std::vector<Robot> random_robots(const RobotOptions::RandomRobots& request) {
 
 void RobotOptions::add_to(CLI::App& command) {
   command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
-  command.add_option("--random", random_, "So many random robots, of --seed or one of their own, from the first or another; may be given several times")
+  command
+      .add_option(
+          "--random", random_,
+          "So many random robots, of --seed or one of their own, from the first or another; may be given several times")
       ->allow_extra_args(false)
       ->type_name("voxel:N[:SEED[:FIRST]]|nn:...")
       ->group("Robots");
@@ -41,7 +45,8 @@ void RobotOptions::add_to(CLI::App& command) {
 }
 
 // A file of a kind that is given without others.
-std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const std::filesystem::path&), const char* why) const {
+std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const std::filesystem::path&),
+                                                         const char* why) const {
   const auto found = std::find_if(paths_.begin(), paths_.end(), [&](const auto& path) { return is_such(path); });
   if (found == paths_.end()) return std::nullopt;
   if (paths_.size() > 1 || !random_.empty()) throw InputError(*found, why);
@@ -93,7 +98,8 @@ RobotOptions::RandomRobots RobotOptions::random_from(const std::string& request)
   if (kind != "voxel" && kind != "nn")
     throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
   if (parts.size() > 4)
-    throw InputError("--random", fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
+    throw InputError("--random",
+                     fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
   if (kind == "voxel")
     robots.voxel = voxel_.chosen();
   else

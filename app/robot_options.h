@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robots a command works on: files, folders, and robots made at random.
 #pragma once
 

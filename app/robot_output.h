@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many new robots into files: what all of `mercury new` has in common.
 #pragma once
 
@@ -44,7 +45,7 @@ class RobotOutput {
  private:
   bool names_file() const;
 
-  std::string path_;             // a file (.json, .cbor) or a folder
+  std::string path_;  // a file (.json, .cbor) or a folder
   std::uint64_t count_ = 1;
   std::uint64_t seed_ = 1;
   std::string format_ = "json";  // of files in a folder

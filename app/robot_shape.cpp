@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/robot_shape.h"
 
 #include "app/appearance.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a robot looks like whatever it does: made once, on whatever thread, and shared by all scenes that show it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury run: simulate without pictures.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -102,7 +103,8 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulat
                                                      .deflate = options.compress ? 1 : 0});
 }
 
-RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder, ReproChanges* changes = nullptr) {
+RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder,
+                   ReproChanges* changes = nullptr) {
   Stepper stepper(simulation);
   Observer observer(simulation);
   const std::int64_t first = simulation.steps();
@@ -154,15 +156,19 @@ int tell(const RunOptions& options, const RunReport& report) {
 int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Device device = options.simulation.configuration().device;
   if (options.simulation.configuration() != Configuration{.device = device})
-    throw InputError(file.string(), "brings its own configuration; of the options for it give --device, --threads and --seconds alone");
+    throw InputError(
+        file.string(),
+        "brings its own configuration; of the options for it give --device, --threads and --seconds alone");
   if (!options.record.empty() || options.every) throw InputError("--record", "is not for a repro; give robots");
   const Repro repro = load_repro(file);
   Simulation simulation = start_of(repro, device);
   if (simulation.device_name() != repro.device_name)
-    fmt::print(stderr, "mercury: {} was seen on {}, this is {}: it may go another way\n", file.string(), repro.device_name, simulation.device_name());
+    fmt::print(stderr, "mercury: {} was seen on {}, this is {}: it may go another way\n", file.string(),
+               repro.device_name, simulation.device_name());
   ReproChanges changes(repro);
   const double seconds = options.simulation.seconds(0);
-  const std::int64_t last = seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
+  const std::int64_t last =
+      seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
   return tell(options, simulate(simulation, last, options.quiet, nullptr, &changes));
 }
 

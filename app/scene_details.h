@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is shown of a moment beside the robots' shapes: values to colour by, and arrows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/simulation_options.h"
 
 #include <fmt/format.h>
@@ -46,8 +47,10 @@ void set(Environment& environment, const char* option, const std::optional<Value
         if constexpr (std::is_invocable_v<Member, Kind&>)
           member(kind) = *value;
         else
-          throw InputError(option, fmt::format("{} has no such parameter; it applies to {}", Kind::name,
-                                               environments_with(member, std::make_index_sequence<std::variant_size_v<Environment>>{})));
+          throw InputError(
+              option,
+              fmt::format("{} has no such parameter; it applies to {}", Kind::name,
+                          environments_with(member, std::make_index_sequence<std::variant_size_v<Environment>>{})));
       },
       environment);
 }
@@ -55,7 +58,8 @@ void set(Environment& environment, const char* option, const std::optional<Value
 bool is_environment(std::string_view name) {
   return [&]<std::size_t... i>(std::index_sequence<i...>) {
     return ((name == std::variant_alternative_t<i, Environment>::name) || ...);
-  }(std::make_index_sequence<std::variant_size_v<Environment>>{});
+  }
+  (std::make_index_sequence<std::variant_size_v<Environment>>{});
 }
 
 // One number is a pull downwards.
@@ -68,13 +72,16 @@ Vec3 gravity_from(const std::string& option, const std::string& text) {
 
 void SimulationOptions::add_to(CLI::App& command) {
   const auto group = [](CLI::Option* option, const char* name) { option->group(name); };
-  group(add_value(command, "--device", device_, "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
-                  "auto|cpu|cuda[:N]", [](const std::string&, const std::string& text) { return name_of(device_named(text)); }),
+  group(add_value(command, "--device", device_,
+                  "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
+                  "auto|cpu|cuda[:N]",
+                  [](const std::string&, const std::string& text) { return name_of(device_named(text)); }),
         "Simulation");
   group(add_number(command, "--threads", threads_, "CPU threads (default 0 = all cores)", "N"), "Simulation");
-  group(add_value(command, "--environment", environment_, "Where the robots live (default: what they are made for, else ocean)",
-                  "ocean|ocean-simple|land",
-                  [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }),
+  group(add_value(
+            command, "--environment", environment_,
+            "Where the robots live (default: what they are made for, else ocean)", "ocean|ocean-simple|land",
+            [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }),
         "Simulation");
   group(add_value(command, "--solver", solver_, "Solver (default force)", "force|xpbd",
                   [](const std::string&, const std::string& text) { return std::string(name_of(solver_named(text))); }),
@@ -83,19 +90,29 @@ void SimulationOptions::add_to(CLI::App& command) {
   group(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S"), "Simulation");
   group(add_number(command, "--damping", damping_, "Damping of all velocities (default 0.1)", "1/S"), "Simulation");
   group(add_number(command, "--stiffness-scale", stiffness_scale_,
-                   "Multiplies every stiffness (default 1 in water, 200 on land)", "X"), "Environment");
-  group(add_value(command, "--gravity", gravity_, "Gravity, downwards or as a vector (default 0 in water, 9.81 on land)",
-                  "G|X,Y,Z", gravity_from), "Environment");
-  group(add_number(command, "--density", density_, "Density of the water (ocean; default 1000)", "KG/M3"), "Environment");
-  group(add_number(command, "--drag-coefficient", drag_coefficient_, "Drag coefficient (ocean; default 1)", "C"), "Environment");
-  group(add_number(command, "--lift-coefficient", lift_coefficient_, "Lift coefficient (ocean; default 0.2)", "C"), "Environment");
+                   "Multiplies every stiffness (default 1 in water, 200 on land)", "X"),
+        "Environment");
+  group(add_value(command, "--gravity", gravity_,
+                  "Gravity, downwards or as a vector (default 0 in water, 9.81 on land)", "G|X,Y,Z", gravity_from),
+        "Environment");
+  group(add_number(command, "--density", density_, "Density of the water (ocean; default 1000)", "KG/M3"),
+        "Environment");
+  group(add_number(command, "--drag-coefficient", drag_coefficient_, "Drag coefficient (ocean; default 1)", "C"),
+        "Environment");
+  group(add_number(command, "--lift-coefficient", lift_coefficient_, "Lift coefficient (ocean; default 0.2)", "C"),
+        "Environment");
   group(add_value(command, "--flow", flow_, "Velocity of the water (ocean, ocean-simple; default 0,0,0)", "X,Y,Z",
-                  vector_from), "Environment");
-  group(add_number(command, "--point-drag", point_drag_, "Drag of a mass (ocean-simple; default 1)", "N S/M"), "Environment");
-  group(add_number(command, "--friction", friction_, "Friction of the ground (land; default 0.8)", "MU"), "Environment");
+                  vector_from),
+        "Environment");
+  group(add_number(command, "--point-drag", point_drag_, "Drag of a mass (ocean-simple; default 1)", "N S/M"),
+        "Environment");
+  group(add_number(command, "--friction", friction_, "Friction of the ground (land; default 0.8)", "MU"),
+        "Environment");
   group(add_number(command, "--contact-stiffness", contact_stiffness_,
-                   "Stiffness of a robot's contact with itself (land; default 100)", "N/M"), "Environment");
-  group(command.add_flag("--no-self-collision", no_self_collision_, "Robots pass through themselves (land)"), "Environment");
+                   "Stiffness of a robot's contact with itself (land; default 100)", "N/M"),
+        "Environment");
+  group(command.add_flag("--no-self-collision", no_self_collision_, "Robots pass through themselves (land)"),
+        "Environment");
 }
 
 void SimulationOptions::set_parameters(Environment& environment) const {

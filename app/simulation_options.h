@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of every command that simulates: device, environment, solver and their parameters.
 #pragma once
 

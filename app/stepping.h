@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stepping a simulation so that the user can stop it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/studio.h"
 
 #include <variant>
@@ -7,7 +8,9 @@
 namespace mercury {
 namespace {
 
-bool on_land(const Simulation& simulation) { return std::holds_alternative<Land>(simulation.configuration().environment); }
+bool on_land(const Simulation& simulation) {
+  return std::holds_alternative<Land>(simulation.configuration().environment);
+}
 
 std::vector<std::string> names_of(const Simulation& simulation) {
   std::vector<std::string> names;
@@ -62,8 +65,8 @@ Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings
 
 FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet,
                         FilmControl* control) {
-  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels}, timing,
-                       quiet, control);
+  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels},
+                       timing, quiet, control);
 }
 
 }  // namespace mercury

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that a film of a group needs, put together.
 #pragma once
 
@@ -17,8 +18,8 @@ struct Stage {
   std::unique_ptr<render::Context> context;
   render::Renderer renderer;
 };
-// On the card with that CUDA ordinal, if there is a choice; -1 = any. Throws render::ContextError when no context can be
-// had.
+// On the card with that CUDA ordinal, if there is a choice; -1 = any. Throws render::ContextError when no context can
+// be had.
 Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality, int cuda_device = -1);
 
 // A group of robots on a stage: where they stand, how they look, and who holds the camera. Refers to the stage.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/trajectory_hdf5.h"
 
 #include <algorithm>
@@ -113,21 +114,37 @@ hid_t checked(hid_t result) {
 }
 
 template <>
-NumberType number_type<float>() { return {H5T_NATIVE_FLOAT, H5T_IEEE_F32LE}; }
+NumberType number_type<float>() {
+  return {H5T_NATIVE_FLOAT, H5T_IEEE_F32LE};
+}
 template <>
-NumberType number_type<double>() { return {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE}; }
+NumberType number_type<double>() {
+  return {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE};
+}
 template <>
-NumberType number_type<std::uint8_t>() { return {H5T_NATIVE_UINT8, H5T_STD_U8LE}; }
+NumberType number_type<std::uint8_t>() {
+  return {H5T_NATIVE_UINT8, H5T_STD_U8LE};
+}
 template <>
-NumberType number_type<std::uint16_t>() { return {H5T_NATIVE_UINT16, H5T_STD_U16LE}; }
+NumberType number_type<std::uint16_t>() {
+  return {H5T_NATIVE_UINT16, H5T_STD_U16LE};
+}
 template <>
-NumberType number_type<std::uint32_t>() { return {H5T_NATIVE_UINT32, H5T_STD_U32LE}; }
+NumberType number_type<std::uint32_t>() {
+  return {H5T_NATIVE_UINT32, H5T_STD_U32LE};
+}
 template <>
-NumberType number_type<std::uint64_t>() { return {H5T_NATIVE_UINT64, H5T_STD_U64LE}; }
+NumberType number_type<std::uint64_t>() {
+  return {H5T_NATIVE_UINT64, H5T_STD_U64LE};
+}
 template <>
-NumberType number_type<std::int32_t>() { return {H5T_NATIVE_INT32, H5T_STD_I32LE}; }
+NumberType number_type<std::int32_t>() {
+  return {H5T_NATIVE_INT32, H5T_STD_I32LE};
+}
 template <>
-NumberType number_type<std::int64_t>() { return {H5T_NATIVE_INT64, H5T_STD_I64LE}; }
+NumberType number_type<std::int64_t>() {
+  return {H5T_NATIVE_INT64, H5T_STD_I64LE};
+}
 
 Handle material_type() {
   Handle type(H5Tcreate(H5T_COMPOUND, sizeof(Material)));
@@ -232,7 +249,8 @@ Handle write_constant(hid_t parent, const std::string& name, float value, const 
 void write_text_dataset(hid_t parent, const std::string& name, std::string_view text) {
   const Handle type = text_type(text.size());
   const std::string content(text);
-  const Handle dataset(H5Dcreate2(parent, name.c_str(), type, scalar_space(), link_properties(), H5P_DEFAULT, H5P_DEFAULT));
+  const Handle dataset(
+      H5Dcreate2(parent, name.c_str(), type, scalar_space(), link_properties(), H5P_DEFAULT, H5P_DEFAULT));
   checked(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, content.c_str()));
 }
 
@@ -240,7 +258,8 @@ void write_text_dataset(hid_t parent, const std::string& name, std::span<const s
   std::size_t size = 1;
   for (const std::string& text : texts) size = std::max(size, text.size());
   std::string content(size * texts.size(), '\0');
-  for (std::size_t i = 0; i < texts.size(); ++i) std::copy(texts[i].begin(), texts[i].end(), content.begin() + static_cast<std::ptrdiff_t>(i * size));
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    std::copy(texts[i].begin(), texts[i].end(), content.begin() + static_cast<std::ptrdiff_t>(i * size));
   const Handle type = text_type(size);
   write_dataset(parent, name, type, type, {texts.size()}, content.data());
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // HDF5 as trajectories use it: what is opened is closed, and a failure is an exception of one line.
 #pragma once
 
@@ -87,9 +88,9 @@ void write_unit(hid_t object, std::string_view unit, const std::string& name = "
 
 // What a dataset that grows along its first axis is made of.
 struct Growing {
-  Extent row;            // extent of one element
-  hsize_t chunk = 1;     // elements a chunk
-  int deflate = 0;       // 0 = not compressed, 1..9
+  Extent row;         // extent of one element
+  hsize_t chunk = 1;  // elements a chunk
+  int deflate = 0;    // 0 = not compressed, 1..9
 };
 // Empty at first. Checksummed.
 Handle create_growing(hid_t parent, const std::string& name, hid_t file_type, const Growing& growing);

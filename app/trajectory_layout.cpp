@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/trajectory_layout.h"
 
 #include <algorithm>
@@ -15,7 +16,11 @@ constexpr std::size_t longest_name = 200;  // bytes of a group's name
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
-  const std::size_t length = first < 0x80 ? 1 : first >= 0xc2 && first < 0xe0 ? 2 : first >= 0xe0 && first < 0xf0 ? 3 : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+  const std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xc2 && first < 0xe0 ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xf0 && first < 0xf5 ? 4
+                                                             : 0;
   if (length == 0 || length > text.size()) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
@@ -28,7 +33,8 @@ std::string legal(std::string_view name) {
   std::string result;
   while (!name.empty() && result.size() < longest_name) {
     const std::size_t length = character_length(name);
-    const bool plain = length > 1 || (length == 1 && static_cast<unsigned char>(name[0]) >= 0x20 && name[0] != '/' && name[0] != 0x7f);
+    const bool plain =
+        length > 1 || (length == 1 && static_cast<unsigned char>(name[0]) >= 0x20 && name[0] != '/' && name[0] != 0x7f);
     result += plain ? std::string(name.substr(0, length)) : "_";
     name.remove_prefix(std::max<std::size_t>(1, length));
   }

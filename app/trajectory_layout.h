@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the writer and the reader of trajectories agree on: names in the file, and the parameters of a configuration.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/trajectory_playback.h"
 
 #include <algorithm>
@@ -40,7 +41,9 @@ class Playback final : public Backend {
   RobotStatus status(std::size_t robot) const override { return at_present().status(robot); }
   std::vector<RobotStatus> statuses() const override { return at_present().statuses(); }
   void write_materials(std::span<const Material> tables) override { robots_->write_materials(tables); }
-  void write_materials(std::size_t robot, std::span<const Material> table) override { robots_->write_materials(robot, table); }
+  void write_materials(std::size_t robot, std::span<const Material> table) override {
+    robots_->write_materials(robot, table);
+  }
   void set_pulls(std::span<const Pull>) override {}
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     at_present().report(clock, telemetry, statuses);
@@ -73,7 +76,8 @@ class Playback final : public Backend {
     const auto offsets = trajectory_->mass_offsets();
     for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
       const std::size_t masses = offsets[i + 1] - offsets[i];
-      robots_->write(i, std::span(now.positions).subspan(offsets[i], masses), std::span(now.velocities).subspan(offsets[i], masses));
+      robots_->write(i, std::span(now.positions).subspan(offsets[i], masses),
+                     std::span(now.velocities).subspan(offsets[i], masses));
       robots_->set_status(i, status_at(trajectory_->robots()[i], step));
     }
   }
@@ -89,7 +93,8 @@ class Playback final : public Backend {
 
   RobotStatus status_at(const RecordedRobot& robot, std::int64_t step) const {
     if (!robot.exploded_at) return {};
-    const std::int64_t exploded = trajectory_->step(0) + std::llround((*robot.exploded_at - trajectory_->time(0)) / configuration_.dt);
+    const std::int64_t exploded =
+        trajectory_->step(0) + std::llround((*robot.exploded_at - trajectory_->time(0)) / configuration_.dt);
     return exploded <= step ? RobotStatus{.exploded_step = exploded - trajectory_->step(0)} : RobotStatus{};
   }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory as a simulation: everything that looks at a simulation, such as a film, can look at a recording.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/trajectory_reader.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memo
   const Extent extent = extent_of(dataset);
   if (extent.size() != row.size() + 1 || !std::equal(row.begin(), row.end(), extent.begin() + 1))
     throw Error("\"" + name + "\" has another shape");
-  if (extent[0] > std::numeric_limits<std::uint64_t>::max() / sizeof(Element)) throw Error("\"" + name + "\" is too large");
+  if (extent[0] > std::numeric_limits<std::uint64_t>::max() / sizeof(Element))
+    throw Error("\"" + name + "\" is too large");
   require_content(dataset, extent[0] * sizeof(Element));
   std::vector<Element> rows(extent[0]);
   if (!rows.empty()) read_dataset(dataset, memory_type, rows.data());
@@ -82,7 +84,8 @@ void read_materials(hid_t group, Robot& robot) {
   const auto has_default_name = [&, id = 0](const std::string& name) mutable {
     return name == default_material_name(static_cast<MaterialId>(id++));
   };
-  if (std::ranges::equal(robot.materials, default_materials()) && std::ranges::all_of(robot.material_names, has_default_name)) {
+  if (std::ranges::equal(robot.materials, default_materials()) &&
+      std::ranges::all_of(robot.material_names, has_default_name)) {
     robot.materials.clear();
     robot.material_names.clear();
   }
@@ -129,7 +132,8 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(pa
 
 void TrajectoryReader::read_parameters() {
   const Handle h5md = open_group(file_, "h5md"), parameters = open_group(file_, "parameters");
-  if (read_attributes<std::int32_t, 2>(h5md, "version")[0] != h5md_version[0]) throw Error("is not of H5MD's version 1");
+  if (read_attributes<std::int32_t, 2>(h5md, "version")[0] != h5md_version[0])
+    throw Error("is not of H5MD's version 1");
   if (!has_attribute(parameters, "format")) throw Error("is not a trajectory that mercury recorded");
   if (const int format = read_attribute<std::int32_t>(parameters, "format"); format != trajectory_format)
     throw Error("is a trajectory of format " + std::to_string(format) + "; this program reads format " +
@@ -157,7 +161,8 @@ void TrajectoryReader::read_robots() {
   for (const std::string& name : groups) {
     const Handle group = open_group(particles_, name);
     const std::uint64_t index = read_attribute<std::uint64_t>(group, "index");
-    if (index >= groups.size() || !robots_[index].group.empty()) throw Error("the indices of its robots are not 0, 1, 2, ...");
+    if (index >= groups.size() || !robots_[index].group.empty())
+      throw Error("the indices of its robots are not 0, 1, 2, ...");
     try {
       robots_[index] = read_robot(name, group);
       require_frames(group, robots_[index].robot.masses.size());
@@ -210,10 +215,12 @@ void TrajectoryReader::read_block(Block& block, std::size_t first) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const hsize_t masses = offsets_[i + 1] - offsets_[i];
     const Handle dataset = open_dataset(open_group(open_group(particles_, robots_[i].group), block.element), "value");
-    const Handle stored(H5Dget_space(dataset)), held(H5Screate_simple(3, Extent{count, mass_count(), 3}.data(), nullptr));
+    const Handle stored(H5Dget_space(dataset)),
+        held(H5Screate_simple(3, Extent{count, mass_count(), 3}.data(), nullptr));
     const Extent extent{count, masses, 3};
     checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{first, 0, 0}.data(), nullptr, extent.data(), nullptr));
-    checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[i], 0}.data(), nullptr, extent.data(), nullptr));
+    checked(
+        H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[i], 0}.data(), nullptr, extent.data(), nullptr));
     checked(H5Dread(dataset, H5T_NATIVE_FLOAT, held, stored, H5P_DEFAULT, block.values.data()));
   }
   block.first = first;

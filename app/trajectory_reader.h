@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads what TrajectoryWriter wrote: robots, configuration, and frames by index.
 #pragma once
 
@@ -31,10 +32,10 @@ class TrajectoryReader {
   const std::filesystem::path& path() const { return path_; }
   const std::vector<RecordedRobot>& robots() const { return robots_; }  // in the order of the batch
   const Configuration& configuration() const { return configuration_; }
-  const std::string& device_name() const { return device_name_; }    // what ran it, for people
-  const std::string& program() const { return program_; }            // what wrote it: "mercury 0.1.0"
+  const std::string& device_name() const { return device_name_; }  // what ran it, for people
+  const std::string& program() const { return program_; }          // what wrote it: "mercury 0.1.0"
   std::optional<std::uint64_t> seed() const { return seed_; }
-  std::int64_t every() const { return every_; }                      // steps from frame to frame
+  std::int64_t every() const { return every_; }  // steps from frame to frame
 
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
@@ -43,7 +44,7 @@ class TrajectoryReader {
   std::size_t frame_at(double time) const;
   std::size_t frame_of_step(std::int64_t step) const;
 
-  std::size_t mass_count() const { return offsets_.back(); }         // of all robots together
+  std::size_t mass_count() const { return offsets_.back(); }              // of all robots together
   std::span<const std::size_t> mass_offsets() const { return offsets_; }  // size() + 1 elements
   // All robots' masses, one robot after the other; the span is valid until the next call. One frame after the other is
   // fastest.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/trajectory_writer.h"
 
 #include <pwd.h>
@@ -19,9 +20,9 @@ using namespace hdf5;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Spring) == 12 && sizeof(Face) == 6);
 
-constexpr std::size_t held_bytes = std::size_t{64} << 20;   // of frames, before they are written
-constexpr std::size_t chunk_bytes = std::size_t{1} << 20;   // of the largest robot's chunks, at most
-constexpr std::size_t longest_block = 64;                   // frames
+constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames, before they are written
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of the largest robot's chunks, at most
+constexpr std::size_t longest_block = 64;                  // frames
 
 // The user's name, which H5MD asks for.
 std::string author() {
@@ -33,7 +34,8 @@ std::string author() {
 }
 
 std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t expected_frames) {
-  std::size_t length = std::min({longest_block, held_bytes / (2 * sizeof(Vec3) * masses), chunk_bytes / (sizeof(Vec3) * largest)});
+  std::size_t length =
+      std::min({longest_block, held_bytes / (2 * sizeof(Vec3) * masses), chunk_bytes / (sizeof(Vec3) * largest)});
   length = std::max<std::size_t>(1, length);
   if (expected_frames <= 0) return length;
   const auto frames = static_cast<std::size_t>(expected_frames), blocks = (frames - 1) / length + 1;
@@ -170,7 +172,8 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   create_frames(group, robot.masses.size());
   write_unit(write_constant(group, "mass", 1, {robot.masses.size()}), "kg");
   write_unit(write_dataset(group, "rest_position", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {robot.masses.size(), 3},
-                           robot.masses.data()), "m");
+                           robot.masses.data()),
+             "m");
   write_connectivity(name, robot, group);
   write_materials(group, robot, materials);
   if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
@@ -187,15 +190,18 @@ void TrajectoryWriter::write_connectivity(const std::string& name, const Robot& 
     rest_lengths.push_back(spring.rest_length);
   }
   const Handle group = create_group(connectivity_, name);
-  const Handle springs = write_dataset(group, "springs", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.springs.size(), 2}, ends.data());
-  const Handle faces = write_dataset(group, "faces", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.faces.size(), 3}, robot.faces.data());
+  const Handle springs =
+      write_dataset(group, "springs", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.springs.size(), 2}, ends.data());
+  const Handle faces =
+      write_dataset(group, "faces", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.faces.size(), 3}, robot.faces.data());
   write_reference(springs, "particles_group", particles_, name);
   write_reference(faces, "particles_group", particles_, name);
   link(group, "springs", particles, "springs");
   link(group, "faces", particles, "faces");
   write_dataset(particles, "spring_material", H5T_STD_U8LE, H5T_NATIVE_UINT8, {materials.size()}, materials.data());
   write_unit(write_dataset(particles, "spring_rest_length", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {rest_lengths.size()},
-                           rest_lengths.data()), "m");
+                           rest_lengths.data()),
+             "m");
 }
 
 // A robot with the default materials shares one table with all others of that kind.
@@ -213,7 +219,9 @@ void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std:
 void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
   for (const auto& [element, unit] : {std::pair{"position", "m"}, std::pair{"velocity", "m s-1"}}) {
     const Handle group = create_group(particles, element);
-    write_unit(create_growing(group, "value", H5T_IEEE_F32LE, {.row = {masses, 3}, .chunk = frames_a_block_, .deflate = deflate_}), unit);
+    write_unit(create_growing(group, "value", H5T_IEEE_F32LE,
+                              {.row = {masses, 3}, .chunk = frames_a_block_, .deflate = deflate_}),
+               unit);
     link(parameters_, "step", group, "step");
     link(parameters_, "time", group, "time");
   }
@@ -247,7 +255,8 @@ void TrajectoryWriter::flush_times(hsize_t first) {
   append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, times_.size(), times_.data());
 }
 
-void TrajectoryWriter::flush_robot(std::size_t robot, const char* element, const std::vector<Vec3>& values, hsize_t first) {
+void TrajectoryWriter::flush_robot(std::size_t robot, const char* element, const std::vector<Vec3>& values,
+                                   hsize_t first) {
   const hsize_t count = steps_.size(), masses = offsets_[robot + 1] - offsets_[robot];
   const Handle group(H5Gopen2(particles_, groups_[robot].c_str(), H5P_DEFAULT)), series = open_group(group, element);
   const Handle held(H5Screate_simple(3, Extent{count, offsets_.back(), 3}.data(), nullptr));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions and velocities of a batch, frame by frame, into an H5MD 1.1 file (docs/formats.md).
 #pragma once
 

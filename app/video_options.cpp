@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/video_options.h"
 
 #include <fmt/format.h>
@@ -14,8 +15,11 @@ namespace {
 constexpr int sheet_gap = 4;  // between the moments of a contact sheet [pixels]
 
 PictureSize size_from(const std::string& option, const std::string& text) {
-  static const std::map<std::string, PictureSize> names{
-      {"480p", {854, 480}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"1440p", {2560, 1440}}, {"4k", {3840, 2160}}};
+  static const std::map<std::string, PictureSize> names{{"480p", {854, 480}},
+                                                        {"720p", {1280, 720}},
+                                                        {"1080p", {1920, 1080}},
+                                                        {"1440p", {2560, 1440}},
+                                                        {"4k", {3840, 2160}}};
   if (const auto found = names.find(text); found != names.end()) return found->second;
   const auto sizes = sizes_from(option, text, 2, "WIDTHxHEIGHT, 720p, 1080p or 4k");
   return {sizes[0], sizes[1]};
@@ -46,7 +50,8 @@ void VideoOptions::add_to(CLI::App& command) {
                  "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
   add(command.add_flag("--no-interop", no_interop_,
                        "Copy positions through the host even where CUDA and OpenGL can share them on the card"));
-  add(add_number(command, "--crf", crf_, "Of the encoding: lower is better and larger (default 18 .mp4, 30 .webm)", "N"));
+  add(add_number(command, "--crf", crf_, "Of the encoding: lower is better and larger (default 18 .mp4, 30 .webm)",
+                 "N"));
   add(add_text(command, "--ffmpeg", ffmpeg_, "The encoder (default: MERCURY_FFMPEG, else ffmpeg)", "PROGRAM"));
 }
 
@@ -73,14 +78,16 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
   if (frames > 1e8) throw InputError("--seconds", fmt::format("{:.3g} frames are too many for a video", frames));
   return {.size = encoded_size(kind, asked_size()),
           .pixels = pixel_format_of(kind),
-          .timing = {.frames = std::max<std::int64_t>(1, std::llround(frames)), .interval = speed_ / rate, .pace = 1 / rate}};
+          .timing = {
+              .frames = std::max<std::int64_t>(1, std::llround(frames)), .interval = speed_ / rate, .pace = 1 / rate}};
 }
 
 VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
   if (still_) return {.size = asked_size(), .timing = {.frames = 1, .start = *still_}};
   const PictureSize sheet = asked_size();
   const int width = (sheet.width + sheet_gap) / contact_sheet_->columns - sheet_gap;
-  const PictureSize frame{width, static_cast<int>(std::lround(static_cast<double>(width) * sheet.height / sheet.width))};
+  const PictureSize frame{width,
+                          static_cast<int>(std::lround(static_cast<double>(width) * sheet.height / sheet.width))};
   if (frame.width < 16 || frame.height < 16)
     throw InputError("--contact-sheet", "so many moments leave no room for each; give a larger --size or fewer");
   const std::int64_t frames = static_cast<std::int64_t>(contact_sheet_->columns) * contact_sheet_->rows;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that say which pictures are made, and how they are drawn and kept.
 #pragma once
 
@@ -23,7 +24,7 @@ class VideoOptions {
 
   // What is made of `seconds` of simulated time.
   struct Plan {
-    PictureSize size;               // of a frame
+    PictureSize size;  // of a frame
     render::PixelFormat pixels = render::PixelFormat::rgb;
     FilmTiming timing;
   };

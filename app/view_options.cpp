@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/view_options.h"
 
 #include <fmt/format.h>
@@ -25,12 +26,13 @@ std::pair<float, float> range_from(const std::string& option, const std::string&
 }
 
 render::CutPlane cut_from(const std::string& option, const std::string& text) {
-  static const std::map<std::string, Eigen::Vector3f> axes{
-      {"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}, {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+  static const std::map<std::string, Eigen::Vector3f> axes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
+                                                           {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
   const std::size_t colon = text.find(':');
   const auto axis = axes.find(text.substr(0, colon));
   if (axis == axes.end())
-    throw InputError(option, fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place as in y:0.2", text));
+    throw InputError(option,
+                     fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place as in y:0.2", text));
   const float place = colon == std::string::npos ? 0 : number_from<float>(option, text.substr(colon + 1));
   return {.normal = axis->second, .offset = axis->second.sum() * place};
 }
@@ -41,11 +43,19 @@ float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180;
 
 Shown shown_from(const std::string& text) {
   Shown shown{.skin = false, .clock = false};
-  const std::vector<std::pair<std::string_view, bool*>> items{
-      {"skin", &shown.skin},          {"springs", &shown.springs},    {"masses", &shown.masses},
-      {"drag", &shown.arrows.drag},   {"lift", &shown.arrows.lift},   {"velocity", &shown.arrows.velocity},
-      {"gravity", &shown.arrows.gravity}, {"contact", &shown.arrows.contact}, {"path", &shown.path},      {"labels", &shown.labels},
-      {"legend", &shown.legend},      {"clock", &shown.clock},        {"scale", &shown.scale_bar}};
+  const std::vector<std::pair<std::string_view, bool*>> items{{"skin", &shown.skin},
+                                                              {"springs", &shown.springs},
+                                                              {"masses", &shown.masses},
+                                                              {"drag", &shown.arrows.drag},
+                                                              {"lift", &shown.arrows.lift},
+                                                              {"velocity", &shown.arrows.velocity},
+                                                              {"gravity", &shown.arrows.gravity},
+                                                              {"contact", &shown.arrows.contact},
+                                                              {"path", &shown.path},
+                                                              {"labels", &shown.labels},
+                                                              {"legend", &shown.legend},
+                                                              {"clock", &shown.clock},
+                                                              {"scale", &shown.scale_bar}};
   for (const std::string_view word : split(text, ',')) {
     bool known = false;
     for (const auto& [name, member] : items)
@@ -60,7 +70,8 @@ Shown shown_from(const std::string& text) {
 
 void ViewOptions::add_to(CLI::App& command) {
   const auto add = [](CLI::Option* option) { option->group("View"); };
-  add(add_choice(command, "--color", color_, {"material", "activation", "strain", "force", "speed", "pressure", "energy", "stiffness"},
+  add(add_choice(command, "--color", color_,
+                 {"material", "activation", "strain", "force", "speed", "pressure", "energy", "stiffness"},
                  "Colour by (default material)"));
   add(add_value(command, "--scale", scale_, "Ends of the colours' scale (default: fits)", "LOW,HIGH", range_from));
   add(add_value(command, "--show", shown_,
@@ -75,12 +86,15 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_value(command, "--cut", cut_, "Cut away what lies beyond a plane, as in y:0.2", "AXIS[:M]", cut_from));
   add(add_choice(command, "--layout", layout_, {"grid", "race"}, "Robots in a grid, or in lanes side by side"));
   add(add_value(command, "--grid", grid_, "Columns and rows (default: what fills the picture)", "CxR", grid_from));
-  add(add_text(command, "--camera", camera_,
-               "group keeps all in view, follow[:ROBOT] goes along, turntable, top, still, or a camera file (default group)",
-               "CAMERA"));
+  add(add_text(
+      command, "--camera", camera_,
+      "group keeps all in view, follow[:ROBOT] goes along, turntable, top, still, or a camera file (default group)",
+      "CAMERA"));
   add(command.add_flag("--follow", follow_, "The same as --camera follow"));
-  add(add_number(command, "--azimuth", azimuth_, "Where the eye is, around the robots from +x (default -75)", "DEGREES"));
-  add(add_number(command, "--elevation", elevation_, "Height of the eye above the horizon (default 20, land 35)", "DEGREES"));
+  add(add_number(command, "--azimuth", azimuth_, "Where the eye is, around the robots from +x (default -75)",
+                 "DEGREES"));
+  add(add_number(command, "--elevation", elevation_, "Height of the eye above the horizon (default 20, land 35)",
+                 "DEGREES"));
   add(add_number(command, "--zoom", zoom_, "Above 1: closer (default 1)", "X"));
 }
 

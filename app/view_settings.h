@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is seen of a group, and how: the choices that a window and a video share.
 #pragma once
 
@@ -14,9 +15,9 @@ namespace mercury {
 
 struct Shown {
   bool skin = true, springs = false, masses = false;
-  bool path = false;       // of each centre of mass
-  bool labels = false;     // name, distance and rank at each robot
-  bool legend = false;     // of the colours
+  bool path = false;    // of each centre of mass
+  bool labels = false;  // name, distance and rank at each robot
+  bool legend = false;  // of the colours
   bool clock = true;
   bool scale_bar = false;
   ArrowKinds arrows;
@@ -33,7 +34,7 @@ struct ViewSettings {
   std::optional<Grid> grid;
   CameraPlan camera;
   bool interop = true;  // let CUDA write into OpenGL's memory where it can
-  double speed = 1;  // simulated seconds a second, for the clock
+  double speed = 1;     // simulated seconds a second, for the clock
 };
 
 }  // namespace mercury

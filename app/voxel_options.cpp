@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/voxel_options.h"
 
 #include <fmt/format.h>
@@ -22,7 +23,8 @@ SizeRange range_from(const std::string& option, const std::string& text) {
   const SizeRange range{size_from(option, text.substr(0, dots)), size_from(option, text.substr(dots + 2))};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (range.smallest[axis] > range.largest[axis])
-      throw InputError(option, fmt::format("\"{}\" is not accepted; the first size must not be above the second", text));
+      throw InputError(option,
+                       fmt::format("\"{}\" is not accepted; the first size must not be above the second", text));
   return range;
 }
 

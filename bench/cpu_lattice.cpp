@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/cpu_lattice.h"
 
 #include <algorithm>

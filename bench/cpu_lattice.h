@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot that the CPU is measured with: a lattice of n x n x n voxels, every spring of a random material.
 #pragma once
 

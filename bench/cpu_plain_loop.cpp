@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/cpu_plain_loop.h"
 
 #include <algorithm>
@@ -114,7 +115,9 @@ bool PlainLoop::add_face_forces(const Hooks& hooks) {
   return fit;
 }
 
-bool PlainLoop::joined(std::uint16_t i, std::uint16_t j) const { return std::ranges::find(neighbours_[i], j) != neighbours_[i].end(); }
+bool PlainLoop::joined(std::uint16_t i, std::uint16_t j) const {
+  return std::ranges::find(neighbours_[i], j) != neighbours_[i].end();
+}
 
 void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
   const Vec3 d = state_.positions[j] - state_.positions[i];

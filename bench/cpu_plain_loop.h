@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same physics as a plain loop: one spring after the other, one float at a time, as one would write it down first.
 // What vector code is measured against, and what it must agree with bit for bit.
 #pragma once
@@ -33,7 +34,8 @@ class PlainLoop {
 
  private:
   struct Sum {
-    std::uint32_t x = 0, y = 0, z = 0;  // signed numbers in two's complement, so that overflow in an explosion is defined
+    std::uint32_t x = 0, y = 0,
+                  z = 0;  // signed numbers in two's complement, so that overflow in an explosion is defined
   };
 
   void update_muscles();
@@ -65,12 +67,12 @@ class PlainLoop {
   float contact_stiffness_ = 0;
   State state_;
   std::vector<Sum> sums_;
-  std::vector<float> splits_;                          // of each spring, s_a + s_b
+  std::vector<float> splits_;  // of each spring, s_a + s_b
   std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
   std::array<MusclePhase, max_materials> phases_{};
   std::vector<FacePair> faces_;
   std::vector<std::vector<std::uint16_t>> neighbours_;
-  std::vector<std::uint16_t> heads_, links_;           // buckets of the contact grid, masses
+  std::vector<std::uint16_t> heads_, links_;  // buckets of the contact grid, masses
   std::vector<Pull> pulls_;
   std::int64_t now_ = 0, exploded_step_ = -1;
   std::uint32_t bad_mass_ = 0xffffffffu;

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // Springs evaluated a second on one core, everything that a step does included: every instruction set of this machine
 // against the plain loop, and small robots against large ones, in turns within one run, the best of many short turns
 // (others may use the machine).
 //
-//   bench_cpu_springs [SECONDS] [FILTER] [KERNEL]     time for each line; only lines that hold FILTER (and the first, which
+//   bench_cpu_springs [SECONDS] [FILTER] [KERNEL]     time for each line; only lines that hold FILTER (and the first,
+//   which
 //                                                   ratios refer to); only the kernel of this name
 #include <algorithm>
 #include <chrono>
@@ -81,7 +83,8 @@ struct Line {
   std::int64_t steps_a_call, calls;  // of a turn
   std::vector<Subject> subjects;     // the plain loop, then a kernel each
 
-  Line(const Crowd& robots, const Configuration& configuration, const std::vector<cpu::Kernel>& kernels) : crowd(robots) {
+  Line(const Crowd& robots, const Configuration& configuration, const std::vector<cpu::Kernel>& kernels)
+      : crowd(robots) {
     constexpr double springs_a_turn = 1.5e6;
     const auto steps = std::max<std::int64_t>(4, static_cast<std::int64_t>(springs_a_turn / crowd.springs()));
     steps_a_call = crowd.steps_a_call == 0 ? steps : crowd.steps_a_call;
@@ -94,8 +97,8 @@ struct Line {
   void take_turns() {
     for (Subject& subject : subjects)
       subject.best = std::min(subject.best, seconds_of([&] {
-        for (std::int64_t call = 0; call < calls; ++call) subject.step(steps_a_call);
-      }));
+                                for (std::int64_t call = 0; call < calls; ++call) subject.step(steps_a_call);
+                              }));
   }
   double rate(const Subject& subject) const {
     return crowd.springs() * static_cast<double>(steps_a_call * calls) / subject.best;
@@ -104,7 +107,8 @@ struct Line {
 
 void compare(const std::vector<Crowd>& crowds, const Configuration& configuration, double seconds, const char* filter,
              const std::vector<cpu::Kernel>& kernels) {
-  const std::string what = std::string(name_of(configuration.solver)) + ", " + std::string(name_of(configuration.environment));
+  const std::string what =
+      std::string(name_of(configuration.solver)) + ", " + std::string(name_of(configuration.environment));
   std::vector<Line> lines;
   for (const Crowd& crowd : crowds) {
     const bool wanted = std::strstr((crowd.name + ", " + what).c_str(), filter) != nullptr;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // At which time steps does a solver stay bounded? For every environment, runs the same robots with both solvers at
 // longer and longer steps and prints a table in Markdown: bench_dt_sweep [SECONDS] [cpu|cuda]
 //

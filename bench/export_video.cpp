@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a group is filmed, and what limits: bench_export_video [name=value ...].
 // Names: robots width height frames device quality gl
 //        output (.mp4, .webm) crf ffmpeg json (0, 1)
@@ -26,8 +27,9 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 using Options = std::map<std::string, std::string>;
 
 Options options_of(int argc, char** argv) {
-  Options options{{"robots", "64"}, {"width", "1920"}, {"height", "1080"}, {"frames", "300"}, {"device", "auto"},
-                  {"quality", "auto"}, {"gl", "auto"}, {"output", "bench.mp4"}, {"ffmpeg", ""}, {"json", "0"}, {"crf", "-1"}};
+  Options options{{"robots", "64"},   {"width", "1920"},   {"height", "1080"}, {"frames", "300"},
+                  {"device", "auto"}, {"quality", "auto"}, {"gl", "auto"},     {"output", "bench.mp4"},
+                  {"ffmpeg", ""},     {"json", "0"},       {"crf", "-1"}};
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const auto found = options.find(argument.substr(0, argument.find('=')));
@@ -93,7 +95,9 @@ int measure(const Options& options) {
   const auto number = [&](const char* name) { return std::atoi(options.at(name).c_str()); };
   Film film{.robots = random_voxel_robots({}, 1, static_cast<std::size_t>(number("robots"))),
             .timing = {.frames = number("frames"), .interval = 1.0 / 30, .pace = 1.0 / 30},
-            .video = {.size = {number("width"), number("height")}, .expected_frames = number("frames"), .crf = number("crf"),
+            .video = {.size = {number("width"), number("height")},
+                      .expected_frames = number("frames"),
+                      .crf = number("crf"),
                       .ffmpeg = options.at("ffmpeg")}};
   film.configuration.device = device_named(options.at("device"));
   const int device = film.configuration.device.kind == DeviceKind::cpu ? -1 : film.configuration.device.index;
@@ -119,7 +123,8 @@ int measure(const Options& options) {
   const auto bytes = static_cast<double>(std::filesystem::file_size(output));
   const char* limit = encoded < drawn.rate ? "the encoder" : "drawing and simulating";
   const char* format =
-      number("json") ? "{\"simulated_on\": \"%s\", \"drawn_with\": \"%s\", \"quality\": \"%s\", \"encoder\": \"%s\", \"robots\": %d, "
+      number("json") ? "{\"simulated_on\": \"%s\", \"drawn_with\": \"%s\", \"quality\": \"%s\", \"encoder\": \"%s\", "
+                       "\"robots\": %d, "
                        "\"width\": %d, \"height\": %d, \"drawn\": %.1f, \"on_card\": %d, \"drawn_through_host\": %.1f, "
                        "\"encoded\": %.1f, \"exported\": %.1f, \"limit\": \"%s\", \"megabytes\": %.2f}\n"
                      : "simulated on %s, drawn with %s, %s quality, encoded as %s: %d robots, %dx%d\n"
@@ -127,10 +132,10 @@ int measure(const Options& options) {
                        "  ... through the host %8.1f frames/s\n"
                        "  encoded alone        %8.1f frames/s\n"
                        "  the whole export     %8.1f frames/s, limited by %s; %.2f MB\n";
-  std::printf(format, Simulation(film.configuration, film.robots).device_name().c_str(), stage.context->describe().c_str(),
-              std::string(name_of(stage.renderer.quality())).c_str(), writer->description().c_str(), number("robots"),
-              film.video.size.width, film.video.size.height, drawn.rate, drawn.on_card ? 1 : 0, through_host.rate, encoded,
-              whole, limit, bytes * 1e-6);
+  std::printf(format, Simulation(film.configuration, film.robots).device_name().c_str(),
+              stage.context->describe().c_str(), std::string(name_of(stage.renderer.quality())).c_str(),
+              writer->description().c_str(), number("robots"), film.video.size.width, film.video.size.height,
+              drawn.rate, drawn.on_card ? 1 : 0, through_host.rate, encoded, whole, limit, bytes * 1e-6);
   return 0;
 }
 

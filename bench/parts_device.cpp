@@ -1,5 +1,6 @@
-// The parts of a step and what surrounds it, on one core and on a CUDA device where there is one: springs, faces, floor,
-// contact, telemetry, loading a batch. Each is a robot or a setting in which little else is done.
+// SPDX-License-Identifier: Apache-2.0
+// The parts of a step and what surrounds it, on one core and on a CUDA device where there is one: springs, faces,
+// floor, contact, telemetry, loading a batch. Each is a robot or a setting in which little else is done.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -57,7 +58,8 @@ Loaded loaded(DeviceKind kind, const Robot& robot, const Configuration& configur
 }
 
 // Items are steps of a robot times `things`, of which it has so many.
-void step(benchmark::State& state, DeviceKind kind, const Robot& robot, const Configuration& configuration, std::size_t things) {
+void step(benchmark::State& state, DeviceKind kind, const Robot& robot, const Configuration& configuration,
+          std::size_t things) {
   const Loaded batch = loaded(kind, robot, configuration);
   Clock clock{.dt = configuration.dt};
   for (auto _ : state) {
@@ -99,11 +101,14 @@ void add_device(DeviceKind kind, const std::string& device) {
     add("springs/" + name, [=, robot = without_faces(lattice)](benchmark::State& state) {
       step(state, kind, robot, still, robot.springs.size());
     });
-    add("springs and contact/" + name, [=](benchmark::State& state) { step(state, kind, two, land, two.springs.size()); });
+    add("springs and contact/" + name,
+        [=](benchmark::State& state) { step(state, kind, two, land, two.springs.size()); });
     add("springs without contact/" + name,
         [=](benchmark::State& state) { step(state, kind, two, untouching, two.springs.size()); });
   }
-  add("faces", [=, robot = without_springs(lattice)](benchmark::State& state) { step(state, kind, robot, {}, robot.faces.size()); });
+  add("faces", [=, robot = without_springs(lattice)](benchmark::State& state) {
+    step(state, kind, robot, {}, robot.faces.size());
+  });
   add("masses", [=, robot = without_faces(without_springs(lattice))](benchmark::State& state) {
     step(state, kind, robot, still, robot.masses.size());
   });

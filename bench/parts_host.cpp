@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What happens on the host before and between steps: plans, muscles' factors, lists of near masses, files, growing.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws what `mercury bench --csv` measured: springs per second against springs evaluated (the paper's figure 4), and
 against robot size when the files hold several sizes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mercury beside the kernel as published, in one run on one card: bench_published [robots] [voxels a side]
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,8 @@ double measure_mercury(std::span<const Robot> robots, double least_seconds) {
   for (const Robot& robot : robots) springs += static_cast<double>(robot.springs.size());
   const double before = simulation.busy_seconds();
   std::int64_t steps = 0;
-  for (std::int64_t n = 100; simulation.busy_seconds() - before < least_seconds; n *= 2, steps = simulation.steps() - 50)
+  for (std::int64_t n = 100; simulation.busy_seconds() - before < least_seconds;
+       n *= 2, steps = simulation.steps() - 50)
     simulation.step(n);
   return springs * static_cast<double>(steps) / (simulation.busy_seconds() - before);
 }
@@ -57,7 +59,8 @@ int main(int argc, char** argv) try {
   const double ours = measure_mercury(robots, 1), theirs = published::measure(robots, 1).springs_a_second;
   std::printf("%s, %d robots of %zu masses and %zu springs, force solver, ocean\n", cuda_device_name(0).c_str(), count,
               robots[0].masses.size(), robots[0].springs.size());
-  std::printf("as published   %.3e springs/s\nMercury        %.3e springs/s   %.1f times as many\n", theirs, ours, ours / theirs);
+  std::printf("as published   %.3e springs/s\nMercury        %.3e springs/s   %.1f times as many\n", theirs, ours,
+              ours / theirs);
   std::printf("largest disagreement after 0.1 s: %.1e m\n", static_cast<double>(disagreement(robots[0])));
   return 0;
 } catch (const std::exception& error) {

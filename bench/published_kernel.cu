@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/published_kernel.cuh"
 
 #include <algorithm>
@@ -28,7 +29,9 @@ __device__ float3 operator+(float3 a, float3 b) { return {a.x + b.x, a.y + b.y, 
 __device__ float3 operator-(float3 a, float3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 __device__ float3 operator*(float s, float3 a) { return {s * a.x, s * a.y, s * a.z}; }
 __device__ float inner(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-__device__ float3 outer(float3 a, float3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+__device__ float3 outer(float3 a, float3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 __device__ void add(float3& sum, float3 value) {
   atomicAdd(&sum.x, value.x);
   atomicAdd(&sum.y, value.y);
@@ -53,8 +56,9 @@ __global__ void step(Buffers buffers, float time) {
     const float3 u = (-1.0f / 3) * (v[face.a] + v[face.b] + v[face.c]);
     const float3 area_normal = 0.5f * outer(x[face.b] - x[face.a], x[face.c] - x[face.a]);
     const float flux = inner(area_normal, u);
-    const float3 third = (half_density / 3) * ((drag_coefficient - lift_coefficient) * fabsf(flux) * u +
-                                               (flux < 0 ? -lift_coefficient : lift_coefficient) * inner(u, u) * area_normal);
+    const float3 third =
+        (half_density / 3) * ((drag_coefficient - lift_coefficient) * fabsf(flux) * u +
+                              (flux < 0 ? -lift_coefficient : lift_coefficient) * inner(u, u) * area_normal);
     add(force[face.a], third);
     add(force[face.b], third);
     add(force[face.c], third);
@@ -63,7 +67,8 @@ __global__ void step(Buffers buffers, float time) {
   for (unsigned s = threadIdx.x; s < count.y; s += blockDim.x) {
     const Spring spring = springs[s];
     const Material material = buffers.materials[spring.material];
-    const float length = spring.rest_length * (1 + material.amplitude * sinf(material.frequency * time + material.phase));
+    const float length =
+        spring.rest_length * (1 + material.amplitude * sinf(material.frequency * time + material.phase));
     const float3 d = x[spring.b] - x[spring.a];
     const float distance = sqrtf(inner(d, d));
     const float3 pull = (material.stiffness * (distance - length) / distance) * d;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The kernel as the paper describes it (II.C), to be measured beside Mercury's on the same card and robots: one block a
 // robot, its masses in shared memory (position, velocity, force: 36 bytes each), one thread a spring, forces summed by
 // float atomics, one step a launch.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast groups are drawn, and what of a picture takes how long: bench_render_frames [name=value ...].
 // Names: bodies side width height frames quality (auto, low, medium, high) context (auto, egl, mesa, osmesa)
 //        around (water, land, none) read (none, rgb, yuv) upload (0, 1: positions through the host) json (0, 1)
@@ -63,9 +64,10 @@ Lattice make_lattice(int side) {
 }
 
 struct Options {
-  std::map<std::string, std::string> set{
-      {"bodies", "1000"}, {"side", "10"},    {"width", "1920"},  {"height", "1080"}, {"frames", "60"}, {"read", "yuv"},
-      {"upload", "1"},    {"quality", "auto"}, {"context", "auto"}, {"around", "water"}, {"json", "0"}};
+  std::map<std::string, std::string> set{{"bodies", "1000"},  {"side", "10"},      {"width", "1920"},
+                                         {"height", "1080"},  {"frames", "60"},    {"read", "yuv"},
+                                         {"upload", "1"},     {"quality", "auto"}, {"context", "auto"},
+                                         {"around", "water"}, {"json", "0"}};
   int number(const char* name) const { return std::atoi(set.at(name).c_str()); }
   const std::string& text(const char* name) const { return set.at(name); }
 };
@@ -176,20 +178,23 @@ Result measure(const Options& options, Renderer& renderer, const Lattice& lattic
 
 void print_text(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
                 const Result& result) {
-  std::printf("%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms a picture, %.1f pictures/s (set up in %.2f s)\n",
-              context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
-              lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(),
-              1e3 * result.seconds, 1 / result.seconds, result.setup);
+  std::printf(
+      "%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms a picture, %.1f pictures/s (set up in %.2f "
+      "s)\n",
+      context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
+      lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(), 1e3 * result.seconds,
+      1 / result.seconds, result.setup);
   for (const PassTime& part : result.parts) std::printf("  %-20s %8.3f ms\n", part.name.c_str(), part.milliseconds);
 }
 
 void print_json(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
                 const Result& result) {
-  std::printf("{\"drawn_with\": \"%s\", \"quality\": \"%s\", \"bodies\": %d, \"masses\": %zu, \"width\": %d, \"height\": %d, "
-              "\"read\": \"%s\", \"milliseconds\": %.4f, \"pictures_a_second\": %.2f, \"parts\": {",
-              context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
-              lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(),
-              1e3 * result.seconds, 1 / result.seconds);
+  std::printf(
+      "{\"drawn_with\": \"%s\", \"quality\": \"%s\", \"bodies\": %d, \"masses\": %zu, \"width\": %d, \"height\": %d, "
+      "\"read\": \"%s\", \"milliseconds\": %.4f, \"pictures_a_second\": %.2f, \"parts\": {",
+      context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
+      lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(), 1e3 * result.seconds,
+      1 / result.seconds);
   for (std::size_t i = 0; i < result.parts.size(); ++i)
     std::printf("%s\"%s\": %.4f", i ? ", " : "", result.parts[i].name.c_str(), result.parts[i].milliseconds);
   std::printf("}}\n");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What telemetry of a whole batch adds to a call of 100 steps. Both are timed in turn, so that a clock that changes
 // meets both: bench_telemetry [device] [robots] [turns]
 #include <algorithm>
@@ -42,8 +43,8 @@ void measure(const Configuration& configuration, const std::vector<Robot>& robot
     }));
   }
   std::printf("%-28s %5zu robots  %8.1f us a call of %d steps, %6.1f us with telemetry: +%.2f %%\n",
-              simulation.device_name().c_str(), simulation.size(), 1e6 * median(alone) / 4, steps, 1e6 * median(together) / 4,
-              100 * (median(together) / median(alone) - 1));
+              simulation.device_name().c_str(), simulation.size(), 1e6 * median(alone) / 4, steps,
+              1e6 * median(together) / 4, 100 * (median(together) / median(alone) - 1));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long the window's pictures wait for an edit of a large scene, and how fast it steps as fast as it goes:
 // bench_window_edits [robots [side]].
 //
@@ -24,7 +25,9 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 class Window {
  public:
-  Window() : context_(render::make_context({.kind = render::ContextKind::automatic})), renderer_(*context_, {.width = 64, .height = 64}) {}
+  Window()
+      : context_(render::make_context({.kind = render::ContextKind::automatic})),
+        renderer_(*context_, {.width = 64, .height = 64}) {}
 
   // Seconds that one picture waits.
   double picture(LiveScene& scene) {
@@ -44,7 +47,8 @@ class Window {
   std::uint64_t bodies_ = 0;
 };
 
-void measure(Window& window, LiveScene& scene, const char* name, const std::function<void()>& edit, const std::function<bool()>& seen) {
+void measure(Window& window, LiveScene& scene, const char* name, const std::function<void()>& edit,
+             const std::function<bool()>& seen) {
   const double begin = now();
   edit();
   const double call = now() - begin;
@@ -54,7 +58,8 @@ void measure(Window& window, LiveScene& scene, const char* name, const std::func
     std::this_thread::sleep_for(std::chrono::milliseconds(4));
   }
   longest = std::max(longest, window.picture(scene));
-  std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest, 1e3 * (now() - begin));
+  std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest,
+              1e3 * (now() - begin));
 }
 
 // Steps a second while 60 pictures a second are shown, and of the simulation by itself.
@@ -96,8 +101,8 @@ void measure_speed(Window& window, LiveScene& scene) {
     spent = now() - begin;
   }
   const double alone = static_cast<double>(simulation.steps() - first) / spent;
-  std::printf("as fast as it goes: %.4g steps/s with %.1f new pictures/s; %.4g steps/s by itself (%.0f %%)\n", in_window, pictures, alone,
-              100 * in_window / alone);
+  std::printf("as fast as it goes: %.4g steps/s with %.1f new pictures/s; %.4g steps/s by itself (%.0f %%)\n",
+              in_window, pictures, alone, 100 * in_window / alone);
 }
 
 }  // namespace
@@ -107,29 +112,43 @@ int main(int argc, char** argv) {
   const int side = argc > 2 ? std::atoi(argv[2]) : 10;
   LiveScene scene({.configuration = {.device = {.kind = DeviceKind::automatic}}});
   Window window;
-  const auto robots_are = [&](std::size_t wanted) { return [&scene, wanted] { return scene.moment().robots->size() == wanted; }; };
+  const auto robots_are = [&](std::size_t wanted) {
+    return [&scene, wanted] { return scene.moment().robots->size() == wanted; };
+  };
   std::vector<Robot> robots;
   for (std::size_t i = 0; i < count; ++i)
-    robots.push_back(random_voxel_robot({.smallest = {side, side, side}, .largest = {side, side, side}, .air = 0}, 1, i % 8));
-  std::printf("%zu robots of %zu masses, %zu springs, on %s\n", count, robots[0].masses.size(), robots[0].springs.size(), scene.device_name().c_str());
-  measure(window, scene, "add all", [&] { scene.add(std::move(robots)); }, robots_are(count));
+    robots.push_back(
+        random_voxel_robot({.smallest = {side, side, side}, .largest = {side, side, side}, .air = 0}, 1, i % 8));
+  std::printf("%zu robots of %zu masses, %zu springs, on %s\n", count, robots[0].masses.size(),
+              robots[0].springs.size(), scene.device_name().c_str());
+  measure(
+      window, scene, "add all", [&] { scene.add(std::move(robots)); }, robots_are(count));
   const RobotId some = scene.entries()[count / 2].id;
-  measure(window, scene, "duplicate one", [&] { scene.duplicate({some}); }, robots_are(count + 1));
-  measure(window, scene, "remove one", [&] { scene.remove({some}); }, robots_are(count));
-  measure(window, scene, "undo that", [&] { scene.undo(); }, robots_are(count + 1));
+  measure(
+      window, scene, "duplicate one", [&] { scene.duplicate({some}); }, robots_are(count + 1));
+  measure(
+      window, scene, "remove one", [&] { scene.remove({some}); }, robots_are(count));
+  measure(
+      window, scene, "undo that", [&] { scene.undo(); }, robots_are(count + 1));
   const RobotId first = scene.entries()[0].id;
-  measure(window, scene, "materials of one", [&] { scene.scale_materials({first}, {.stiffness = 1.5f}); },
-          [&] { return scene.moment().robots->robots[0].materials != nullptr; });
+  measure(
+      window, scene, "materials of one", [&] { scene.scale_materials({first}, {.stiffness = 1.5f}); },
+      [&] { return scene.moment().robots->robots[0].materials != nullptr; });
   std::vector<RobotId> all;
   for (const RobotEntry& entry : scene.entries()) all.push_back(entry.id);
-  measure(window, scene, "materials of all", [&] { scene.scale_materials(all, {.stiffness = 2}); },
-          [&] { return scene.moment().robots->robots.back().materials != nullptr; });
-  measure(window, scene, "damping", [&] {
-    Configuration configuration = scene.configuration();
-    configuration.damping = 0.5;
-    scene.set_configuration(configuration);
-  }, [&] { return scene.moment().configuration.damping == 0.5; });
-  measure(window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.moment().resets > 0; });
+  measure(
+      window, scene, "materials of all", [&] { scene.scale_materials(all, {.stiffness = 2}); },
+      [&] { return scene.moment().robots->robots.back().materials != nullptr; });
+  measure(
+      window, scene, "damping",
+      [&] {
+        Configuration configuration = scene.configuration();
+        configuration.damping = 0.5;
+        scene.set_configuration(configuration);
+      },
+      [&] { return scene.moment().configuration.damping == 0.5; });
+  measure(
+      window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.moment().resets > 0; });
   double usual = 0;
   for (int i = 0; i < 20; ++i) usual += window.picture(scene) / 20;
   std::printf("a picture without edits %.2f ms\n", 1e3 * usual);

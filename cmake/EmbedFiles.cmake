@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D FILES=A|B|... -D OUTPUT=FILE.cpp -P EmbedFiles.cmake
 # Puts the files into the program as they are, by the assembler: a compiler would take seconds over so many numbers.
 string(REPLACE "|" ";" FILES "${FILES}")

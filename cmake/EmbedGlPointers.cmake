@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D HEADER=epoxy/gl_generated.h -D OUTPUT=FILE.cpp -P EmbedGlPointers.cmake
 # Lists every function pointer that libepoxy's header declares.
 file(STRINGS ${HEADER} declarations REGEX "EPOXY_CALLSPEC \\*epoxy_gl")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -D FOLDER=shaders -D OUTPUT=FILE.cpp -P EmbedShaders.cmake
 # Turns every file of the folder into a raw string of the program.
 file(GLOB files RELATIVE ${FOLDER} ${FOLDER}/*.vert ${FOLDER}/*.frag ${FOLDER}/*.comp ${FOLDER}/*.glsl)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Looks for a CUDA compiler that can build Mercury, on PATH and where NVIDIA's installers put it; sets MERCURY_HAS_CUDA.
 set(MERCURY_HAS_CUDA OFF)
 set(oldest_cuda 12.0)  # the first with C++20

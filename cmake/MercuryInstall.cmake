@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake --install: the program with its sample robots, and the CMake package `mercury`.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

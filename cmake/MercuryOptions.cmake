@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 
 option(MERCURY_APP "Build the program mercury (needs OpenGL headers, CLI11, fmt, ...)" ON)

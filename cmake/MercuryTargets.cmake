@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What every target of Mercury's own shares.
 set(mercury_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers)
 list(JOIN mercury_warnings "," mercury_warnings_from_nvcc)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A part of every program that is built with the address sanitizer: what its search for lost memory must know of
 // libraries that are not ours.
 #include <dlfcn.h>

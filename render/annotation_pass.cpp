@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/annotation_pass.h"
 
 #include <algorithm>
@@ -58,10 +59,8 @@ class Blending {
 }  // namespace
 
 AnnotationPass::AnnotationPass()
-    : empty_(make_vertex_array()),
-      arrow_(make_program({"arrow.vert", "arrow.frag"})),
-      path_(make_program({"path.vert", "path.frag"})),
-      particle_(make_program({"particle.vert", "particle.frag"})) {}
+    : empty_(make_vertex_array()), arrow_(make_program({"arrow.vert", "arrow.frag"})),
+      path_(make_program({"path.vert", "path.frag"})), particle_(make_program({"particle.vert", "particle.frag"})) {}
 
 void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
   if (arrows.empty()) return;

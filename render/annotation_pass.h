@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is drawn into the scene to explain it: arrows, paths, and specks that show how the water flows.
 #pragma once
 

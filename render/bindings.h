@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where buffers and textures are bound, for C++ and, as numbers, for shaders/.
 #pragma once
 
@@ -10,6 +11,7 @@ inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_r
 
 // Textures; 0 is a pass's own source.
 inline constexpr unsigned source = 0, shadow_map = 1, shadow_depths = 2, occlusion = 3, caustics = 4, sand = 5,
-                          ground_light = 6, colormap = 7, glow = 8, font = 9, section = 10, front_light = 11, faces_seen = 12;
+                          ground_light = 6, colormap = 7, glow = 8, font = 9, section = 10, front_light = 11,
+                          faces_seen = 12;
 
 }  // namespace mercury::render::binding

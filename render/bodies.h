@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All bodies on the card: one buffer for each kind of thing, so that a pass draws every body with one call.
 #pragma once
 

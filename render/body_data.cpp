@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/body_data.h"
 
 #include <algorithm>
@@ -70,7 +71,8 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 void append(std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& from, std::uint32_t first) {
   const std::size_t begin = to.size();
   to.resize(begin + from.size());
-  std::transform(from.begin(), from.end(), to.begin() + std::ptrdiff_t(begin), [first](std::uint32_t i) { return first + i; });
+  std::transform(from.begin(), from.end(), to.begin() + std::ptrdiff_t(begin),
+                 [first](std::uint32_t i) { return first + i; });
 }
 
 void append(std::vector<FaceRecord>& to, const std::vector<FaceRecord>& from, std::uint32_t first) {

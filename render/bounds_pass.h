@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The boxes around bodies, found where their positions lie.
 #pragma once
 

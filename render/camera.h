@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras: where the eye is, and the ways to move it.
 #pragma once
 

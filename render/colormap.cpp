@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/colormap.h"
 
 #include <algorithm>
@@ -31,10 +32,14 @@ constexpr std::array diverging{rgb(0x1d4ea3), rgb(0x4a83cc), rgb(0x8fb6e0), rgb(
 
 std::span<const Color> samples(Colormap map) {
   switch (map) {
-    case Colormap::magma: return magma;
-    case Colormap::turbo: return turbo;
-    case Colormap::diverging: return diverging;
-    default: return viridis;
+    case Colormap::magma:
+      return magma;
+    case Colormap::turbo:
+      return turbo;
+    case Colormap::diverging:
+      return diverging;
+    default:
+      return viridis;
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colours: scales for numbers and a palette for kinds, chosen to be told apart with colour-blind eyes too.
 #pragma once
 

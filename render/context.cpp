@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/context.h"
 
 #include <epoxy/gl.h>
@@ -24,9 +25,12 @@ constexpr std::size_t most_messages = 100;  // a message a draw call must not fi
 
 const char* severity_name(unsigned severity) {
   switch (severity) {
-    case GL_DEBUG_SEVERITY_HIGH: return "high";
-    case GL_DEBUG_SEVERITY_MEDIUM: return "medium";
-    default: return "low";
+    case GL_DEBUG_SEVERITY_HIGH:
+      return "high";
+    case GL_DEBUG_SEVERITY_MEDIUM:
+      return "medium";
+    default:
+      return "low";
   }
 }
 

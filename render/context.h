@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL 4.5 contexts: without a display through EGL or OSMesa, or a window's that exists already.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // EGL without a surface: the renderer draws into framebuffer objects of its own.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>

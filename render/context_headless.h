@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ways to a context without a window, tried by make_context() in this order. All throw ContextError.
 #pragma once
 

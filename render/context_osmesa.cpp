@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OSMesa, loaded when asked for: the program starts and draws through EGL without it.
 //
 // libepoxy knows GLX and EGL alone and ends the process under any other context, so while an OSMesa context is current

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of the faces that turn towards the eye and towards the key light.
 #pragma once
 

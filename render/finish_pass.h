@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From samples of light to the finished picture: glow spread, tone-mapped, averaged.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the shadow map and the floor's map of light cover, told from where the bodies are without asking the processor.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in font: glyphs as signed distances, so that they are sharp at any size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The uniform block that all shaders of one picture share; shaders/frame.glsl has the same members in the same order.
 #pragma once
 

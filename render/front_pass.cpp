@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/front_pass.h"
 
 #include "render/bindings.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nearest surface of each pixel, one sample a pixel, found before anything is shaded.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owners of OpenGL objects: made with the direct-state-access calls of OpenGL 4.5, deleted with the owner.
 #pragma once
 
@@ -124,7 +125,8 @@ inline Program make_program(std::initializer_list<std::string_view> names, const
 }
 
 // Runs a compute program of 8 x 8 invocations a group once for each texel of a texture, which is its image 0.
-// Leaves no framebuffer bound. Data-centre cards compute with all of their processors, but draw with few: what costs much a pixel goes this way.
+// Leaves no framebuffer bound. Data-centre cards compute with all of their processors, but draw with few: what costs
+// much a pixel goes this way.
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height);
 
 }  // namespace mercury::render

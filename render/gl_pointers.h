@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libepoxy's table of OpenGL functions, pointed elsewhere for a context that libepoxy does not know.
 #pragma once
 

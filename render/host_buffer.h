@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory of the processor's that the card writes into, read without stopping the card.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/lattice_pass.h"
 
 #include <algorithm>
@@ -16,8 +17,7 @@ void set_scale(GLint location, const Scale& scale) {
 }
 
 LatticePass::LatticePass(const std::string& defines)
-    : empty_(make_vertex_array()),
-      spring_(make_program({"spring.vert", "spring.frag"}, defines)),
+    : empty_(make_vertex_array()), spring_(make_program({"spring.vert", "spring.frag"}, defines)),
       spring_shadow_(make_program({"spring.vert", "depth.frag"}, "#define SHADOW\n")),
       mass_(make_program({"mass.vert", "mass.frag"}, defines)),
       mass_shadow_(make_program({"mass.vert", "mass_shadow.frag"}, "#define SHADOW\n")) {}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Springs as bars and masses as balls.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/light_pass.h"
 
 #include <vector>
@@ -62,12 +63,10 @@ Texture comparing_view(GLuint depths) {
 LightPass::LightPass(const QualitySettings& settings)
     : settings_(settings),
       shadow_depths_(make_texture(GL_DEPTH_COMPONENT32F, settings.shadow_side, settings.shadow_side)),
-      caustics_(make_tile(GL_R16F, settings.caustics_side)),
-      sand_(make_sand()),
+      caustics_(make_tile(GL_R16F, settings.caustics_side)), sand_(make_sand()),
       ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
-      caustics_grid_(make_vertex_array()),
-      caustics_program_(make_program({"caustics.vert", "caustics.frag"})),
+      caustics_grid_(make_vertex_array()), caustics_program_(make_program({"caustics.vert", "caustics.frag"})),
       ground_program_(make_program({"ground_light.comp"}, settings.defines())),
       ground_blur_(make_program({"ground_blur.comp"})) {
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the key light falls: the shadow map, its trace on the floor, and under water the pattern of caustics.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // make_font FONT.ttf OUTPUT.cpp: at build time, turns a font into a picture of signed distances and a table of glyphs.
 #include <png.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ambient occlusion: how much of the sky's light each point of the picture sees, computed at half its size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/overlay.h"
 
 #include <algorithm>
@@ -81,10 +82,8 @@ float round_length(float most) {
 }
 
 Overlay::Overlay(int width, int height, float text_size, const Style& style)
-    : width_(float(width)),
-      height_(float(height)),
-      text_size_(text_size > 0 ? text_size : std::max(13.0f, std::round(float(height) / 42.0f))),
-      style_(style) {}
+    : width_(float(width)), height_(float(height)),
+      text_size_(text_size > 0 ? text_size : std::max(13.0f, std::round(float(height) / 42.0f))), style_(style) {}
 
 void Overlay::text(std::string_view utf8, float x, float y, float size, float align, float opacity) {
   const FontData& font = font_data();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is written on the picture: laid out in pixels, as rectangles that one draw call paints in order.
 #pragma once
 

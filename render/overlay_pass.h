@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paints an Overlay onto a finished picture.
 #pragma once
 

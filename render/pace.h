@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lets the processor be at most two pictures ahead of the card, as StreamBuffer wants it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/pass_timer.h"
 
 namespace mercury::render {

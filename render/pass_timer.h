@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long the card takes for the parts of a picture, told some pictures later so that nothing waits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/png.h"
 
 #include <png.h>
@@ -12,9 +13,12 @@ namespace {
 
 std::uint32_t png_format(PixelFormat format) {
   switch (format) {
-    case PixelFormat::rgb: return PNG_FORMAT_RGB;
-    case PixelFormat::rgba: return PNG_FORMAT_RGBA;
-    default: throw std::invalid_argument("a PNG is written from rgb or rgba");
+    case PixelFormat::rgb:
+      return PNG_FORMAT_RGB;
+    case PixelFormat::rgba:
+      return PNG_FORMAT_RGBA;
+    default:
+      throw std::invalid_argument("a PNG is written from rgb or rgba");
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One program in the forms that scenes need, each compiled when it is first needed.
 #pragma once
 

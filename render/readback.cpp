@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/readback.h"
 
 #include <algorithm>
@@ -24,9 +25,12 @@ struct Readback::Parts {
 std::size_t image_size(PixelFormat format, int width, int height) {
   const std::size_t pixels = std::size_t(width) * std::size_t(height);
   switch (format) {
-    case PixelFormat::rgb: return 3 * pixels;
-    case PixelFormat::rgba: return 4 * pixels;
-    default: return pixels * 3 / 2;
+    case PixelFormat::rgb:
+      return 3 * pixels;
+    case PixelFormat::rgba:
+      return 4 * pixels;
+    default:
+      return pixels * 3 / 2;
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures from the card to the processor without making either wait.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/renderer.h"
 
 #include <algorithm>
@@ -47,8 +48,8 @@ bool any_placement(const Scene& scene, Property property) {
   return std::any_of(scene.placements.begin(), scene.placements.end(), property);
 }
 
-// Whether a cut is seen from the side that it has taken away, and shows bodies as solid. With springs or masses, it is a
-// window to them.
+// Whether a cut is seen from the side that it has taken away, and shows bodies as solid. With springs or masses, it is
+// a window to them.
 bool draws_inside(const Scene& scene, const Camera& camera) {
   return scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses &&
          scene.cut->normal.dot(camera.eye) > scene.cut->offset;
@@ -88,11 +89,7 @@ Texture make_colormaps() {
 struct Passes {
   explicit Passes(const QualitySettings& settings)
       : skin(settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "")),
-        lattice(settings.skin_defines()),
-        light(settings),
-        front(settings),
-        occlusion(settings),
-        finish(settings),
+        lattice(settings.skin_defines()), light(settings), front(settings), occlusion(settings), finish(settings),
         backdrop("backdrop.frag") {}
   void resize(int width, int height) {
     front.resize(width, height);
@@ -217,8 +214,7 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   fit.fit(frame.last(), bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
-  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }),
-                      scene.cut.has_value());
+  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }), scene.cut.has_value());
 }
 
 // Calls draw_skins(variant) for the sides of skins that are seen.
@@ -246,8 +242,7 @@ void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
   timer.mark("shadow map");
   passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
   timer.mark("light on the floor");
-  passes->front.draw(
-      [&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(side); }); });
+  passes->front.draw([&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(side); }); });
   timer.mark("nearest surfaces");
   passes->front.find_light();
   timer.mark("light on skins");
@@ -268,9 +263,8 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::looks;
-  draw_sides(scene, camera, [&](const char* side) {
-    passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side);
-  });
+  draw_sides(scene, camera,
+             [&](const char* side) { passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");
   passes->lattice.draw(bodies, scene);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a scene into a picture of its own, from which it can be read back, shown in a window or filmed.
 #pragma once
 

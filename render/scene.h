@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is to be drawn, as plain numbers: bodies that deform, what they look like now, and what is written beside them.
 //
 // Lengths in metres, axes right-handed with z up. Each body lives in its own coordinates and is set into the picture by
@@ -35,9 +36,9 @@ struct Look {
 struct Placement {
   Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
-  bool selected = false;  // drawn with a bright rim
-  bool faulty = false;    // drawn grey, with a red rim: it has exploded
-  bool smooth = false;    // skin rounded rather than with its edges
+  bool selected = false;         // drawn with a bright rim
+  bool faulty = false;           // drawn grey, with a red rim: it has exploded
+  bool smooth = false;           // skin rounded rather than with its edges
   std::uint32_t first_look = 0;  // added to the body's face_looks and spring_looks, below 2^24
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scene says of each body, mass, face and material at one moment, on the card.
 #pragma once
 

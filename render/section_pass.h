@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What bodies look like inside, where a plane cuts them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shaders of shaders/, embedded at build time.
 #pragma once
 

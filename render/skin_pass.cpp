@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/skin_pass.h"
 
 #include <algorithm>
@@ -20,12 +21,9 @@ void dispatch(std::size_t count) {
 }
 
 SkinPass::SkinPass(const std::string& defines)
-    : corners_(make_vertex_array()),
-      face_frames_program_(make_program({"face_frames.comp"})),
-      mass_normals_program_(make_program({"mass_normals.comp"})),
-      shadow_(make_program({"shadow.vert", "depth.frag"})),
-      depth_({"skin.vert", "surface.frag"}, define("COLOR_BY", 0)),
-      skin_({"skin.vert", "skin.frag"}, defines) {}
+    : corners_(make_vertex_array()), face_frames_program_(make_program({"face_frames.comp"})),
+      mass_normals_program_(make_program({"mass_normals.comp"})), shadow_(make_program({"shadow.vert", "depth.frag"})),
+      depth_({"skin.vert", "surface.frag"}, define("COLOR_BY", 0)), skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
   const GLuint array = corners_.get();

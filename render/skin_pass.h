@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Skins of all bodies: one call for the picture, one for the shadow map, one for depth alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a skin's triangles have to do with each other: which pairs form a quadrilateral, and who lies across an edge.
 #pragma once
 

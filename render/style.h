@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light and colours of a theme in its surroundings.
 #pragma once
 

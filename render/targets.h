@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The textures that a picture is drawn into.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only file that includes CGAL: it compiles slowly, and its triangulations are under the GPL.
 #include "robots/alpha_body.h"
 
@@ -67,8 +68,8 @@ struct Filtration {
 
   // How many are inside the alpha shape.
   std::size_t inside(const SquaredRadius& squared_alpha) const {
-    return static_cast<std::size_t>(
-        std::upper_bound(squared_radii.begin(), squared_radii.end(), squared_alpha) - squared_radii.begin());
+    return static_cast<std::size_t>(std::upper_bound(squared_radii.begin(), squared_radii.end(), squared_alpha) -
+                                    squared_radii.begin());
   }
 
   SolidBody body(std::size_t count) const { return largest_body(tetrahedra, neighbours, count); }
@@ -79,8 +80,10 @@ struct Filtration {
     std::size_t first = 0, last = squared_radii.size() - 1;
     while (first < last) {
       const std::size_t middle = (first + last) / 2;
-      if (body(inside(squared_radii[middle])).points >= points) last = middle;
-      else first = middle + 1;
+      if (body(inside(squared_radii[middle])).points >= points)
+        last = middle;
+      else
+        first = middle + 1;
     }
     return squared_radii[first];
   }

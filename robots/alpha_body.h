@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The solid body that a cloud of points stands for: its alpha shape (Edelsbrunner and Muecke 1994), as tetrahedra.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CBOR (RFC 8949), read without recursion: a hostile file can nest deeper than the stack reaches.
 #include <bit>
 #include <cmath>
@@ -119,12 +120,19 @@ class Reader {
     const bool may_be_open_ended = head.major >= byte_string && head.major <= map;
     if (head.low == open_ended && !may_be_open_ended) fail(head.place, "not valid CBOR");
     switch (head.major) {
-      case natural: return events_.number(natural_number(head.value));
-      case negative: return read_negative(head);
-      case byte_string: return events_.bytes(read_string(head));
-      case text_string: return events_.text(read_string(head));
-      case array: case map: return open(head);
-      default: return read_other(head);
+      case natural:
+        return events_.number(natural_number(head.value));
+      case negative:
+        return read_negative(head);
+      case byte_string:
+        return events_.bytes(read_string(head));
+      case text_string:
+        return events_.text(read_string(head));
+      case array:
+      case map:
+        return open(head);
+      default:
+        return read_other(head);
     }
   }
 
@@ -155,12 +163,23 @@ class Reader {
   void read_other(const Head& head) {
     Number number{.kind = Number::Kind::real};
     switch (head.low) {
-      case 20: case 21: return events_.boolean(head.low == 21);
-      case 22: case 23: return events_.null();  // 23 is "undefined"
-      case 25: number.real = half_to_double(head.value); break;
-      case 26: number.real = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(head.value))); break;
-      case 27: number.real = std::bit_cast<double>(head.value); break;
-      default: fail(head.place, "not valid CBOR");
+      case 20:
+      case 21:
+        return events_.boolean(head.low == 21);
+      case 22:
+      case 23:
+        return events_.null();  // 23 is "undefined"
+      case 25:
+        number.real = half_to_double(head.value);
+        break;
+      case 26:
+        number.real = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(head.value)));
+        break;
+      case 27:
+        number.real = std::bit_cast<double>(head.value);
+        break;
+      default:
+        fail(head.place, "not valid CBOR");
     }
     events_.number(number);
   }

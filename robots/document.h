@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A JSON or CBOR document as a stream of events, read and written without holding it as a tree.
 #pragma once
 
@@ -14,10 +15,10 @@ namespace mercury {
 struct Number {
   enum class Kind { natural, negative, real };
   Kind kind = Kind::natural;
-  std::uint64_t natural = 0;   // if natural
-  std::int64_t negative = 0;   // if negative, below 0
-  double real = 0;             // the value, whatever the kind; infinite where a JSON number is too large for a double
-  std::string_view text;       // as it stood in a JSON text, else empty; valid during the event only
+  std::uint64_t natural = 0;  // if natural
+  std::int64_t negative = 0;  // if negative, below 0
+  double real = 0;            // the value, whatever the kind; infinite where a JSON number is too large for a double
+  std::string_view text;      // as it stood in a JSON text, else empty; valid during the event only
 };
 
 // The nearest float, read from the number's text where there is one, so that a float's shortest form comes back
@@ -58,8 +59,11 @@ void read_cbor(std::string_view document, DocumentEvents& events);
 // finite, and bytes, which JSON lacks.
 class JsonWriter : public DocumentEvents {
  public:
-  enum class Layout { compact, rows };  // rows: each key of the outermost object on a line of its own, its lists broken
-                                        // into lines of about 100 characters
+  enum class Layout {
+    compact,
+    rows
+  };  // rows: each key of the outermost object on a line of its own, its lists broken
+      // into lines of about 100 characters
   explicit JsonWriter(std::string& out, Layout layout = Layout::compact) : out_(out), layout_(layout) {}
   void null() override;
   void boolean(bool value) override;
@@ -80,9 +84,9 @@ class JsonWriter : public DocumentEvents {
   std::string& out_;
   Layout layout_;
   int depth_ = 0;
-  bool first_ = true;       // no element yet in the array or object that is open
+  bool first_ = true;  // no element yet in the array or object that is open
   bool after_key_ = false;
-  std::size_t line_ = 0;    // where the present line begins in out_
+  std::size_t line_ = 0;  // where the present line begins in out_
 };
 
 // Writes events as CBOR (RFC 8949): floats where they hold the number exactly, else doubles.

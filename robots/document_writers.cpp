@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <bit>
 #include <cmath>
@@ -85,11 +86,16 @@ void CborWriter::head(unsigned major_type, std::uint64_t value) {
     out_ += static_cast<char>(major_type << 5 | low);
     for (int i = bytes - 1; i >= 0; --i) out_ += static_cast<char>(value >> (8 * i) & 0xff);
   };
-  if (value < 24) put(static_cast<unsigned>(value), 0);
-  else if (value <= 0xff) put(24, 1);
-  else if (value <= 0xffff) put(25, 2);
-  else if (value <= 0xffffffff) put(26, 4);
-  else put(27, 8);
+  if (value < 24)
+    put(static_cast<unsigned>(value), 0);
+  else if (value <= 0xff)
+    put(24, 1);
+  else if (value <= 0xffff)
+    put(25, 2);
+  else if (value <= 0xffffffff)
+    put(26, 4);
+  else
+    put(27, 8);
 }
 
 void CborWriter::null() { out_ += '\xf6'; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/file.h"
 
 #include <algorithm>
@@ -29,9 +30,9 @@ RobotFormat robot_format_of(const std::filesystem::path& path) {
   const auto extension = path.extension();
   if (extension == ".json") return RobotFormat::json;
   if (extension == ".cbor") return RobotFormat::cbor;
-  throw InputError(path.string(), extension.empty() ? "a robot file needs an extension; give .json or .cbor"
-                                                    : "extension " + extension.string() +
-                                                          " is not a robot's; give .json or .cbor");
+  throw InputError(path.string(), extension.empty()
+                                      ? "a robot file needs an extension; give .json or .cbor"
+                                      : "extension " + extension.string() + " is not a robot's; give .json or .cbor");
 }
 
 Robot parse_robot(std::string_view document, RobotFormat format) {

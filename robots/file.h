@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots as files: JSON (*.json) and the same document as CBOR (*.cbor).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/inspect.h"
 
 #include <algorithm>
@@ -55,9 +56,9 @@ void inspect_springs(const Robot& robot, Inspection& found) {
   found.loose_masses = static_cast<std::size_t>(std::count(joined.begin(), joined.end(), false));
   found.springs_a_mass = 2 * static_cast<double>(robot.springs.size()) / static_cast<double>(robot.masses.size());
   if (robot.springs.empty()) return;
-  const auto [shortest, longest] = std::minmax_element(
-      robot.springs.begin(), robot.springs.end(),
-      [](const Spring& a, const Spring& b) { return a.rest_length < b.rest_length; });
+  const auto [shortest, longest] =
+      std::minmax_element(robot.springs.begin(), robot.springs.end(),
+                          [](const Spring& a, const Spring& b) { return a.rest_length < b.rest_length; });
   found.shortest_spring = shortest->rest_length;
   found.longest_spring = longest->rest_length;
 }
@@ -80,9 +81,8 @@ std::vector<HalfEdge> sorted_half_edges(const Robot& robot) {
     add(face.b, face.c);
     add(face.c, face.a);
   }
-  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
-  });
+  std::sort(half_edges.begin(), half_edges.end(),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
   return half_edges;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -25,7 +26,8 @@ std::string reason_of(const std::string& message) {
   std::size_t begin = message.find(" - ");
   begin = begin == std::string::npos ? message.find(": ") + 2 : begin + 3;
   std::string reason = message.substr(begin, message.find(';', begin) - begin);
-  std::replace_if(reason.begin(), reason.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  std::replace_if(
+      reason.begin(), reason.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
   return reason;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/network.h"
 
 #include <Eigen/Core>
@@ -58,8 +59,8 @@ void validate(const Network& network, const std::string& where) {
                 std::to_string(layer.biases.size()) + " biases");
     inputs = layer.outputs;
   }
-  require(inputs == network_outputs, "the last layer gives 25 numbers (a place and 22 scores), not " +
-                                         std::to_string(inputs));
+  require(inputs == network_outputs,
+          "the last layer gives 25 numbers (a place and 22 scores), not " + std::to_string(inputs));
 }
 
 std::vector<float> evaluate(const Network& network, std::span<const float> points) {

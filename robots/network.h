@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The network that a robot is grown from (paper, III.B): a multilayer perceptron from a random point to a place in
 // space and a score for each base material.
 #pragma once

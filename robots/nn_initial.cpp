@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Initial weights of network robots. Weights drawn from one normal distribution give the same body
 // over and over, a lump with spikes: a sum of many small bends is again a normal cloud, and its outliers decide the
-// alpha shape. Here a few neurons have a large say, each drawn as a feature of a body: a limb, a bend, a cup. The others
-// have little, and are there for evolution. Nothing but + - * / and square roots is used, and no two numbers are drawn
-// in one expression whose order is the compiler's choice, so that the weights are the same everywhere.
+// alpha shape. Here a few neurons have a large say, each drawn as a feature of a body: a limb, a bend, a cup. The
+// others have little, and are there for evolution. Nothing but + - * / and square roots is used, and no two numbers are
+// drawn in one expression whose order is the compiler's choice, so that the weights are the same everywhere.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -161,8 +162,10 @@ Plan random_plan(bool mirrored, Random& random) {
   for (double& p : plan.proportions) p = random.uniform(0.4, 1);
   const double longest = *std::max_element(plan.proportions.begin(), plan.proportions.end());
   plan.proportions = 1 / longest * plan.proportions;
-  if (random.chance(0.15)) plan.arms = 3 + random.below(4);
-  else plan.limbs = random.below(mirrored ? 4 : 6);
+  if (random.chance(0.15))
+    plan.arms = 3 + random.below(4);
+  else
+    plan.limbs = random.below(mirrored ? 4 : 6);
   plan.bends = random.below(3);
   plan.cup = random.chance(0.2);
   return plan;

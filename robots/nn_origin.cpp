@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a network robot's genome is kept in its origin.
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <oneapi/tbb/parallel_for.h>
 
 #include <optional>
@@ -26,9 +27,12 @@ std::vector<Robot> random_nn_robots(const NnOptions& options, std::uint64_t seed
   std::vector<Robot> robots;
   robots.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (grown[i]) robots.push_back(std::move(*grown[i]));
-    else if (failed) failed->push_back({first + i, std::move(reasons[i])});
-    else throw InputError("random network robot " + std::to_string(first + i), reasons[i]);
+    if (grown[i])
+      robots.push_back(std::move(*grown[i]));
+    else if (failed)
+      failed->push_back({first + i, std::move(reasons[i])});
+    else
+      throw InputError("random network robot " + std::to_string(first + i), reasons[i]);
   }
   return robots;
 }

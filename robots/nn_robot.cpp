@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/nn_robot.h"
 
 #include <algorithm>
@@ -109,8 +110,8 @@ Frame sound_frame(std::vector<Tetrahedron> tetrahedra, const std::vector<CloudPo
     const std::vector<std::uint32_t> part = components(cloud.size(), springs);
     std::vector<std::size_t> masses_of_part(cloud.size(), 0);
     for (const std::uint32_t p : part) ++masses_of_part[p];
-    const auto largest = static_cast<std::uint32_t>(
-        std::max_element(masses_of_part.begin(), masses_of_part.end()) - masses_of_part.begin());
+    const auto largest = static_cast<std::uint32_t>(std::max_element(masses_of_part.begin(), masses_of_part.end()) -
+                                                    masses_of_part.begin());
     const auto cut_off = [&](const Tetrahedron& t) {
       return std::any_of(t.begin(), t.end(), [&](std::uint32_t p) { return part[p] != largest; });
     };
@@ -133,7 +134,8 @@ void validate(const NnGenome& genome) {
               "network", "a weight is not a finite number");
   require(genome.points >= min_cloud_points && genome.points <= max_masses, "points",
           std::to_string(genome.points) + " is not accepted; give 64 to 65535");
-  require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha", "give a radius > 0 m, or 0 for the smallest that holds all points");
+  require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha",
+          "give a radius > 0 m, or 0 for the smallest that holds all points");
 }
 
 Robot grow(const NnGenome& genome, const std::string& name) {
@@ -157,8 +159,8 @@ Robot grow(const NnGenome& genome, const std::string& name) {
   }
   for (const auto& [a, b] : springs) {
     const std::uint16_t mass_a = mass_of[a], mass_b = mass_of[b];
-    robot.springs.push_back({mass_a, mass_b, combine(cloud[a].material, cloud[b].material),
-                             rest_distance(robot, mass_a, mass_b)});
+    robot.springs.push_back(
+        {mass_a, mass_b, combine(cloud[a].material, cloud[b].material), rest_distance(robot, mass_a, mass_b)});
   }
   for (const auto& [a, b, c] : skin_of(tetrahedra)) robot.faces.push_back({mass_of[a], mass_of[b], mass_of[c]});
   robot.origin = to_origin(genome);

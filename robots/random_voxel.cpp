@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/random_voxel.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -13,7 +14,7 @@
 namespace mercury {
 namespace {
 
-constexpr int phases = 4;                                // of the base muscles
+constexpr int phases = 4;  // of the base muscles
 constexpr int most_frequencies = muscle_count / phases;
 
 // A box of random numbers in [0, 1), read between its points by linear interpolation: smooth noise.
@@ -140,11 +141,11 @@ std::vector<bool> carve(Random& random, const VoxelGrid& grid, const std::array<
   for (int z = 0; z < drawn[2]; ++z)
     for (int y = 0; y < drawn[1]; ++y)
       for (int x = 0; x < drawn[0]; ++x)
-        scores.push_back({from_middle(x, grid.nx) + from_middle(y, grid.ny) + from_middle(z, grid.nz) +
-                              2.5 * noise(x, y, z),
-                          grid.index(x, y, z)});
-  const auto removed = std::min(static_cast<std::size_t>(options.air * static_cast<double>(scores.size()) + 0.5),
-                                scores.size() - 1);
+        scores.push_back(
+            {from_middle(x, grid.nx) + from_middle(y, grid.ny) + from_middle(z, grid.nz) + 2.5 * noise(x, y, z),
+             grid.index(x, y, z)});
+  const auto removed =
+      std::min(static_cast<std::size_t>(options.air * static_cast<double>(scores.size()) + 0.5), scores.size() - 1);
   const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(removed);
   std::nth_element(scores.begin(), middle, scores.end(), [](const Score& a, const Score& b) {
     return a.value != b.value ? a.value > b.value : a.cell < b.cell;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot as a document (design: "Files"): the one description of the format, for JSON and CBOR alike.
 #pragma once
 
@@ -32,8 +33,8 @@ class RobotReader : public DocumentEvents {
 
  private:
   enum Section : unsigned { format, version, name, materials, masses, springs, faces, origin, unknown };
-  static constexpr std::string_view section_names[] = {"format",  "version", "name",  "materials", "masses",
-                                                       "springs", "faces",   "origin"};
+  static constexpr std::string_view section_names[] = {"format", "version", "name",  "materials",
+                                                       "masses", "springs", "faces", "origin"};
   struct MaterialEntry {
     Material material;
     std::string name;
@@ -55,16 +56,16 @@ class RobotReader : public DocumentEvents {
   void end_material();
 
   Robot robot_;
-  unsigned seen_ = 0;           // a bit for each section
+  unsigned seen_ = 0;  // a bit for each section
   Section section_ = unknown;
-  int depth_ = 0;               // of arrays and objects open: 1 = the document, 2 = a list, 3 = a row of it
-  std::size_t row_ = 0;         // which row of the list
-  std::size_t column_ = 0;      // how many elements of the row are read
+  int depth_ = 0;           // of arrays and objects open: 1 = the document, 2 = a list, 3 = a row of it
+  std::size_t row_ = 0;     // which row of the list
+  std::size_t column_ = 0;  // how many elements of the row are read
   Vec3 position_;
   Spring spring_;
   Face face_;
   MaterialEntry entry_;
-  unsigned field_ = 0;          // the key of a material being read
+  unsigned field_ = 0;  // the key of a material being read
   bool materials_have_names_ = false;
   JsonWriter origin_{robot_.origin};
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,8 +45,9 @@ void RobotReader::wrong_type(const std::string& given) const {
     if (section_ == version) refuse("must be a whole number, not " + given);
     refuse(std::string(section_ == origin ? "must be an object" : "must be an array") + ", not " + given);
   }
-  if (depth_ == 2) refuse("holds " + given + " at " + std::to_string(row_) + ", not " +
-                          (section_ == materials ? "an object" : "an array"));
+  if (depth_ == 2)
+    refuse("holds " + given + " at " + std::to_string(row_) + ", not " +
+           (section_ == materials ? "an object" : "an array"));
   if (section_ == materials) {
     refuse(std::string(field_ == 0 ? "must be a text" : "must be a number") + ", not " + given);
   }

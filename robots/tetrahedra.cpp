@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/tetrahedra.h"
 
 #include <algorithm>
@@ -79,7 +80,8 @@ std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
 SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
                        std::size_t count) {
   std::uint32_t highest = 0;
-  for (const Tetrahedron& t : tetrahedra.first(count)) highest = std::max(highest, *std::max_element(t.begin(), t.end()));
+  for (const Tetrahedron& t : tetrahedra.first(count))
+    highest = std::max(highest, *std::max_element(t.begin(), t.end()));
   std::vector<std::uint32_t> last_visit(highest + 1, no_neighbour);  // of a point, by the body's first tetrahedron
   std::vector<bool> reached(count, false);
   SolidBody best;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body of tetrahedra: its edges and its skin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/voxel.h"
 
 #include <algorithm>
@@ -39,9 +40,9 @@ void validate_size(const VoxelGrid& grid) {
 class Lattice {
  public:
   explicit Lattice(const VoxelGrid& body)
-      : nx_(body.nx), ny_(body.ny), nz_(body.nz),
-        row_(static_cast<std::size_t>(nx_) + 2), layer_(row_ * (static_cast<std::size_t>(ny_) + 2)),
-        voxels_(layer_ * (static_cast<std::size_t>(nz_) + 2), air), masses_(voxels_.size(), 0) {
+      : nx_(body.nx), ny_(body.ny), nz_(body.nz), row_(static_cast<std::size_t>(nx_) + 2),
+        layer_(row_ * (static_cast<std::size_t>(ny_) + 2)), voxels_(layer_ * (static_cast<std::size_t>(nz_) + 2), air),
+        masses_(voxels_.size(), 0) {
     for (int z = 0; z < nz_; ++z)
       for (int y = 0; y < ny_; ++y)
         std::copy_n(body.cells.begin() + static_cast<std::ptrdiff_t>(body.index(0, y, z)), nx_,
@@ -99,10 +100,10 @@ class Lattice {
 
 // The way from one corner of a voxel to another, half of them: (x, y, z) > (0, 0, 0), z first.
 struct Direction {
-  std::size_t step = 0;                   // to the other mass
-  std::array<std::size_t, 4> voxels{};    // the voxels that hold both masses, as steps from the first mass's corner
+  std::size_t step = 0;                 // to the other mass
+  std::array<std::size_t, 4> voxels{};  // the voxels that hold both masses, as steps from the first mass's corner
   std::size_t voxel_count = 0;
-  float length = 0;                       // [m]
+  float length = 0;  // [m]
 };
 
 std::array<Direction, 13> directions_of(const Lattice& lattice, float edge) {

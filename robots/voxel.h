@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Voxel robots: a grid of cubes, each of one material, turned into masses, springs and a skin (paper, III.A).
 #pragma once
 
@@ -49,10 +50,10 @@ VoxelGrid largest_body(const VoxelGrid& grid);
 // What a voxel robot is told beside its grid.
 struct VoxelRobotOptions {
   std::string name = "voxel";
-  std::string environment;              // where it lives ("ocean", "land"), kept in its origin; empty = not said
-  std::optional<std::uint64_t> seed;     // kept in its origin
-  std::optional<std::uint64_t> index;    // which robot of that seed's population, kept in its origin
-  std::vector<Material> materials;       // its own table, pairs by the ids of combine(); empty = the 254 defaults
+  std::string environment;                  // where it lives ("ocean", "land"), kept in its origin; empty = not said
+  std::optional<std::uint64_t> seed;        // kept in its origin
+  std::optional<std::uint64_t> index;       // which robot of that seed's population, kept in its origin
+  std::vector<Material> materials;          // its own table, pairs by the ids of combine(); empty = the 254 defaults
   std::vector<std::string> material_names;  // of its own table; may be empty
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/voxel_evolution.h"
 
 #include <algorithm>

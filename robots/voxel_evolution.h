@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mutation and crossover of voxel robots: what a search over bodies is built from.
 #pragma once
 
@@ -11,11 +12,11 @@
 namespace mercury {
 
 struct VoxelMutation {
-  double flip = 0.02;           // chance of each voxel to be drawn anew
-  double air = 0.3;             // chance that a voxel drawn anew is air
-  int swaps = 1;                // pairs of patches that change places
-  int patch = 2;                // largest size of such a patch [voxels]
-  Mirror mirror = Mirror::none;  // keeps (and makes) the halves along this axis alike
+  double flip = 0.02;                 // chance of each voxel to be drawn anew
+  double air = 0.3;                   // chance that a voxel drawn anew is air
+  int swaps = 1;                      // pairs of patches that change places
+  int patch = 2;                      // largest size of such a patch [voxels]
+  Mirror mirror = Mirror::none;       // keeps (and makes) the halves along this axis alike
   std::vector<MaterialId> materials;  // that a voxel may be drawn of; empty = the parent's own, any base one in 1 of 4
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a voxel robot's grid is kept in its origin.
 #pragma once
 

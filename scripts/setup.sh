@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What scripts/demo, scripts/test and scripts/bundle share; they source it. Debian 12 and Ubuntu 24.04.
 # Leaves the shell in the repository's root.
 

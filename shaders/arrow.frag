@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arrow: bright, so that it is read before it is seen as a thing.
 #include "frame.glsl"
 #include "shading.glsl"

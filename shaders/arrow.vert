@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arrow of 9 vertices: a strip for its shaft, a triangle for its head.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is seen where nothing stands: the floor as far as it is seen, and the distance. HORIZON: that can be seen.
 #include "frame.glsl"
 #include "caustics.glsl"

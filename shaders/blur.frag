@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Half of a Gaussian blur: along one axis.
 layout(binding = 0) uniform sampler2D source;
 layout(location = 0) in vec2 place;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies' buffers, as render/bodies.h fills them, and what is computed from them each frame.
 #define NO_FACE 0xffffffffu
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The box around each body's finite masses, in its own coordinates: one work group a body.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;

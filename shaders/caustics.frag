@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light that arrives here: how much of the surface's area is squeezed into this pixel. Added up where rays cross.
 layout(location = 0) in vec2 source;
 layout(location = 0) out float light;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pattern of light that a moving water surface throws down, mean 1. Needs frame.glsl.
 // OCTAVES: how many sizes of it are to be seen, 1 or 2.
 layout(binding = 4) uniform sampler2D caustics_tile;

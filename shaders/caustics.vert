@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ray of light for each corner of a grid, bent by the waves above and followed down to the tile.
 #include "frame.glsl"
 layout(location = 0) uniform int cells;  // of the grid along a side

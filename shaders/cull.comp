@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which faces turn towards the eye and which towards the key light, in their order: lists to draw by, so that the card
 // sets up half the triangles. STAGE 0 counts them in groups of 256, 1 adds the counts up, 2 writes the lists.
 #include "frame.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies are solid: where a cut lets the eye see the back of a skin, it sees the cut instead. Needs frame.glsl.
 
 // Where the line of sight comes through the cut, which the eye is beyond.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame of each face as its masses stand now.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;

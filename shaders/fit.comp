@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of the frame's block follows from where bodies are: what the shadow map and the floor's map of light cover.
 // One work group. An answer read back to the processor would make it wait for the card in every picture.
 #define FITS_FRAME

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ground on land and the sand under water. Needs frame.glsl, caustics.glsl.
 layout(binding = 5) uniform sampler2D sand_tile;    // slope x, y, grain
 layout(binding = 6) uniform sampler2D ground_light_map;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The floor's depth. It is no body's face.
 #include "frame.glsl"
 layout(location = 0) in vec2 place;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What all shaders of one picture share: FrameBlock of render/frame_block.h.
 // fit.comp, which fills in a part of it, defines FITS_FRAME.
 #ifdef FITS_FRAME

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of the key light reaches the nearest surface of each pixel, once a pixel: soft shadows cost too much to be
 // looked up by every sample of every edge.
 #include "frame.glsl"

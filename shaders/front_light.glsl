@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What front_light.comp has found. Needs bodies.glsl.
 layout(binding = 11) uniform sampler2D front_light_map;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One triangle that covers the picture, at the farthest depth.
 layout(location = 0) out vec2 place;  // 0 to 1
 out gl_PerVertex { vec4 gl_Position; };

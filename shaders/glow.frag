@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes the glowing light out of the picture, a quarter of its size, to be spread.
 layout(binding = 0) uniform sampler2DMS samples;
 layout(location = 0) in vec2 place;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Averages the 4 x 4 pattern of ground_light.comp.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D source;

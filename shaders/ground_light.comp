@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The key light on the floor, as a map: soft shadows cost once a texel and not once a pixel.
 #include "frame.glsl"
 #include "shadow.glsl"

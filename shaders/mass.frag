@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mass, shaded as a ball.
 #include "frame.glsl"
 #include "shadow.glsl"

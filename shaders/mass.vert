@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mass as a square of 6 vertices that its ball fits into.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The normal of a smooth skin at each mass: the mean of its faces', weighted by their areas.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ball's round shadow.
 layout(location = 0) in vec2 place;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How open each point of the half-size picture is to ambient light: horizon-free obscurance (McGuire et al. 2011).
 #include "frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ambient light that nearby things leave, from the half-size map of occlusion.comp. Needs frame.glsl.
 layout(binding = 3) uniform sampler2D occlusion_map;  // openness, distance along the line of sight
 

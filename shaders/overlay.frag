@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text from signed distances with an outline, boxes with round corners, and scales of colours.
 struct Quad {
   vec4 place;

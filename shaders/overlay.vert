@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rectangle of text, colour or scale, 6 vertices each.
 struct Quad {
   vec4 place;   // x, y, width, height; pixels from the upper left corner

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A speck in the water, carried by its flow: a strip of 6 vertices, longer where the flow is fast.
 #include "frame.glsl"
 #include "ribbon.glsl"

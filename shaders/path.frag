@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A path: flat colour.
 #include "frame.glsl"
 layout(location = 0) in vec4 tint;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One piece of a path, a strip of 6 vertices as wide on the screen wherever it is.
 #include "frame.glsl"
 #include "bodies.glsl"

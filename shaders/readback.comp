@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packs the picture into the bytes that a file or an encoder wants, upper row first, four bytes an invocation.
 layout(local_size_x = 64) in;
 

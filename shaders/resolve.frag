@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many samples of linear light to one pixel of the picture: tone-mapped first, so that bright edges stay smooth.
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2DMS samples;

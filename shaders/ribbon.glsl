@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flat strips that face the eye and are shaded as round. Needs frame.glsl.
 
 // Corner 0..5 of two triangles: x along 0 or 1, y across -1 or 1.

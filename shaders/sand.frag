@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One tile of sand: slopes of its ripples and a grain, made once.
 layout(location = 0) in vec2 place;
 layout(location = 0) out vec4 tile;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The spring whose middle is nearest gives a place of the cut its look.
 layout(location = 0) in vec3 off;
 layout(location = 1) flat in vec4 look;

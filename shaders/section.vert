@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A spring near the cut as a square in the cut's plane, 6 vertices, around the place nearest to the spring's middle.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light on soft skin. Needs frame.glsl.
 const float pi = 3.14159265;
 

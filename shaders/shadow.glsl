@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of the key light reaches a point: percentage-closer soft shadows (Fernando 2005), the light a disc.
 layout(binding = 1) uniform sampler2DShadow shadow_map;
 layout(binding = 2) uniform sampler2D shadow_depths;

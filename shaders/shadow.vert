@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A skin's corner as the light sees it.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A skin: coloured by looks or numbers, its edges rounded off by light alone.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A skin's corner, set into the picture.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A spring, shaded as a round bar.
 #include "frame.glsl"
 #include "bodies.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A spring as a strip of 6 vertices, as the eye or (with SHADOW) the key light sees it.
 #include "frame.glsl"
 #include "bodies.glsl"

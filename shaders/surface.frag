@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth, and which face it is of. CUT: of a skin's back, which stands for what a cut lays open.
 layout(location = 0) out uint face;  // counted from 1; the largest is the cut
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Simulation asks of whatever does the stepping. One file a backend; a backend that was not built is a file that
 // was not compiled.
 #pragma once
@@ -50,7 +51,9 @@ class Backend {
 
   // As in Simulation; a backend without CUDA, or with several devices, leaves these as they are.
   virtual int cuda_device() const { return -1; }
-  virtual void copy_positions(float* /*device_out*/) const { throw std::logic_error("these robots are on no CUDA device"); }
+  virtual void copy_positions(float* /*device_out*/) const {
+    throw std::logic_error("these robots are on no CUDA device");
+  }
 
   virtual RobotStatus status(std::size_t robot) const = 0;
   virtual std::vector<RobotStatus> statuses() const = 0;

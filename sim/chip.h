@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a robot's masses fit into a multiprocessor's own memory, where CUDA steps them without leaving the chip.
 #pragma once
 
@@ -20,7 +21,8 @@ struct ChipFit {
   std::size_t robots_at_once = 0;  // how many such robots the device steps at the same time
 };
 
-// How a large batch of robots like this one lies on a CUDA device. Throws DeviceError where there is none of that index.
+// How a large batch of robots like this one lies on a CUDA device. Throws DeviceError where there is none of that
+// index.
 ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int device);
 
 }  // namespace mercury

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/configuration.h"
 
 #include <charconv>
@@ -54,9 +55,12 @@ std::string_view name_of(const Environment& environment) {
 
 std::string name_of(const Device& device) {
   switch (device.kind) {
-    case DeviceKind::automatic: return "auto";
-    case DeviceKind::cpu: return "cpu";
-    case DeviceKind::cuda: break;
+    case DeviceKind::automatic:
+      return "auto";
+    case DeviceKind::cpu:
+      return "cpu";
+    case DeviceKind::cuda:
+      break;
   }
   if (device.index == Device::all_devices) return "cuda:all";
   return device.index == 0 ? "cuda" : "cuda:" + std::to_string(device.index);
@@ -87,7 +91,8 @@ Device device_named(std::string_view name) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), device.index);
     if (error == std::errc{} && end == digits.data() + digits.size() && device.index >= 0) return device;
   }
-  throw InputError("--device", "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
+  throw InputError("--device",
+                   "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
 Vec3 gravity_of(const Environment& environment) {

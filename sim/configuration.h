@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a simulation is told: time step, solver, environment, device.
 #pragma once
 
@@ -14,12 +15,12 @@ enum class Solver { force, xpbd };  // paper, Algorithm 1 and Algorithm 2
 // Water; drag and lift act on the faces (paper, equation 1).
 struct Ocean {
   static constexpr std::string_view name = "ocean";
-  float density = 1000;         // rho [kg/m3]
-  float drag_coefficient = 1;   // C_D [1]
+  float density = 1000;           // rho [kg/m3]
+  float drag_coefficient = 1;     // C_D [1]
   float lift_coefficient = 0.2f;  // C_L [1]
-  Vec3 flow;                    // velocity of the water [m/s]
-  Vec3 gravity;                 // [m/s2]
-  float stiffness_scale = 1;    // multiplies every stiffness [1]
+  Vec3 flow;                      // velocity of the water [m/s]
+  Vec3 gravity;                   // [m/s2]
+  float stiffness_scale = 1;      // multiplies every stiffness [1]
   friend bool operator==(const Ocean&, const Ocean&) = default;
 };
 
@@ -36,8 +37,8 @@ struct OceanSimple {
 // Solid ground at z = 0, and masses of one robot that no spring joins repel each other.
 struct Land {
   static constexpr std::string_view name = "land";
-  Vec3 gravity{0, 0, -9.81f};     // [m/s2]
-  float friction = 0.8f;          // Coulomb coefficient [1]
+  Vec3 gravity{0, 0, -9.81f};  // [m/s2]
+  float friction = 0.8f;       // Coulomb coefficient [1]
   bool self_collision = true;
   float contact_stiffness = 100;  // k_c [N/m], times the stiffness scale
   float stiffness_scale = 200;    // [1]
@@ -57,8 +58,8 @@ struct Device {
 };
 
 struct Configuration {
-  double dt = 1e-3;       // time step [s]
-  double damping = 0.1;   // velocities shrink by exp(-damping dt) a step [1/s]
+  double dt = 1e-3;      // time step [s]
+  double damping = 0.1;  // velocities shrink by exp(-damping dt) a step [1/s]
   Solver solver = Solver::force;
   Environment environment = Ocean{};
   Device device;

@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cells of one contact distance, hashed into buckets that list their masses: finding the pairs that touch costs a few
-// look-ups a mass instead of one for every other mass. Lists stand in any order; sums are integers, so it has no effect.
+// look-ups a mass instead of one for every other mass. Lists stand in any order; sums are integers, so it has no
+// effect.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +30,8 @@ MERCURY_HOST_DEVICE Cell cell_of(Vec3 x, float inverse_size) {
 
 // mask + 1 buckets, a power of two.
 MERCURY_HOST_DEVICE std::uint32_t bucket_of(Cell cell, std::uint32_t mask) {
-  const std::uint32_t h = static_cast<std::uint32_t>(cell.x) * 0x9e3779b1u + static_cast<std::uint32_t>(cell.y) * 0x85ebca77u +
+  const std::uint32_t h = static_cast<std::uint32_t>(cell.x) * 0x9e3779b1u +
+                          static_cast<std::uint32_t>(cell.y) * 0x85ebca77u +
                           static_cast<std::uint32_t>(cell.z) * 0xc2b2ae3du;
   return (h ^ (h >> 15)) & mask;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three environments as the solvers see them. A new one is one struct with these hooks:
 //   has_faces, has_contacts, has_floor, calm what a step has to do, known at compile time
 //   on_mass(v)                               force on a unit mass of velocity v [N]
@@ -47,12 +48,13 @@ struct OceanHooks {
     const auto flux = inner(normal, u);
     const auto along_flow = drag * absolute(flux);
     const auto along_normal = lift * negated_where(flux < 0.0f, speed_squared);
-    return {multiply_add(along_flow, u.x, along_normal * normal.x), multiply_add(along_flow, u.y, along_normal * normal.y),
+    return {multiply_add(along_flow, u.x, along_normal * normal.x),
+            multiply_add(along_flow, u.y, along_normal * normal.y),
             multiply_add(along_flow, u.z, along_normal * normal.z)};
   }
 
-  // Coefficients for a third of the force times `scale`, of 2 A n and of the sum of u over the face's masses, which need
-  // no multiplication; both vectors the other way around.
+  // Coefficients for a third of the force times `scale`, of 2 A n and of the sum of u over the face's masses, which
+  // need no multiplication; both vectors the other way around.
   struct Coefficients {
     float drag = 0, lift = 0;
     // No component of a force is more than this times |normal| |u|^2.
@@ -106,11 +108,14 @@ struct LandHooks {
     const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
     const auto held = friction * depth;
     const auto undone = select(moved > held, held / moved, 1.0f);
-    x = select(touched, Vector{negative_multiply_add(undone, displacement.x, x.x),
-                               negative_multiply_add(undone, displacement.y, x.y), 0.0f}, x);
-    displacement = select(touched, Vector{negative_multiply_add(undone, displacement.x, displacement.x),
-                                          negative_multiply_add(undone, displacement.y, displacement.y),
-                                          displacement.z + depth}, displacement);
+    x = select(touched,
+               Vector{negative_multiply_add(undone, displacement.x, x.x),
+                      negative_multiply_add(undone, displacement.y, x.y), 0.0f},
+               x);
+    displacement = select(touched,
+                          Vector{negative_multiply_add(undone, displacement.x, displacement.x),
+                                 negative_multiply_add(undone, displacement.y, displacement.y), displacement.z + depth},
+                          displacement);
     return touched;
   }
 };
@@ -125,9 +130,9 @@ MERCURY_HOST_DEVICE float repulsion(float squared, float distance, float stiffne
   return squared < distance * distance ? stiffness * multiply_add(-distance, inverse_sqrt(squared), 1.0f) : 0.0f;
 }
 
-// k_c of a step [N/m]. Repulsion is an explicit force, and XPBD promises to be stable at any time step: there one contact
-// moves a mass by at most an eighth of the distance missing a step, which is stable with up to 16 contacts at a mass.
-// (On land as it comes that softens nothing below dt = 2.5e-3 s.)
+// k_c of a step [N/m]. Repulsion is an explicit force, and XPBD promises to be stable at any time step: there one
+// contact moves a mass by at most an eighth of the distance missing a step, which is stable with up to 16 contacts at a
+// mass. (On land as it comes that softens nothing below dt = 2.5e-3 s.)
 inline float contact_stiffness_of(const Land& land, Solver solver, double dt) {
   if (!land.self_collision) return 0;
   const float stiffness = land.contact_stiffness * land.stiffness_scale;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors that the user can mend: what was given cannot be used.
 #pragma once
 

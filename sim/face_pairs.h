@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faces two by two, so that masses common to both are read once and forces on them added once.
 #pragma once
 
@@ -16,8 +17,8 @@ struct FacePair {
 };
 
 // Every face once. A face may be told from another corner or the other way around than in the robot; its force is the
-// same. Pairs of two faces are told by where their masses are at rest (z first, then y, then x): a before c, b before d;
-// so a pair of another robot in the same place is told the same way.
+// same. Pairs of two faces are told by where their masses are at rest (z first, then y, then x): a before c, b before
+// d; so a pair of another robot in the same place is told the same way.
 std::vector<FacePair> pair_faces(const Robot& robot);
 
 }  // namespace mercury

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forces and corrections are summed as integers: a sum then does not depend on its order, so that runs are
 // reproducible, action and reaction cancel exactly, and a GPU can add without a compare-and-swap loop.
 #pragma once
@@ -18,7 +19,7 @@ inline constexpr float stretch_limit = 16;
 
 // Rounds a value of up to 2^22 units to an integer by one addition: 1.5 x 2^23 pushes the fraction out of the float,
 // and what is left in its lower bits is the integer. (Conversions run on a GPU's slow unit.)
-inline constexpr float rounding_magic = 12582912.f;             // 1.5 x 2^23
+inline constexpr float rounding_magic = 12582912.f;              // 1.5 x 2^23
 inline constexpr std::int32_t rounding_magic_bits = 0x4b400000;  // its bits
 
 // round(value_per_distance * distance), both in units, plus rounding_magic_bits. Halves go to the even integer, so the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one place that knows whether nvcc is compiling: marks functions that run on host and device, and names the
 // arithmetic that differs between them. An equation written in these names is computed for one float, and for a vector
 // of floats whose type brings the same names (sim/cpu/lanes.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From forces to the next state (paper, Algorithms 1 and 2), for host and device.
 #pragma once
 
@@ -14,9 +15,9 @@ MERCURY_HOST_DEVICE auto within_reach(Vector x) {
 }
 
 struct StepConstants {
-  float dt = 1e-3f;          // [s]
-  float inverse_dt = 1e3f;   // [1/s]
-  float zeta = 1;            // exp(-damping dt)
+  float dt = 1e-3f;         // [s]
+  float inverse_dt = 1e3f;  // [1/s]
+  float zeta = 1;           // exp(-damping dt)
 };
 
 MERCURY_HOST_DEVICE Vec3 multiply_add(float a, Vec3 b, Vec3 c) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials: how stiff a spring is and how it moves as a muscle (paper, II.A and Table I).
 #pragma once
 
@@ -20,12 +21,12 @@ struct Material {
 using MaterialId = std::uint8_t;
 
 inline constexpr MaterialId air = 0;
-inline constexpr int base_material_count = 22;       // ids 1..22: 20 muscles, tissue, bone
-inline constexpr int muscle_count = 20;              // ids 1..20
+inline constexpr int base_material_count = 22;  // ids 1..22: 20 muscles, tissue, bone
+inline constexpr int muscle_count = 20;         // ids 1..20
 inline constexpr MaterialId tissue = 21;
 inline constexpr MaterialId bone = 22;
-inline constexpr int default_material_count = 254;   // air, the base materials and their pairs
-inline constexpr int max_materials = 256;            // air and up to 255 more
+inline constexpr int default_material_count = 254;  // air, the base materials and their pairs
+inline constexpr int max_materials = 256;           // air and up to 255 more
 
 // The 254 defaults, air included, by id. Pairs i<j of base materials follow in lexicographic order from id 23:
 // stiffness and amplitude are the means of both; frequency and phase the means over the partners that move.

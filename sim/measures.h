@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a step needs to know of a robot as a whole, the same for every backend.
 #pragma once
 
@@ -14,9 +15,9 @@
 namespace mercury {
 
 struct RobotMeasures {
-  float longest = 0;                         // rest length [m]; 0 without springs
-  float shortest = 0;                        // rest length [m]
-  std::array<bool, max_materials> used{};    // materials that some spring has
+  float longest = 0;                                       // rest length [m]; 0 without springs
+  float shortest = 0;                                      // rest length [m]
+  std::array<bool, max_materials> used{};                  // materials that some spring has
   float contact_distance() const { return shortest / 2; }  // [m], on land
   // No spring's |d|^2 may exceed this [m2].
   float squared_stretch_limit() const { return stretch_limit * longest * stretch_limit * longest; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The muscle law L(t) = L0 (1 + dL0 sin(omega t + phi)) (paper, II.A), its phase exact on runs of any length.
 #pragma once
 
@@ -11,8 +12,8 @@ namespace mercury {
 
 // Which instant a step stands at: time = base_time + (step - base_step) dt. The base moves when dt changes.
 struct Clock {
-  double dt = 1e-3;       // [s]
-  double base_time = 0;   // [s]
+  double dt = 1e-3;      // [s]
+  double base_time = 0;  // [s]
   std::int64_t base_step = 0;
   std::int64_t step = 0;
 };
@@ -22,7 +23,7 @@ MERCURY_HOST_DEVICE double time_of(const Clock& clock) {
 
 // A phase counts 2^-64 of a turn and wraps around, so that adding is exact and an hour costs no digit.
 struct MusclePhase {
-  std::uint64_t at_base = 0;   // at the clock's base
+  std::uint64_t at_base = 0;  // at the clock's base
   std::uint64_t per_step = 0;
 };
 
@@ -64,8 +65,7 @@ MERCURY_HOST_DEVICE float muscle_factor(float amplitude, std::uint64_t phase) {
   return multiply_add(amplitude, sine_of_phase(phase), 1.0f);
 }
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, const Clock& clock) {
-  return muscle_factor(material.amplitude,
-                       phase_at(muscle_phase(material, clock), clock.step - clock.base_step));
+  return muscle_factor(material.amplitude, phase_at(muscle_phase(material, clock), clock.step - clock.base_step));
 }
 // The same at t = step dt.
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, double dt, std::int64_t step) {

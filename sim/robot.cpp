@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/robot.h"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b) {
 
 bool same_build(const Robot& a, const Robot& b) {
   const auto same_ends = [](const Spring& s, const Spring& t) { return s.a == t.a && s.b == t.b; };
-  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) && a.faces == b.faces;
+  return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) &&
+         a.faces == b.faces;
 }
 
 std::uint64_t build_key(const Robot& robot) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot: point masses of 1 kg, springs that join them, and a skin of triangles (paper, II.A).
 #pragma once
 
@@ -15,7 +16,7 @@ namespace mercury {
 struct Spring {
   std::uint16_t a = 0, b = 0;  // masses
   MaterialId material = 0;
-  float rest_length = 0;       // L0 [m], at least min_rest_length
+  float rest_length = 0;  // L0 [m], at least min_rest_length
   friend constexpr bool operator==(const Spring&, const Spring&) = default;
 };
 
@@ -34,7 +35,7 @@ struct Robot {
   std::vector<Vec3> masses;                 // position at rest [m]
   std::vector<Spring> springs;
   std::vector<Face> faces;
-  std::string origin;                       // how it was made, as JSON text; empty = unknown
+  std::string origin;  // how it was made, as JSON text; empty = unknown
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 

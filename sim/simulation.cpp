@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/simulation.h"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ namespace mercury {
 namespace {
 
 std::unique_ptr<Backend> make_backend(const Device& device) {
-  const bool cuda = device.kind == DeviceKind::cuda ||
-                    (device.kind == DeviceKind::automatic && cuda_device_count() > device.index);
+  const bool cuda =
+      device.kind == DeviceKind::cuda || (device.kind == DeviceKind::automatic && cuda_device_count() > device.index);
   if (!cuda) return make_cpu_backend(device);
   if (device.index != Device::all_devices) return make_cuda_backend(device);
   std::vector<std::unique_ptr<Backend>> parts;
@@ -79,8 +80,7 @@ struct Simulation::Parts {
   std::size_t size() const { return robots.size(); }
   std::size_t masses(std::size_t robot) const { return offsets[robot + 1] - offsets[robot]; }
   void require(std::size_t robot) const {
-    if (robot >= size())
-      throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
+    if (robot >= size()) throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
   }
   void require_material(std::size_t robot, MaterialId id) const {
     require(robot);
@@ -267,7 +267,8 @@ void Simulation::configure(const Configuration& configuration) {
     throw std::invalid_argument("the device of a simulation cannot change");
   if (configuration.dt != parts_->clock.dt) {
     const Clock& clock = parts_->clock;
-    parts_->change_clock({.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step});
+    parts_->change_clock(
+        {.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step});
   }
   const bool lands = std::holds_alternative<Land>(configuration.environment) &&
                      !std::holds_alternative<Land>(parts_->configuration.environment);
@@ -359,7 +360,8 @@ void Simulation::set_materials(std::span<const Material> tables) {
     throw std::invalid_argument("a table of 256 materials a robot is needed");
   for (std::size_t i = 0; i < tables.size(); ++i)
     if (!is_valid(tables[i]))
-      validate(tables[i], "robot " + std::to_string(i / max_materials) + ", material " + std::to_string(i % max_materials));
+      validate(tables[i],
+               "robot " + std::to_string(i / max_materials) + ", material " + std::to_string(i % max_materials));
   std::ranges::copy(tables, parts_->materials.begin());
   parts_->backend->write_materials(parts_->materials);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A batch of robots that is stepped through time: owns backend, time and configuration.
 #pragma once
 
@@ -59,11 +60,11 @@ class Simulation {
   // time stays. Throws std::out_of_range for one that is not there, std::invalid_argument for one named twice.
   void keep(std::span<const std::size_t> robots);
 
-  std::size_t size() const;                       // robots
-  const Robot& robot(std::size_t index) const;    // as it was added
+  std::size_t size() const;                     // robots
+  const Robot& robot(std::size_t index) const;  // as it was added
   const Configuration& configuration() const;
-  double time() const;                            // [s]
-  std::int64_t steps() const;                     // since the start or the last reset
+  double time() const;         // [s]
+  std::int64_t steps() const;  // since the start or the last reset
   // The instant, exactly (sim/muscle.h). Set, all goes on from there as it would have there; robots keep their state.
   const Clock& clock() const;
   void set_clock(const Clock& clock);
@@ -99,7 +100,7 @@ class Simulation {
   // As read_positions(), into memory of that device, 3 * mass_count() floats: queued in its legacy default stream and
   // not waited for. Throws std::logic_error where cuda_device() is -1.
   void copy_positions(float* device_out) const;
-  std::size_t mass_count() const;                 // of all robots together
+  std::size_t mass_count() const;                     // of all robots together
   std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements
   // Throws std::invalid_argument unless both have one element a mass.
   // The robot has not exploded then.
@@ -118,7 +119,7 @@ class Simulation {
   void set_material(std::size_t robot, MaterialId id, const Material& material);
   // All robots' tables in one call: `tables` has size() * max_materials elements, robot-major; unused ids are ignored.
   void set_materials(std::span<const Material> tables);
-  std::vector<Material> materials() const;        // the same shape
+  std::vector<Material> materials() const;  // the same shape
 
   // Replaces all pulls of before; empty = let go.
   void set_pulls(std::span<const Pull> pulls);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/split_backend.h"
 
 #include <algorithm>
@@ -128,7 +129,8 @@ class SplitBackend final : public Backend {
   template <class Work>
   void for_each_part(const Work& work) const {
     std::vector<std::future<void>> others;
-    for (std::size_t p = 1; p < parts_.size(); ++p) others.push_back(std::async(std::launch::async, [&work, p] { work(p); }));
+    for (std::size_t p = 1; p < parts_.size(); ++p)
+      others.push_back(std::async(std::launch::async, [&work, p] { work(p); }));
     std::exception_ptr error;
     const auto keep_error = [&](const auto& done) {
       try {

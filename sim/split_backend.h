@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several backends as one: a batch is shared out over them in equal parts, and they step at the same time.
 #pragma once
 

@@ -1,4 +1,6 @@
-// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device; Real is a float or a vector of them.
+// SPDX-License-Identifier: Apache-2.0
+// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device; Real is a float or a vector of
+// them.
 #pragma once
 
 #include "sim/host_device.h"
@@ -12,8 +14,8 @@ MERCURY_HOST_DEVICE auto squared_length(Vector d) {
   return multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, 1e-20f)));
 }
 
-// (|d| - L) / |d|, the part of d that a spring wants to lose. With a power of two for `one`, and L times it, the result is
-// times it, too, bit for bit.
+// (|d| - L) / |d|, the part of d that a spring wants to lose. With a power of two for `one`, and L times it, the result
+// is times it, too, bit for bit.
 template <class Real>
 MERCURY_HOST_DEVICE Real excess(Real squared, Real length, Real one = 1.0f) {
   return negative_multiply_add(length, inverse_sqrt(squared), one);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/background.h"
 
 #include <algorithm>
@@ -91,7 +92,9 @@ void Background::cancel(std::uint64_t id) {
 std::vector<Work> Background::work() const {
   const std::lock_guard lock(parts_->mutex);
   std::vector<Work> all;
-  const auto add = [&](const Parts::Task& task) { all.push_back({task.id, task.name, task.control->done(), task.total}); };
+  const auto add = [&](const Parts::Task& task) {
+    all.push_back({task.id, task.name, task.control->done(), task.total});
+  };
   if (parts_->present) add(*parts_->present);
   for (const Parts::Task& task : parts_->waiting) add(task);
   return all;

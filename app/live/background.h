@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Work beside the window: reading files, growing robots.
 #pragma once
 
@@ -15,7 +16,7 @@ namespace mercury {
 // One piece of work as it is told to the user.
 struct Work {
   std::uint64_t id = 0;
-  std::string name;        // "growing 24 robots"
+  std::string name;  // "growing 24 robots"
   std::int64_t done = 0, total = 0;
 };
 

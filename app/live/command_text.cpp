@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/command_text.h"
 
 #include <fmt/format.h>
@@ -6,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <map>
+#include <numbers>
 #include <type_traits>
 
 namespace mercury {
@@ -60,11 +61,18 @@ std::string size_text(const std::array<int, 3>& size) { return fmt::format("{}x{
 constexpr const char* mirror_names[] = {"none", "x", "y", "z"};
 
 std::string shown_text(const Shown& shown) {
-  const std::pair<const char*, bool> items[] = {
-      {"skin", shown.skin},          {"springs", shown.springs},     {"masses", shown.masses},
-      {"drag", shown.arrows.drag},   {"lift", shown.arrows.lift},    {"velocity", shown.arrows.velocity},
-      {"gravity", shown.arrows.gravity}, {"path", shown.path},       {"labels", shown.labels},
-      {"legend", shown.legend},      {"clock", shown.clock},         {"scale", shown.scale_bar}};
+  const std::pair<const char*, bool> items[] = {{"skin", shown.skin},
+                                                {"springs", shown.springs},
+                                                {"masses", shown.masses},
+                                                {"drag", shown.arrows.drag},
+                                                {"lift", shown.arrows.lift},
+                                                {"velocity", shown.arrows.velocity},
+                                                {"gravity", shown.arrows.gravity},
+                                                {"path", shown.path},
+                                                {"labels", shown.labels},
+                                                {"legend", shown.legend},
+                                                {"clock", shown.clock},
+                                                {"scale", shown.scale_bar}};
   std::vector<std::string> words;
   for (const auto& [name, on] : items)
     if (on) words.push_back(name);
@@ -129,8 +137,10 @@ std::string toml_value(const std::string& text) {
   for (const char letter : text) {
     const auto code = static_cast<unsigned char>(letter);
     if (letter == '"' || letter == '\\') quoted += '\\';
-    if (code < 0x20 || code == 0x7f) quoted += fmt::format("\\u{:04x}", code);
-    else quoted += letter;
+    if (code < 0x20 || code == 0x7f)
+      quoted += fmt::format("\\u{:04x}", code);
+    else
+      quoted += letter;
   }
   return quoted + "\"";
 }
@@ -172,7 +182,8 @@ OptionValues options_of(const ViewSettings& settings) {
   options.flag("--smooth", settings.smooth);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
   options.text("--layout", race ? "race" : "grid", "grid");
-  if (settings.grid && !race) options.text("--grid", fmt::format("{}x{}", settings.grid->columns, settings.grid->rows), "");
+  if (settings.grid && !race)
+    options.text("--grid", fmt::format("{}x{}", settings.grid->columns, settings.grid->rows), "");
   options.text("--camera", camera_text(settings.camera), "group");
   if (settings.camera.azimuth) options.number("--azimuth", degrees(*settings.camera.azimuth), NAN);
   if (settings.camera.elevation) options.number("--elevation", degrees(*settings.camera.elevation), NAN);
@@ -228,9 +239,11 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
     if (run.first > 0) command.text += fmt::format(":{}", run.first);
     const OptionValues shape = options_of(generation);
     const auto [first, is_new] = shapes.emplace(generation.kind, shape);
-    if (is_new) options.insert(options.end(), shape.begin(), shape.end());
+    if (is_new)
+      options.insert(options.end(), shape.begin(), shape.end());
     else if (first->second != shape)
-      command.notes.push_back("random robots of one kind share the first one's options in the command; save the others");
+      command.notes.push_back(
+          "random robots of one kind share the first one's options in the command; save the others");
   }
   append(command.text, options);
   append(command.text, options_of(document.configuration));
@@ -246,8 +259,10 @@ std::string shell_quoted(const std::string& word) {
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   std::string quoted = "'";
   for (const char letter : word) {
-    if (letter == '\'') quoted += "'\\''";
-    else quoted += letter;
+    if (letter == '\'')
+      quoted += "'\\''";
+    else
+      quoted += letter;
   }
   return quoted + "'";
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a film in the background is.
 #pragma once
 
@@ -12,7 +13,7 @@ struct FilmStatus {
   std::int64_t total = 0;    // to be written; 0 = open end
   std::int64_t dropped = 0;  // that came too fast for the encoder
   std::string file;
-  std::string error;         // one line, if failed
+  std::string error;  // one line, if failed
   bool over() const { return state != State::running && state != State::finishing; }
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/group_film.h"
 
 #include <algorithm>
@@ -75,9 +76,9 @@ struct GroupFilm::Parts {
       told.total = timing.frames;
     }
     if (robots.empty()) throw InputError("there is no robot to film");
-    const auto writer = open_frame_writer(options.output, {.size = size,
-                                                           .frames_per_second = options.frames_per_second,
-                                                           .expected_frames = timing.frames});
+    const auto writer = open_frame_writer(
+        options.output,
+        {.size = size, .frames_per_second = options.frames_per_second, .expected_frames = timing.frames});
     view.speed = options.speed;
     Simulation simulation = simulation_of(robots, configuration);
     Stage stage = make_stage(options.context, size, options.quality);

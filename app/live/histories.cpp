@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/histories.h"
 
 #include <algorithm>
@@ -15,7 +16,9 @@ std::vector<Pull> pulls_of(RobotId robot, const std::vector<LivePull>& all) {
   return pulls;
 }
 
-bool same(const Pull& a, const Pull& b) { return a.mass == b.mass && a.target == b.target && a.stiffness == b.stiffness; }
+bool same(const Pull& a, const Pull& b) {
+  return a.mass == b.mass && a.target == b.target && a.stiffness == b.stiffness;
+}
 
 }  // namespace
 
@@ -32,9 +35,10 @@ void Histories::add(Event event) {
   copied_.reset();
   if (!events_.empty() && first_event_ + events_.size() > sealed_) {
     Event& last = events_.back();
-    const bool same_kind = last.configuration.has_value() == event.configuration.has_value() &&
-                           last.pulls.has_value() == event.pulls.has_value() &&
-                           (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
+    const bool same_kind =
+        last.configuration.has_value() == event.configuration.has_value() &&
+        last.pulls.has_value() == event.pulls.has_value() &&
+        (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
     if (last.step == event.step && same_kind && !event.configuration) {
       last = std::move(event);
       return;
@@ -45,7 +49,8 @@ void Histories::add(Event event) {
 
 void Histories::follow(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePull>& pulls) {
   const std::int64_t step = simulation.steps();
-  if (!tracks_.empty() && simulation.configuration() != configuration_) add({.step = step, .configuration = simulation.configuration()});
+  if (!tracks_.empty() && simulation.configuration() != configuration_)
+    add({.step = step, .configuration = simulation.configuration()});
   configuration_ = simulation.configuration();
   std::map<RobotId, Track> tracks;
   std::vector<std::size_t> fresh;

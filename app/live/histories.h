@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What happened to each robot of late, so that its explosion can be made to happen again.
 #pragma once
 
@@ -51,8 +52,8 @@ class Histories {
     std::optional<std::pair<RobotId, Materials>> materials;
     std::optional<std::vector<LivePull>> pulls;
   };
-  static constexpr double period = 5;                       // of stepping between two states [s]
-  static constexpr std::size_t most_masses = 2'000'000;     // of all robots, for new states to be kept
+  static constexpr double period = 5;                    // of stepping between two states [s]
+  static constexpr std::size_t most_masses = 2'000'000;  // of all robots, for new states to be kept
 
   // What became of a robot, by itself.
   struct Record {
@@ -76,7 +77,7 @@ class Histories {
   Configuration configuration_;
   std::vector<LivePull> pulls_;
   std::shared_ptr<const std::vector<Event>> copied_;  // of all events, as long as they stay as they are
-  double since_ = 0;  // of stepping since the last states [s]
+  double since_ = 0;                                  // of stepping since the last states [s]
 };
 
 }  // namespace mercury

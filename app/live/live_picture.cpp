@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/live_picture.h"
 
 #include <cmath>
@@ -14,8 +15,11 @@ namespace {
 static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are handed on as plain floats");
 
 bool same_layout(const ViewSettings& a, const ViewSettings& b) {
-  const auto grid = [](const ViewSettings& s) { return s.grid ? std::pair{s.grid->columns, s.grid->rows} : std::pair{0, 0}; };
-  return a.layout == b.layout && grid(a) == grid(b) && (a.camera.mode == CameraMode::top) == (b.camera.mode == CameraMode::top);
+  const auto grid = [](const ViewSettings& s) {
+    return s.grid ? std::pair{s.grid->columns, s.grid->rows} : std::pair{0, 0};
+  };
+  return a.layout == b.layout && grid(a) == grid(b) &&
+         (a.camera.mode == CameraMode::top) == (b.camera.mode == CameraMode::top);
 }
 
 // The settings as the moment's details go with them.
@@ -43,7 +47,8 @@ Group group_of(const Moment& moment) {
 std::vector<Eigen::Vector3f> offsets_of(const Moment& moment, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
   for (std::size_t i = 0; i < moment.robots->size(); ++i)
-    bounds.push_back(i < moment.robots->shapes.size() ? moment.robots->shapes[i]->box : rest_bounds(*moment.robots->robots[i].robot));
+    bounds.push_back(i < moment.robots->shapes.size() ? moment.robots->shapes[i]->box
+                                                      : rest_bounds(*moment.robots->robots[i].robot));
   const bool land = std::holds_alternative<Land>(moment.configuration.environment);
   LayoutOptions options{.layout = settings.layout,
                         .grid = settings.grid,
@@ -51,7 +56,8 @@ std::vector<Eigen::Vector3f> offsets_of(const Moment& moment, const ViewSettings
                         .view = direction_of(settings.camera, land),
                         .on_ground = land || settings.camera.mode == CameraMode::top};
   // A grid that has become too small gives way.
-  if (options.grid && static_cast<std::size_t>(options.grid->columns) * static_cast<std::size_t>(options.grid->rows) < bounds.size())
+  if (options.grid &&
+      static_cast<std::size_t>(options.grid->columns) * static_cast<std::size_t>(options.grid->rows) < bounds.size())
     options.grid.reset();
   return bounds.empty() ? std::vector<Eigen::Vector3f>{} : grid_layout(bounds, options);
 }

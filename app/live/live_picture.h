@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest moment as a scene to draw: where the robots stand, what they look like.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time, selection, hands and measures of the window's scene.
 #include "app/live/live_scene.h"
 
@@ -18,8 +19,8 @@ namespace {
 
 constexpr double slowest = 1e-3, fastest = 100;
 
-constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0,
-                            unlimited_speed};
+constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02,  0.05,           0.1, 0.2, 0.5, 1.0, 2.0,
+                            5.0,   10.0,  20.0,  50.0, 100.0, unlimited_speed};
 
 // So stiff that the robot follows the hand, and not so stiff that the mass is torn out or the step too long for it.
 float suitable_stiffness(const LiveRobot& robot, const Configuration& configuration) {
@@ -59,7 +60,8 @@ void LiveScene::frame(float aspect) {
     std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
   }
   if (parts.pull && !parts.document.find(parts.pull->robot)) end_pull();
-  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()}, parts.hidden, wall_now());
+  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()},
+                       parts.hidden, wall_now());
 }
 
 const Moment& LiveScene::moment() const { return *parts_->moment; }
@@ -150,7 +152,9 @@ void LiveScene::select_all() {
     if (!before.contains(robot.body.id)) parts_->selected.push_back(robot.body.id);
 }
 void LiveScene::clear_selection() { parts_->selected.clear(); }
-bool LiveScene::is_selected(RobotId robot) const { return std::ranges::find(parts_->selected, robot) != parts_->selected.end(); }
+bool LiveScene::is_selected(RobotId robot) const {
+  return std::ranges::find(parts_->selected, robot) != parts_->selected.end();
+}
 
 std::vector<RobotId> LiveScene::selection() const {
   std::vector<RobotId> ordered;
@@ -187,7 +191,8 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
   const Shown& shown = parts_->view.shown;
   const Moment& moment = *parts_->moment;
   const auto hidden = std::make_unique<bool[]>(moment.robots->size());
-  for (std::size_t i = 0; i < moment.robots->size(); ++i) hidden[i] = parts_->hidden.contains(moment.robots->robots[i].id);
+  for (std::size_t i = 0; i < moment.robots->size(); ++i)
+    hidden[i] = parts_->hidden.contains(moment.robots->robots[i].id);
   return mercury::pick(moment, parts_->picture.offsets(), ray,
                        {.skin = shown.skin,
                         .springs = shown.springs,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene of the interactive window: everything it does that is neither window nor OpenGL.
 #pragma once
 
@@ -14,8 +15,8 @@
 #include "app/live/explosions.h"
 #include "app/live/group_film.h"
 #include "app/live/live_picture.h"
-#include "app/live/picking.h"
 #include "app/live/physics.h"
+#include "app/live/picking.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
 #include "robots/file.h"
@@ -41,11 +42,11 @@ struct RobotEntry {
   RobotId id = 0;
   std::string name;
   std::size_t masses = 0, springs = 0, faces = 0;
-  std::string file;            // it was read from or saved to; empty = none
-  bool unsaved = false;        // differs from that file
+  std::string file;                                      // it was read from or saved to; empty = none
+  bool unsaved = false;                                  // differs from that file
   bool selected = false, hidden = false, tuned = false;  // tuned: has materials of its own now
   bool exploded = false;
-  double exploded_at = 0;      // [s]
+  double exploded_at = 0;  // [s]
   std::uint32_t first_bad_spring = no_spring;
 };
 
@@ -60,9 +61,9 @@ class LiveScene {
   // Once a frame, first of all: takes the newest moment and what was made in the background, and brings picture() up to
   // date. `aspect` of the picture; counts when robots are laid out anew.
   void frame(float aspect = 16.0f / 9);
-  const Moment& moment() const;         // newest, as of the last frame(); stays until the next one
+  const Moment& moment() const;  // newest, as of the last frame(); stays until the next one
   std::shared_ptr<const Moment> hold_moment() const;
-  LivePicture& picture();               // scene, bounds, offsets, bodies' revision
+  LivePicture& picture();  // scene, bounds, offsets, bodies' revision
   std::vector<Message> take_messages();
   std::string device_name() const;
 
@@ -70,18 +71,19 @@ class LiveScene {
   void play();
   void pause();
   void toggle();
-  bool playing() const;                 // as asked for; moment().playing tells what physics does
-  void step(std::int64_t count = 1);    // pauses first
+  bool playing() const;               // as asked for; moment().playing tells what physics does
+  void step(std::int64_t count = 1);  // pauses first
   void reset();
-  void set_speed(double speed);         // clamped to 1/1000 .. 100, or unlimited_speed
+  void set_speed(double speed);  // clamped to 1/1000 .. 100, or unlimited_speed
   double speed() const;
-  void change_speed(int notches);       // + faster: through 1, 2, 5 times powers of ten
+  void change_speed(int notches);  // + faster: through 1, 2, 5 times powers of ten
 
   // Robots.
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
-  void add(std::vector<Robot> robots, bool unsaved = true);     // `unsaved`: they are kept nowhere else
-  void open(const std::vector<std::filesystem::path>& paths);   // files and folders, recordings for their robots, or one repro; in the background
+  void add(std::vector<Robot> robots, bool unsaved = true);  // `unsaved`: they are kept nowhere else
+  void open(const std::vector<std::filesystem::path>&
+                paths);  // files and folders, recordings for their robots, or one repro; in the background
   void generate(const Generation& generation, bool replace = false);  // in the background; replace = instead of all
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);
@@ -90,10 +92,10 @@ class LiveScene {
   void clear();
   void rename(RobotId robot, const std::string& name);
   bool can_mutate(RobotId robot) const;
-  std::vector<Work> work() const;       // what goes on in the background: for progress bars
+  std::vector<Work> work() const;  // what goes on in the background: for progress bars
   void cancel_work(std::uint64_t work);
-  void wait_for_work();                 // until nothing goes on in the background, and it is in the scene
-  void wait_until_done();               // the same, and physics has done all it was asked for, and frame() was called
+  void wait_for_work();    // until nothing goes on in the background, and it is in the scene
+  void wait_until_done();  // the same, and physics has done all it was asked for, and frame() was called
 
   // Selection. The current one is the last that was selected.
   void select(RobotId robot, bool alone = true);
@@ -101,12 +103,12 @@ class LiveScene {
   void select_all();
   void clear_selection();
   bool is_selected(RobotId robot) const;
-  std::vector<RobotId> selection() const;     // in the order of the list
+  std::vector<RobotId> selection() const;  // in the order of the list
   std::optional<RobotId> current() const;
   void set_hidden(RobotId robot, bool hidden);
 
-  // Edits that can be taken back. Changes of one kind that follow each other, as a slider makes them, are one edit until
-  // end_edit().
+  // Edits that can be taken back. Changes of one kind that follow each other, as a slider makes them, are one edit
+  // until end_edit().
   bool can_undo() const;
   bool can_redo() const;
   std::string undo_name() const;  // "remove 2 robots"; empty = nothing
@@ -123,14 +125,14 @@ class LiveScene {
   bool set_material(const std::vector<RobotId>& robots, MaterialId id, const Material& material);
   // For all materials but air: stiffness, amplitude, frequency multiplied, phase added to those of the robot's file.
   bool scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale);
-  void reset_materials(const std::vector<RobotId>& robots);    // to those of the robot's file
+  void reset_materials(const std::vector<RobotId>& robots);  // to those of the robot's file
   const ViewSettings& view() const;
-  void set_view(const ViewSettings& settings);                 // what the environment has not is left out while it lasts
+  void set_view(const ViewSettings& settings);  // what the environment has not is left out while it lasts
 
   // Hands. Rays and places in the picture.
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitFigures describe(const Hit& hit) const;
-  void begin_pull(const Hit& hit, float stiffness = 0);        // 0 = what suits the robot
+  void begin_pull(const Hit& hit, float stiffness = 0);  // 0 = what suits the robot
   void move_pull(const Eigen::Vector3f& target);
   void set_pull_stiffness(float stiffness);
   void end_pull();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edits of the window's scene: robots, parameters, materials, and taking them back.
 #include <fmt/format.h>
 
@@ -125,14 +126,15 @@ bool LiveScene::set_material(const std::vector<RobotId>& robots, MaterialId id, 
     parts_->say(Severity::warning, error.what());
     return false;
   }
-  return parts_->change_materials(robots, "change a material", fmt::format("material {}", id), [&](DocumentRobot& robot) {
-    const auto now = materials_of(robot.body);
-    if (id == air || id >= now.size() || now[id] == material) return false;
-    auto table = std::make_shared<std::vector<Material>>(now.begin(), now.end());
-    (*table)[id] = material;
-    robot.body.materials = std::move(table);
-    return true;
-  });
+  return parts_->change_materials(robots, "change a material", fmt::format("material {}", id),
+                                  [&](DocumentRobot& robot) {
+                                    const auto now = materials_of(robot.body);
+                                    if (id == air || id >= now.size() || now[id] == material) return false;
+                                    auto table = std::make_shared<std::vector<Material>>(now.begin(), now.end());
+                                    (*table)[id] = material;
+                                    robot.body.materials = std::move(table);
+                                    return true;
+                                  });
 }
 
 bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the window's scene writes: robots, commands, tables, what is needed to see an explosion again.
 #include <fmt/format.h>
 
@@ -108,14 +109,15 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
 
 std::string LiveScene::ranking_csv() const {
   std::string text =
-      "name,distance [m],mean speed [m/s],speed [m/s],kinetic energy [J],elastic energy [J],largest strain,exploded at [s]\n";
+      "name,distance [m],mean speed [m/s],speed [m/s],kinetic energy [J],elastic energy [J],largest strain,exploded at "
+      "[s]\n";
   std::vector<RankingRow> rows = ranking();
   std::ranges::stable_sort(rows, std::greater<>(), &RankingRow::distance);
   for (const RankingRow& row : rows) {
     const DocumentRobot* robot = parts_->document.find(row.robot);
     if (!robot) continue;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(robot->body.name), row.distance, row.mean_speed, row.speed,
-                        row.kinetic_energy, row.elastic_energy, row.largest_strain,
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(robot->body.name), row.distance, row.mean_speed,
+                        row.speed, row.kinetic_energy, row.elastic_energy, row.largest_strain,
                         row.exploded ? number(row.exploded_at) : "");
   }
   return text;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What LiveScene holds.
 #pragma once
 
@@ -48,7 +49,9 @@ struct LiveScene::Parts {
     physics.set_scene(std::move(bodies), document.configuration);
   }
   // Names what is to change, before it does.
-  void edit(std::string name, std::string key = {}) { history.before_change(document, std::move(name), std::move(key)); }
+  void edit(std::string name, std::string key = {}) {
+    history.before_change(document, std::move(name), std::move(key));
+  }
   void say(Severity severity, std::string text) { messages.add(severity, std::move(text)); }
   DocumentRobot* find(RobotId id) {
     for (DocumentRobot& robot : document.robots)
@@ -71,9 +74,7 @@ struct LiveScene::Parts {
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void put_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
-  void send_pull() {
-    physics.set_pulls(pull ? std::vector<LivePull>{*pull} : std::vector<LivePull>{});
-  }
+  void send_pull() { physics.set_pulls(pull ? std::vector<LivePull>{*pull} : std::vector<LivePull>{}); }
 };
 
 // "1 robot", "2 robots".

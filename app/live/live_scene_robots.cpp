@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots that come into the window's scene: read, made at random, children of others.
 #include <fmt/format.h>
 
@@ -43,10 +44,13 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
       const fs::path extension = entry->path().extension();
       std::error_code ignored;
-      if ((extension == ".json" || extension == ".cbor") && !entry->is_directory(ignored)) inside.push_back(entry->path());
+      if ((extension == ".json" || extension == ".cbor") && !entry->is_directory(ignored))
+        inside.push_back(entry->path());
     }
-    if (error) messages.add(Severity::error, path.string() + ": " + error.message());
-    else if (inside.empty()) messages.add(Severity::warning, path.string() + ": the folder holds no robot, neither *.json nor *.cbor");
+    if (error)
+      messages.add(Severity::error, path.string() + ": " + error.message());
+    else if (inside.empty())
+      messages.add(Severity::warning, path.string() + ": the folder holds no robot, neither *.json nor *.cbor");
     std::ranges::sort(inside);
     files.insert(files.end(), inside.begin(), inside.end());
   }
@@ -82,7 +86,8 @@ void tell_failures(const std::vector<std::string>& failures, Messages& messages)
   constexpr std::size_t most = 4;
   const std::size_t told = failures.size() > most ? most - 1 : failures.size();
   for (std::size_t i = 0; i < told; ++i) messages.add(Severity::error, failures[i]);
-  if (told < failures.size()) messages.add(Severity::error, fmt::format("and {} more files cannot be used", failures.size() - told));
+  if (told < failures.size())
+    messages.add(Severity::error, fmt::format("and {} more files cannot be used", failures.size() - told));
 }
 
 Opened read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
@@ -217,7 +222,8 @@ void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const f
   const RobotId id = append(repro->robot, {});
   saved[id] = {"", document.robots.back().body};
   physics.set_repro(document.robots.back().body, document.configuration, repro);
-  say(Severity::note, fmt::format("{} explodes at {:.4g} s; here it is {:.4g} s. What was changed on the way happens again until you change something.",
+  say(Severity::note, fmt::format("{} explodes at {:.4g} s; here it is {:.4g} s. What was changed on the way happens "
+                                  "again until you change something.",
                                   document.robots.back().body.name, repro->exploded_at, time_of(repro->clock)));
   if (repro->device_name != physics.device_name())
     say(Severity::warning, fmt::format("it was seen on {}; here it may go another way", repro->device_name));
@@ -227,19 +233,19 @@ void LiveScene::generate(const Generation& generation, bool replace) {
   if (generation.count == 0) return;
   Parts& parts = *parts_;
   const auto order = std::make_shared<const Generation>(generation);
-  parts.background.begin(
-      "making " + robots_counted(generation.count), static_cast<std::int64_t>(generation.count),
-      [&parts, order, replace](WorkControl& control) -> Background::Finish {
-        auto grown = std::make_shared<std::vector<GrownRobot>>(grow_robots(*order, control, parts.messages));
-        return [&parts, order, replace, grown] {
-          if (grown->empty()) return;
-          parts.edit("make " + robots_counted(grown->size()));
-          if (replace) parts.document.robots.clear();
-          for (GrownRobot& robot : *grown)
-            parts.append(std::move(robot.robot), {.generation = order, .index = robot.index});
-          parts.told();
-        };
-      });
+  parts.background.begin("making " + robots_counted(generation.count), static_cast<std::int64_t>(generation.count),
+                         [&parts, order, replace](WorkControl& control) -> Background::Finish {
+                           auto grown =
+                               std::make_shared<std::vector<GrownRobot>>(grow_robots(*order, control, parts.messages));
+                           return [&parts, order, replace, grown] {
+                             if (grown->empty()) return;
+                             parts.edit("make " + robots_counted(grown->size()));
+                             if (replace) parts.document.robots.clear();
+                             for (GrownRobot& robot : *grown)
+                               parts.append(std::move(robot.robot), {.generation = order, .index = robot.index});
+                             parts.told();
+                           };
+                         });
 }
 
 bool LiveScene::can_mutate(RobotId robot) const {
@@ -256,33 +262,34 @@ void LiveScene::mutate(const std::vector<RobotId>& robots, const Mutation& mutat
     if (const DocumentRobot* robot = parts.document.find(id)) parents->push_back(*robot);
   if (parents->empty()) return;
   const auto count = static_cast<std::int64_t>(parents->size());
-  parts.background.begin(
-      "mutating " + robots_counted(parents->size()), count,
-      [&parts, parents, mutation, replace](WorkControl& control) -> Background::Finish {
-        auto children = std::make_shared<std::vector<std::pair<RobotId, Robot>>>();
-        for (std::size_t i = 0; i < parents->size() && !control.cancelled(); ++i) {
-          try {
-            const std::uint64_t seed = seed_of(mutation.seed, i);
-            children->emplace_back((*parents)[i].body.id, child_of(whole_robot((*parents)[i]), mutation, seed));
-          } catch (const InputError& error) {
-            parts.messages.add(Severity::warning, error.what());
-          }
-          control.progress(static_cast<std::int64_t>(i + 1));
-        }
-        return [&parts, children, replace] {
-          if (children->empty()) return;
-          parts.edit("mutate " + robots_counted(children->size()));
-          for (auto& [parent, child] : *children) parts.put_child(parent, std::move(child), replace);
-          parts.told();
-        };
-      });
+  parts.background.begin("mutating " + robots_counted(parents->size()), count,
+                         [&parts, parents, mutation, replace](WorkControl& control) -> Background::Finish {
+                           auto children = std::make_shared<std::vector<std::pair<RobotId, Robot>>>();
+                           for (std::size_t i = 0; i < parents->size() && !control.cancelled(); ++i) {
+                             try {
+                               const std::uint64_t seed = seed_of(mutation.seed, i);
+                               children->emplace_back((*parents)[i].body.id,
+                                                      child_of(whole_robot((*parents)[i]), mutation, seed));
+                             } catch (const InputError& error) {
+                               parts.messages.add(Severity::warning, error.what());
+                             }
+                             control.progress(static_cast<std::int64_t>(i + 1));
+                           }
+                           return [&parts, children, replace] {
+                             if (children->empty()) return;
+                             parts.edit("mutate " + robots_counted(children->size()));
+                             for (auto& [parent, child] : *children) parts.put_child(parent, std::move(child), replace);
+                             parts.told();
+                           };
+                         });
 }
 
 void LiveScene::Parts::put_child(RobotId parent, Robot child, bool replace) {
   child.name = free_name(child.name);
   append(std::move(child), {});
   if (!replace) return;
-  const auto place = std::ranges::find_if(document.robots, [&](const DocumentRobot& robot) { return robot.body.id == parent; });
+  const auto place =
+      std::ranges::find_if(document.robots, [&](const DocumentRobot& robot) { return robot.body.id == parent; });
   if (place == document.robots.end()) return;
   *place = std::move(document.robots.back());
   document.robots.pop_back();

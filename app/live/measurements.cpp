@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/measurements.h"
 
 #include <algorithm>
@@ -38,11 +39,16 @@ std::span<const QuantityName> quantities() { return names; }
 
 float Sample::of(Quantity quantity) const {
   switch (quantity) {
-    case Quantity::speed: return speed;
-    case Quantity::distance: return distance;
-    case Quantity::kinetic_energy: return kinetic_energy;
-    case Quantity::elastic_energy: return elastic_energy;
-    case Quantity::strain: break;
+    case Quantity::speed:
+      return speed;
+    case Quantity::distance:
+      return distance;
+    case Quantity::kinetic_energy:
+      return kinetic_energy;
+    case Quantity::elastic_energy:
+      return elastic_energy;
+    case Quantity::strain:
+      break;
   }
   return strain;
 }

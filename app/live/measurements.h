@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is measured of each robot over time, in memory that does not grow with the run.
 #pragma once
 
@@ -32,20 +33,20 @@ struct Sample {
 
 // One robot's samples; those of before it came are missing.
 struct Series {
-  std::vector<double> times;     // [s], ascending
-  std::vector<Sample> samples;   // as many
+  std::vector<double> times;    // [s], ascending
+  std::vector<Sample> samples;  // as many
 };
 
 // One robot in the ranking.
 struct RankingRow {
   RobotId robot = 0;
-  double distance = 0;        // of the centre of mass from where it started [m]
-  double mean_speed = 0;      // distance over the time since it started [m/s]
-  double speed = 0;           // now [m/s]
+  double distance = 0;                            // of the centre of mass from where it started [m]
+  double mean_speed = 0;                          // distance over the time since it started [m/s]
+  double speed = 0;                               // now [m/s]
   double kinetic_energy = 0, elastic_energy = 0;  // now [J]
-  double largest_strain = 0;  // so far [1]
+  double largest_strain = 0;                      // so far [1]
   bool exploded = false;
-  double exploded_at = 0;     // [s]
+  double exploded_at = 0;  // [s]
 };
 
 // Takes a sample of all robots every so many steps. Where the buffers are full, every second sample is dropped and the
@@ -56,7 +57,8 @@ class Measurements {
   explicit Measurements(std::size_t capacity = 1024);
 
   // Forgets everything: time begins anew.
-  void restart(const LiveRobots& robots, double time, std::int64_t step, double dt, std::span<const Telemetry> telemetry);
+  void restart(const LiveRobots& robots, double time, std::int64_t step, double dt,
+               std::span<const Telemetry> telemetry);
   // Robots came or went; the series of those that stay go on.
   void set_robots(const LiveRobots& robots, double time, std::span<const Telemetry> telemetry);
   // The step at which the next sample is due.
@@ -74,8 +76,8 @@ class Measurements {
 
  private:
   struct Track {
-    Vec3 start;              // centre of mass [m]
-    double start_time = 0;   // [s]
+    Vec3 start;             // centre of mass [m]
+    double start_time = 0;  // [s]
     double largest_strain = 0;
     std::size_t missing = 0;  // samples of before it came
     std::vector<Sample> samples;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines for the user, from whatever part of the window.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the physics thread tells of a moment; never changes once it is given away.
 #pragma once
 
@@ -25,7 +26,7 @@ inline constexpr double unlimited_speed = std::numeric_limits<double>::infinity(
 // A robot as the window wants it simulated.
 struct LiveRobot {
   RobotId id = 0;
-  std::string name;                    // in place of the robot's own
+  std::string name;  // in place of the robot's own
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // in place of its own table, as long as that; or nothing
 };
@@ -34,11 +35,11 @@ std::span<const Material> materials_of(const LiveRobot& robot);
 
 // The robots of a moment, in the order of the window's list.
 struct LiveRobots {
-  std::uint64_t revision = 0;             // grows whenever robots come, go or are replaced
+  std::uint64_t revision = 0;  // grows whenever robots come, go or are replaced
   std::vector<LiveRobot> robots;
-  std::vector<std::size_t> mass_offsets;  // size + 1
+  std::vector<std::size_t> mass_offsets;            // size + 1
   std::unordered_map<RobotId, std::size_t> places;  // of all robots, or empty
-  std::size_t springs = 0;                // of all robots
+  std::size_t springs = 0;                          // of all robots
   // For pictures, made by the physics thread; the same as long as the revision is.
   std::vector<std::shared_ptr<const RobotShape>> shapes;
   std::shared_ptr<const render::BodyData> bodies;
@@ -60,12 +61,12 @@ struct LivePull {
 struct Moment {
   std::shared_ptr<const LiveRobots> robots;
   Configuration configuration;
-  double time = 0;                // [s]
+  double time = 0;  // [s]
   std::int64_t steps = 0;
-  std::uint64_t resets = 0;       // how often the robots were put back to time 0
-  std::uint64_t stops = 0;        // how often physics stopped by itself: at an explosion or a failure
-  std::vector<Vec3> positions;    // of all masses, robot i's from robots->mass_offsets[i]; its own frame
-  std::vector<Vec3> velocities;   // as many; empty while robots play and nobody asks for them
+  std::uint64_t resets = 0;          // how often the robots were put back to time 0
+  std::uint64_t stops = 0;           // how often physics stopped by itself: at an explosion or a failure
+  std::vector<Vec3> positions;       // of all masses, robot i's from robots->mass_offsets[i]; its own frame
+  std::vector<Vec3> velocities;      // as many; empty while robots play and nobody asks for them
   std::vector<Telemetry> telemetry;  // one a robot
   SceneDetails details;
   ColorBy color = ColorBy::material;  // what details.values are values of

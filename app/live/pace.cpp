@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/pace.h"
 
 #include <algorithm>
@@ -7,9 +8,7 @@
 
 namespace mercury {
 
-double wall_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void Pace::start(double wall, double speed, double dt) {
   start_ = wall;

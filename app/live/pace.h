@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many steps are due: simulated time against the clock on the wall.
 #pragma once
 
@@ -26,7 +27,7 @@ class Pace {
 
  private:
   static constexpr double most_late = 0.1;  // [s]
-  double start_ = 0, rate_ = 1;  // wall time [s]; steps a second
+  double start_ = 0, rate_ = 1;             // wall time [s]; steps a second
   std::int64_t done_ = 0;
 };
 

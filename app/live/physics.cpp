@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/physics.h"
 
 #include <algorithm>
@@ -36,7 +37,8 @@ void order(auto& parts, Change change) {
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
   order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::move(robots), configuration, nullptr); });
 }
-void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro) {
+void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
+                        std::shared_ptr<const Repro> repro) {
   order(*parts_, [&](Orders& orders) {
     orders.scene.emplace(std::vector{robot}, configuration, std::move(repro));
     orders.steps = 0;

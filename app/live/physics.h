@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulation of the window, on a thread of its own.
 #pragma once
 
@@ -36,19 +37,20 @@ class Physics {
   // where it left, unless time began anew since. If they cannot be simulated, as for want of memory, that is told, and
   // none is until the next call.
   void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
-  // One robot, from the start of a repro, whose changes happen again as its steps are made; reset() goes back there, and
-  // steps asked for before are forgotten. The next set_scene() ends that: what the repro would still change, it does
-  // not. `configuration` is the repro's.
+  // One robot, from the start of a repro, whose changes happen again as its steps are made; reset() goes back there,
+  // and steps asked for before are forgotten. The next set_scene() ends that: what the repro would still change, it
+  // does not. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
   void set_view(const ViewSettings& settings);  // what moments hold details of
   void set_pulls(std::vector<LivePull> pulls);  // those on masses that are not there are left out
   void play();
   void pause();
-  void set_speed(double speed);  // above 0; unlimited_speed = as fast as it goes
-  void step(std::int64_t count); // pauses, then so many steps; several calls add up
-  void reset();                  // time 0, all at rest; steps asked for before are forgotten
+  void set_speed(double speed);   // above 0; unlimited_speed = as fast as it goes
+  void step(std::int64_t count);  // pauses, then so many steps; several calls add up
+  void reset();                   // time 0, all at rest; steps asked for before are forgotten
   void pause_on_explosion(bool pause);
-  // Whether moments have velocities while robots play, too; else only at rest, and those that wait_until_done() waits for.
+  // Whether moments have velocities while robots play, too; else only at rest, and those that wait_until_done() waits
+  // for.
   void watch_velocities(bool watch);
 
   // The newest moment told; asks for a newer one. Never nothing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Physics holds: what is asked of its thread, and what that thread works on.
 #pragma once
 
@@ -52,7 +53,7 @@ struct Physics::Parts {
   std::shared_ptr<const Moment> moment;
   std::vector<Explosion> explosions;
   std::map<RobotId, std::function<Repro()>> repros;  // of robots that exploded
-  bool looked_at = true;  // newest() was called since the last moment
+  bool looked_at = true;                             // newest() was called since the last moment
   std::uint64_t tickets = 0, tickets_done = 0;
 
   Messages& messages;
@@ -78,13 +79,13 @@ struct Physics::Parts {
   SpeedGauge gauge;
   bool playing = false, stop_at_explosion = false;
   double speed = 1, step_seconds = 0;
-  double told_at = 0, telling_seconds = 0;               // end and length of the last tell() [s]
-  double stepping_seconds = 0, measuring_seconds = 0;    // since measuring was last weighed [s]
-  std::int64_t steps_left = 0;  // asked for one by one
-  std::uint64_t ticket = 0;     // the last one taken
+  double told_at = 0, telling_seconds = 0;             // end and length of the last tell() [s]
+  double stepping_seconds = 0, measuring_seconds = 0;  // since measuring was last weighed [s]
+  std::int64_t steps_left = 0;                         // asked for one by one
+  std::uint64_t ticket = 0;                            // the last one taken
   std::uint64_t resets = 0, stops = 0;
-  bool dirty = true;            // something changed since the last moment told
-  std::thread thread;           // last: begins when all else is there
+  bool dirty = true;   // something changed since the last moment told
+  std::thread thread;  // last: begins when all else is there
 
   void run();
   bool take_orders(Orders& taken);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics thread makes happen again what led to an explosion.
 #include <limits>
 
@@ -8,7 +9,8 @@ namespace {
 
 std::vector<LivePull> live_pulls(RobotId robot, const std::vector<Pull>& pulls) {
   std::vector<LivePull> live;
-  for (const Pull& pull : pulls) live.push_back({.robot = robot, .mass = pull.mass, .target = pull.target, .stiffness = pull.stiffness});
+  for (const Pull& pull : pulls)
+    live.push_back({.robot = robot, .mass = pull.mass, .target = pull.target, .stiffness = pull.stiffness});
   return live;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics thread's steps: so many as are due, in slices, with a look at the robots now and then.
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,8 @@ void Physics::Parts::advance() {
     return step_seconds > 0 ? static_cast<std::int64_t>(std::clamp(seconds / step_seconds, 1.0, 1e6)) : 1;
   };
   // Steps of large batches are quicker several at a time, whose states then stay in the cache.
-  const std::int64_t affordable = std::max(steps_in(slice_seconds), std::min(steps_in(long_slice_seconds), std::int64_t{16}));
+  const std::int64_t affordable =
+      std::max(steps_in(slice_seconds), std::min(steps_in(long_slice_seconds), std::int64_t{16}));
   if (steps_left > 0) {
     const std::int64_t count = std::min(affordable, steps_left);
     take_steps(count);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics thread: what is asked for is taken, carried out, and what came of it told.
 #include <algorithm>
 #include <cmath>
@@ -125,7 +126,8 @@ bool Physics::Parts::set_scene(const Orders::Scene& scene) {
   return true;
 }
 
-// A simulation that could not take its robots, as for want of memory, is left half changed: an empty one takes its place.
+// A simulation that could not take its robots, as for want of memory, is left half changed: an empty one takes its
+// place.
 void Physics::Parts::start_over() {
   details.reset();
   simulation = Simulation(simulation.configuration());
@@ -184,8 +186,9 @@ void Physics::Parts::tell() {
   next->due_at = playing && std::isfinite(speed) ? pace.done_at() : 0;
   next->achieved_speed = playing ? gauge.speed() : 0;
   next->step_seconds = step_seconds;
-  next->springs_per_second =
-      step_seconds > 0 && (playing || steps_left > 0) ? static_cast<double>(population.robots()->springs) / step_seconds : 0;
+  next->springs_per_second = step_seconds > 0 && (playing || steps_left > 0)
+                                 ? static_cast<double>(population.robots()->springs) / step_seconds
+                                 : 0;
   told_at = wall_now();
   next->telling_seconds = telling_seconds = told_at - start;
   const std::lock_guard lock(mutex);

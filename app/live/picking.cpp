@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/picking.h"
 
 #include <Eigen/Geometry>
@@ -191,7 +192,8 @@ HitFigures describe(const Moment& moment, const Hit& hit) {
   if (hit.mass >= robot.masses.size()) return figures;
   const auto positions = moment.positions_of(*index);
   figures.mass.position = positions[hit.mass];
-  if (const auto velocities = moment.velocities_of(*index); !velocities.empty()) figures.mass.speed = length(velocities[hit.mass]);
+  if (const auto velocities = moment.velocities_of(*index); !velocities.empty())
+    figures.mass.speed = length(velocities[hit.mass]);
   for (const Spring& spring : robot.springs) figures.mass.springs += spring.a == hit.mass || spring.b == hit.mass;
   if (hit.spring && *hit.spring < robot.springs.size()) figures.spring = spring_figures(moment, *index, *hit.spring);
   return figures;
@@ -211,8 +213,11 @@ HitFigures::OfSpring spring_figures(const Moment& moment, std::size_t index, std
   of.length = length(positions[spring.b] - positions[spring.a]);
   of.strain = of.length / spring.rest_length - 1;
   of.force = material.stiffness * stiffness_scale_of(moment.configuration.environment) * (of.length - rest_now);
-  if (!robot.material_names.empty()) of.material_name = robot.material_names[spring.material];
-  else of.material_name = robot.materials.empty() ? default_material_name(spring.material) : "material " + std::to_string(spring.material);
+  if (!robot.material_names.empty())
+    of.material_name = robot.material_names[spring.material];
+  else
+    of.material_name = robot.materials.empty() ? default_material_name(spring.material)
+                                               : "material " + std::to_string(spring.material);
   return of;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a line of sight meets, and what can be told of it.
 #pragma once
 
@@ -25,9 +26,9 @@ struct Hit {
 
 struct PickOptions {
   bool skin = true, springs = false, masses = false;  // what is to be met, as what is shown
-  float radius = 0;                       // how near the ray must pass a spring or mass [m]; 0 = chosen from the lengths
-  std::optional<render::CutPlane> cut;    // what it cuts away is not met
-  std::span<const bool> hidden;           // robots left out; empty = none
+  float radius = 0;                     // how near the ray must pass a spring or mass [m]; 0 = chosen from the lengths
+  std::optional<render::CutPlane> cut;  // what it cuts away is not met
+  std::span<const bool> hidden;         // robots left out; empty = none
 };
 
 // The nearest thing a ray meets. `offsets`: one a robot, added to its coordinates in the picture. Robots without faces
@@ -37,9 +38,9 @@ std::optional<Hit> pick(const Moment& moment, std::span<const Eigen::Vector3f> o
 
 struct HitFigures {
   struct OfMass {
-    Vec3 position;       // [m]
+    Vec3 position;               // [m]
     std::optional<float> speed;  // [m/s]; nothing where the moment has no velocities
-    std::size_t springs = 0;  // that end at it
+    std::size_t springs = 0;     // that end at it
   };
   struct OfSpring {
     MaterialId material = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/population.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -29,7 +30,8 @@ Shapes shapes_of(const std::vector<LiveRobot>& robots, const LiveRobots& before)
 }
 
 std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, const LiveRobots& before, bool changed) {
-  auto list = std::make_shared<LiveRobots>(LiveRobots{.revision = before.revision + (changed ? 1 : 0), .robots = robots, .mass_offsets = {0}});
+  auto list = std::make_shared<LiveRobots>(
+      LiveRobots{.revision = before.revision + (changed ? 1 : 0), .robots = robots, .mass_offsets = {0}});
   for (const LiveRobot& robot : robots) {
     list->places.emplace(robot.id, list->places.size());
     list->mass_offsets.push_back(list->mass_offsets.back() + robot.robot->masses.size());
@@ -88,7 +90,8 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
   std::vector<std::size_t> staying, places(wanted.size()), fresh;
   std::vector<Robot> robots;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto old = std::ranges::find_if(robots_->robots, [&](const LiveRobot& robot) { return same_body(robot, wanted[i]); });
+    const auto old =
+        std::ranges::find_if(robots_->robots, [&](const LiveRobot& robot) { return same_body(robot, wanted[i]); });
     if (old != robots_->robots.end()) {
       places[i] = staying.size();
       staying.push_back(static_cast<std::size_t>(old - robots_->robots.begin()));
@@ -104,8 +107,7 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
     places[fresh[k]] = first + k;
     const auto before = departed_.find(wanted[fresh[k]].id);
     if (before == departed_.end()) continue;
-    if (before->second.robot == wanted[fresh[k]].robot)
-      simulation_.set_state(first + k, before->second.state);
+    if (before->second.robot == wanted[fresh[k]].robot) simulation_.set_state(first + k, before->second.state);
     forget(wanted[fresh[k]].id);
   }
   if (!std::ranges::is_sorted(places)) simulation_.keep(places);

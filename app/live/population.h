@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robots of the window inside a simulation.
 #pragma once
 

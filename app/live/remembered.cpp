@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/remembered.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -63,7 +64,8 @@ class RememberedOptions {
 }  // namespace
 
 fs::path remembered_path() {
-  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder == '/') return fs::path(folder) / "mercury/scene.toml";
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder == '/')
+    return fs::path(folder) / "mercury/scene.toml";
   if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".config/mercury/scene.toml";
   return {};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the window remembers from one day to the next.
 #pragma once
 
@@ -12,9 +13,9 @@ namespace mercury {
 
 struct Remembered {
   ViewSettings view;
-  Generation generation;            // of the panel that makes random robots
+  Generation generation;  // of the panel that makes random robots
   bool pause_on_explosion = false;
-  std::string folder;               // the last one opened
+  std::string folder;  // the last one opened
 };
 
 // $XDG_CONFIG_HOME/mercury/scene.toml, else that in ~/.config; empty where neither is known.

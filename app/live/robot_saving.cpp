@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/robot_saving.h"
 
 #include <exception>
@@ -43,7 +44,9 @@ std::string file_name_of(std::string_view name) {
   std::string text;
   for (const char letter : name) {
     const auto code = static_cast<unsigned char>(letter);
-    text += code < 0x20 || code == 0x7f || std::string_view("/\\:*?\"<>|").find(letter) != std::string_view::npos ? '_' : letter;
+    text += code < 0x20 || code == 0x7f || std::string_view("/\\:*?\"<>|").find(letter) != std::string_view::npos
+                ? '_'
+                : letter;
   }
   // A leading dot would hide the file, a leading dash look like an option.
   while (!text.empty() && (text.front() == '.' || text.front() == '-')) text.erase(0, 1);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of the window: nothing that exists is replaced unasked.
 #pragma once
 

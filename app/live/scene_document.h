@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene as a document: what can be edited, undone and told as a command.
 #pragma once
 
@@ -40,9 +41,9 @@ struct MaterialScale {
 
 // Where a robot came from.
 struct RobotSource {
-  std::string file;                                   // read from there; or empty
-  std::shared_ptr<const Generation> generation;       // made at random so; or nothing
-  std::uint64_t index = 0;                            // of the generation
+  std::string file;                              // read from there; or empty
+  std::shared_ptr<const Generation> generation;  // made at random so; or nothing
+  std::uint64_t index = 0;                       // of the generation
 };
 
 struct DocumentRobot {
@@ -66,8 +67,8 @@ inline Robot whole_robot(const DocumentRobot& robot) { return whole_robot(robot.
 class EditHistory {
  public:
   explicit EditHistory(std::size_t most_springs = 30'000'000) : most_springs_(most_springs) {}
-  // Before `document` changes. An edit named and keyed as the one before goes on with it, until end_edit(); an empty key
-  // never does.
+  // Before `document` changes. An edit named and keyed as the one before goes on with it, until end_edit(); an empty
+  // key never does.
   void before_change(const SceneDocument& document, std::string name, std::string key = {});
   void end_edit() { open_key_.clear(); }
   bool can_undo() const { return !past_.empty(); }

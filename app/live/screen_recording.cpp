@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/screen_recording.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t most_waiting = 8;     // frames
-constexpr double longest_stay = 10;         // of one frame [s]
+constexpr std::size_t most_waiting = 8;  // frames
+constexpr double longest_stay = 10;      // of one frame [s]
 
 std::uint8_t byte_of(float value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
 
@@ -33,7 +34,9 @@ render::Image yuv420_of(const render::Image& rgb) {
       float sum[3] = {};
       for (int k = 0; k < 4; ++k) {
         const int px = x + k % 2, py = y + k / 2;
-        const std::uint8_t* p = rgb.bytes.data() + 3 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(rgb.width) + static_cast<std::size_t>(px));
+        const std::uint8_t* p =
+            rgb.bytes.data() +
+            3 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(rgb.width) + static_cast<std::size_t>(px));
         const float r = p[0], g = p[1], b = p[2];
         luma[static_cast<std::size_t>(py) * static_cast<std::size_t>(width) + static_cast<std::size_t>(px)] =
             byte_of(16 + 219.0f / 255 * (0.2126f * r + 0.7152f * g + 0.0722f * b));
@@ -42,7 +45,8 @@ render::Image yuv420_of(const render::Image& rgb) {
         sum[2] += b / 4;
       }
       const float mean = 0.2126f * sum[0] + 0.7152f * sum[1] + 0.0722f * sum[2];
-      const std::size_t at = static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(width / 2) + static_cast<std::size_t>(x / 2);
+      const std::size_t at =
+          static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(width / 2) + static_cast<std::size_t>(x / 2);
       blue[at] = byte_of(128 + 224.0f / 255 * (sum[2] - mean) / 1.8556f);
       red[at] = byte_of(128 + 224.0f / 255 * (sum[0] - mean) / 1.5748f);
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films what is on the screen.
 #pragma once
 
@@ -12,7 +13,8 @@ namespace mercury {
 
 // Encodes on a thread of its own; none of its members waits, but for the destructor. The video keeps real time: a frame
 // stays until the next one comes. Where the encoder cannot keep up, frames are dropped, never the window held up.
-// Nothing throws; what fails is in the status. A file that exists is replaced: unused_name() (robot_saving.h) finds another.
+// Nothing throws; what fails is in the status. A file that exists is replaced: unused_name() (robot_saving.h) finds
+// another.
 class ScreenRecording {
  public:
   // `output`: .mp4, .webm, .gif, or a folder for PNG pictures. `size` of the frames; an odd last row or column is left
@@ -20,8 +22,8 @@ class ScreenRecording {
   ScreenRecording(const std::string& output, PictureSize size, double frames_per_second = 30);
   ~ScreenRecording();  // finishes, and waits for that
 
-  // Whether a frame at this time [s, from any origin, never going back] would be shown: reading it back is not worth the
-  // while otherwise.
+  // Whether a frame at this time [s, from any origin, never going back] would be shown: reading it back is not worth
+  // the while otherwise.
   bool wants(double time) const;
   // A frame in rgb, upper row first, of the size given. False if it was not taken.
   bool offer(double time, render::Image frame);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/live/slow_motion.h"
 
 #include <algorithm>
@@ -25,9 +26,12 @@ bool is_slow(const Moment& moment) {
 void SlowMotion::take(std::shared_ptr<const Moment> moment) {
   if (!moments_.empty()) {
     const Moment& last = *moments_.back();
-    const bool other = last.robots->revision != moment->robots->revision || last.resets != moment->resets || moment->steps < last.steps;
-    if (other || !is_slow(*moment)) moments_.clear();
-    else if (last.steps == moment->steps) moments_.pop_back();
+    const bool other = last.robots->revision != moment->robots->revision || last.resets != moment->resets ||
+                       moment->steps < last.steps;
+    if (other || !is_slow(*moment))
+      moments_.clear();
+    else if (last.steps == moment->steps)
+      moments_.pop_back();
   }
   moments_.push_back(std::move(moment));
   if (moments_.size() > most_moments) moments_.pop_front();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures between steps: in slow motion a step lasts many pictures, and would be seen as a jerk.
 #pragma once
 
@@ -14,7 +15,7 @@ namespace mercury {
 // shown lies on the line between the two. Where steps follow each other quickly, and at rest, it is the newest moment.
 class SlowMotion {
  public:
-  static constexpr double most_rate = 250;   // steps a second of wall time up to which pictures lie between steps
+  static constexpr double most_rate = 250;    // steps a second of wall time up to which pictures lie between steps
   static constexpr double allowance = 0.035;  // for a step to be computed, told and taken [s]
 
   void take(std::shared_ptr<const Moment> moment);

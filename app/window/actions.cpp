@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/actions.h"
 
 #define GLFW_INCLUDE_NONE
@@ -68,8 +69,8 @@ bool is_enter(const Press& press) {
 }
 
 std::optional<Command> command_of(const Press& press) {
-  const char32_t letter = press.character < 128 ? static_cast<char32_t>(std::tolower(static_cast<int>(press.character)))
-                                                : press.character;
+  const char32_t letter =
+      press.character < 128 ? static_cast<char32_t>(std::tolower(static_cast<int>(press.character))) : press.character;
   if (!press.control && !press.repeated && letter >= U'1' && letter <= U'8')
     return Command{Action::color, static_cast<int>(letter - U'0')};
   for (const Binding& binding : table) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What keys do: the one table from which they are read and explained.
 #pragma once
 
@@ -46,13 +47,13 @@ enum class Action {
 
 struct Binding {
   Action action;
-  const char* keys;     // for people: "Ctrl S"
+  const char* keys;  // for people: "Ctrl S"
   const char* meaning;
   const char* group;
-  char32_t character;   // lower case; 0 = by key
-  int key;              // GLFW_KEY_*
+  char32_t character;  // lower case; 0 = by key
+  int key;             // GLFW_KEY_*
   bool control;
-  bool repeats;         // while the key is held
+  bool repeats;  // while the key is held
 };
 
 // All of them, group by group.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/browser_panel.h"
 
 #include <fmt/format.h>
@@ -15,8 +16,8 @@ namespace mercury::window {
 namespace {
 
 std::string figures_of(const FolderEntry& entry) {
-  return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs, entry.figures.extent.x, entry.figures.extent.y,
-                     entry.figures.extent.z);
+  return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs,
+                     entry.figures.extent.x, entry.figures.extent.y, entry.figures.extent.z);
 }
 
 void tooltip(const FolderEntry& entry) {
@@ -27,10 +28,12 @@ void tooltip(const FolderEntry& entry) {
     const Inspection& f = entry.figures;
     const std::string kind = kind_of(*entry.robot), environment = environment_of(*entry.robot);
     ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-    ImGui::TextUnformatted(fmt::format("{} masses, {} springs, {} faces\n{} % muscle, {} materials\n{}{}{}click: add it to the scene",
-                                       f.masses, f.springs, f.faces, f.springs ? 100 * f.muscles / f.springs : 0, f.materials.size(),
-                                       kind.empty() ? "" : kind + " robot", environment.empty() ? "" : " for " + environment,
-                                       kind.empty() && environment.empty() ? "" : "\n").c_str());
+    ImGui::TextUnformatted(
+        fmt::format("{} masses, {} springs, {} faces\n{} % muscle, {} materials\n{}{}{}click: add it to the scene",
+                    f.masses, f.springs, f.faces, f.springs ? 100 * f.muscles / f.springs : 0, f.materials.size(),
+                    kind.empty() ? "" : kind + " robot", environment.empty() ? "" : " for " + environment,
+                    kind.empty() && environment.empty() ? "" : "\n")
+            .c_str());
     ImGui::PopStyleColor();
   } else {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
@@ -67,14 +70,15 @@ void BrowserPanel::draw_bar(Desk& desk) {
   hint("the robots that come with the program");
   ImGui::SameLine();
   if (ImGui::Button("Folder...")) {
-    desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
-                            .title = "Folder of robots",
-                            .button = "Show",
-                            .extensions = {".json", ".cbor"},
-                            .folder = folder,
-                            .name = "",
-                            .formats = {}},
-                           [&desk](const FileAnswer& answer) { desk.preferences.folder = answer.paths.front().string(); });
+    desk.dialogs.ask_files(
+        {.kind = FileQuestion::Kind::folder,
+         .title = "Folder of robots",
+         .button = "Show",
+         .extensions = {".json", ".cbor"},
+         .folder = folder,
+         .name = "",
+         .formats = {}},
+        [&desk](const FileAnswer& answer) { desk.preferences.folder = answer.paths.front().string(); });
   }
   desk.observations.item("browser.choose");
   hint("shows the robots of a folder");
@@ -107,7 +111,8 @@ void BrowserPanel::draw(Desk& desk) {
                              : !entries_.empty() && desk.preferences.folder.empty();
   if (!shown) show_folder(desk.preferences.folder);
   const std::size_t total = reader_ ? reader_->files() : entries_.size();
-  note(total == 0 ? "no robots here" : fmt::format("{} of {} robots; click one to add it", entries_.size(), total).c_str());
+  note(total == 0 ? "no robots here"
+                  : fmt::format("{} of {} robots; click one to add it", entries_.size(), total).c_str());
   ImGui::BeginDisabled(entries_.empty());
   if (ImGui::Button("Add all", {-1, 0})) {
     std::vector<Robot> robots;
@@ -150,8 +155,10 @@ void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
     list.AddText({corner.x + 0.4f * line, corner.y + 0.4f * line}, entry.robot ? palette().faint : palette().bad,
                  entry.robot ? "..." : "cannot be read");
   const float margin = 0.35f * line;
-  const std::string name = entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
-  list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text), shortened(name, width - 2 * margin).c_str());
+  const std::string name =
+      entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
+  list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text),
+               shortened(name, width - 2 * margin).c_str());
   if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, figures_of(entry).c_str());
   if (hovered && rests_here()) tooltip(entry);
   if (clicked && entry.robot) desk.scene.add({*entry.robot});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/camera_hand.h"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 namespace mercury::window {
 namespace {
 
-constexpr double glide_time = 0.45;    // [s]
-constexpr float turn_speed = 3.6f;     // of a drag across the picture's height [rad]
+constexpr double glide_time = 0.45;  // [s]
+constexpr float turn_speed = 3.6f;   // of a drag across the picture's height [rad]
 constexpr float margin = 1.1f;
 
 render::Bounds all_of(std::span<const render::Bounds> boxes) {
@@ -51,7 +52,8 @@ void CameraHand::pan(float right, float up) {
 }
 
 void CameraHand::zoom(float factor) {
-  if (mode_ == CameraMode::group || mode_ == CameraMode::turntable || mode_ == CameraMode::top) set_mode(CameraMode::still);
+  if (mode_ == CameraMode::group || mode_ == CameraMode::turntable || mode_ == CameraMode::top)
+    set_mode(CameraMode::still);
   glide_ = 0;
   orbit_.zoom(factor);
   orbit_.distance = std::clamp(orbit_.distance, 0.02f, 5000.0f);
@@ -95,14 +97,17 @@ render::Camera CameraHand::at(std::span<const render::Bounds> robots, float aspe
   render::Orbit wanted = orbit_;
   const render::Bounds all = all_of(robots);
   switch (mode_) {
-    case CameraMode::still: break;
+    case CameraMode::still:
+      break;
     case CameraMode::follow:
       if (robot_ && *robot_ < robots.size() && !robots[*robot_].empty())
         render::follow(orbit_, robots[*robot_].center(), dt, 0.3);
       else if (!robot_ && !all.empty())
         render::follow(orbit_, all.center(), dt, lag);
       break;
-    case CameraMode::turntable: orbit_.azimuth += static_cast<float>(2 * std::numbers::pi * dt) / turn_period; [[fallthrough]];
+    case CameraMode::turntable:
+      orbit_.azimuth += static_cast<float>(2 * std::numbers::pi * dt) / turn_period;
+      [[fallthrough]];
     case CameraMode::group:
       if (all.empty()) break;
       wanted.frame(robots, aspect, margin);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera in the user's hand: orbit, pan, zoom, frame, follow, and the moves that go by themselves.
 #pragma once
 
@@ -38,7 +39,7 @@ class CameraHand {
   // For a video that is to look alike.
   CameraPlan plan() const;
 
-  float turn_period = 20;    // of the turntable [s]
+  float turn_period = 20;      // of the turntable [s]
   float field_of_view = 0.6f;  // [rad]
   // Whether it still moves by itself.
   bool gliding() const { return glide_ > 0; }
@@ -49,8 +50,8 @@ class CameraHand {
   CameraMode mode_ = CameraMode::still;
   std::optional<std::size_t> robot_;
   render::Orbit orbit_;
-  render::Orbit aim_;    // where a glide ends
-  double glide_ = 0;     // time that is left of it [s]
+  render::Orbit aim_;  // where a glide ends
+  double glide_ = 0;   // time that is left of it [s]
 };
 
 }  // namespace mercury::window

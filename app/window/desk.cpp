@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/desk.h"
 
 #include <fmt/format.h>
@@ -37,7 +38,8 @@ std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId
   const std::span<const render::Bounds> bounds = scene.picture().bounds();
   std::vector<render::Bounds> boxes;
   for (const RobotId robot : robots)
-    if (const auto index = scene.moment().robots->index_of(robot); index && *index < bounds.size() && !bounds[*index].empty())
+    if (const auto index = scene.moment().robots->index_of(robot);
+        index && *index < bounds.size() && !bounds[*index].empty())
       boxes.push_back(bounds[*index]);
   return boxes;
 }
@@ -64,9 +66,10 @@ void save_with_care(Desk& desk, const std::string& what, std::function<SaveResul
     return;
   }
   desk.observations.tell("asks", {{"what", "overwrite"}});
-  const std::string question = result.files.size() == 1
-                                   ? fmt::format("{} is there already.", result.files.front().string())
-                                   : fmt::format("{} files are there already: {}", result.files.size(), list_of(result.files));
+  const std::string question =
+      result.files.size() == 1
+          ? fmt::format("{} is there already.", result.files.front().string())
+          : fmt::format("{} files are there already: {}", result.files.size(), list_of(result.files));
   desk.dialogs.ask({.title = "Replace?",
                     .text = question,
                     .button = "Replace",

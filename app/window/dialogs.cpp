@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/dialogs.h"
 
 #include <algorithm>
@@ -48,7 +49,8 @@ void Dialogs::draw_question(Observations& observations) {
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({screen.x / 2, 0.42f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 34 * text), 0});
-  if (!ImGui::BeginPopupModal(id.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
+  if (!ImGui::BeginPopupModal(id.c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
     open_ = shown_ = false;
     return;
   }
@@ -68,7 +70,8 @@ void Dialogs::draw_question(Observations& observations) {
   const float width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
   ImGui::Dummy({0, 0.2f * text});
   const float buttons = question_.other_button.empty() ? 2 : 3;
-  const float room = ImGui::GetContentRegionAvail().x - buttons * width - (buttons - 1) * ImGui::GetStyle().ItemSpacing.x;
+  const float room =
+      ImGui::GetContentRegionAvail().x - buttons * width - (buttons - 1) * ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
   const bool refused = ImGui::Button("Cancel", {width, 0}) || refused_;
   observations.item("dialog.cancel");

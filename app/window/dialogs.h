@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Questions in the middle of the window: one at a time.
 #pragma once
 
@@ -26,7 +27,9 @@ class Dialogs {
   void ask_text(std::string title, std::string question, std::string text, std::string button,
                 std::function<void(const std::string&)> act);
   // Asks for files or a folder.
-  void ask_files(FileQuestion question, std::function<void(const FileAnswer&)> act) { files_.ask(std::move(question), std::move(act)); }
+  void ask_files(FileQuestion question, std::function<void(const FileAnswer&)> act) {
+    files_.ask(std::move(question), std::move(act));
+  }
   // Asks for the files that were asked for last once more.
   void ask_files_again() { files_.ask_again(); }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that are built into the program.
 #pragma once
 
@@ -10,7 +11,7 @@
 namespace mercury::window {
 
 struct EmbeddedFile {
-  std::string_view name;      // "eel.json"
+  std::string_view name;  // "eel.json"
   std::string_view contents;
 };
 

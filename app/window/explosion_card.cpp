@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/explosion_card.h"
 
 #include <fmt/format.h>
@@ -16,8 +17,9 @@ namespace {
 std::string advice_for(const ExplodedRobot& robot) {
   const std::string advice = "A smaller time step, or XPBD, may help.";
   if (!robot.spring) return "It is frozen; no spring is to blame. " + advice;
-  return fmt::format("Spring {} went first (masses {} and {}, {}). It is frozen, the others go on. {}", robot.spring->index, robot.spring->a,
-                     robot.spring->b, robot.spring->figures.material_name, advice);
+  return fmt::format("Spring {} went first (masses {} and {}, {}). It is frozen, the others go on. {}",
+                     robot.spring->index, robot.spring->a, robot.spring->b, robot.spring->figures.material_name,
+                     advice);
 }
 
 void ask_for_repro(Desk& desk, const ExplodedRobot& robot) {
@@ -51,25 +53,33 @@ void ExplosionCard::choose(int places) {
 void ExplosionCard::follow(Desk& desk, const PictureArea& area, const render::Camera& camera) {
   desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
   for (const Explosion& explosion : desk.scene.take_explosions())
-    desk.observations.tell("exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.first_bad_spring}});
+    desk.observations.tell(
+        "exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.first_bad_spring}});
   robots_ = desk.scene.exploded();
   std::erase_if(dismissed_, [&](const auto& one) {
-    return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) { return one == std::pair{robot.robot, robot.time}; });
+    return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) {
+      return one == std::pair{robot.robot, robot.time};
+    });
   });
   if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
-  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, desk.observations, area, camera);
+  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, desk.observations,
+                       area, camera);
 }
 
 void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
   low_ = high_ = {0, 0};
-  const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) { return !dismissed_.contains({robot.robot, robot.time}); });
+  const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) {
+    return !dismissed_.contains({robot.robot, robot.time});
+  });
   if (!news) return;
   const ExplodedRobot robot = *chosen();
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({area.low.x + text, area.high.y - text}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({std::min(27 * text, area.width() - 2 * text), 0});
   ImGui::PushStyleColor(ImGuiCol_Border, palette().bad);
-  ImGui::Begin("##explosion", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::Begin("##explosion", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PopStyleColor();
   draw_heading(desk, robot);
   note(advice_for(robot).c_str());
@@ -84,7 +94,8 @@ void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
 void ExplosionCard::draw_heading(Desk& desk, const ExplodedRobot& robot) {
   const std::string place = fmt::format("{} of {}", chosen() - robots_.data() + 1, robots_.size());
   const float spacing = ImGui::GetStyle().ItemInnerSpacing.x, button = ImGui::GetFrameHeight();
-  const float steppers = robots_.size() < 2 ? 0 : 2 * (button + spacing) + ImGui::CalcTextSize(place.c_str()).x + spacing;
+  const float steppers =
+      robots_.size() < 2 ? 0 : 2 * (button + spacing) + ImGui::CalcTextSize(place.c_str()).x + spacing;
   const float right = ImGui::GetWindowContentRegionMax().x;
   ImGui::AlignTextToFramePadding();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);

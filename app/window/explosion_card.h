@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What robots that have exploded are told with: which and when, the spring that went first, and what can be done.
 #pragma once
 
@@ -27,7 +28,7 @@ class ExplosionCard {
 
   std::vector<ExplodedRobot> robots_;
   std::optional<RobotId> chosen_;
-  ImVec2 low_{0, 0}, high_{0, 0};  // of the card; empty = it is not shown
+  ImVec2 low_{0, 0}, high_{0, 0};                   // of the card; empty = it is not shown
   std::set<std::pair<RobotId, double>> dismissed_;  // explosions that need not be told of any more
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/explosion_marks.h"
 
 #include <fmt/format.h>
@@ -42,7 +43,8 @@ bool inside(const PictureArea& area, ImVec2 p) {
 // A bar and two rings, each on a darker or lighter ground, so that they stand out from whatever is behind.
 void draw_mark(const Line& line, bool chosen) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text, edge = 0.14f * text;
+  const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text,
+              edge = 0.14f * text;
   const ImU32 mark = palette().mark, ground = palette().mark_ground;
   list.AddLine(line.a, line.b, ground, bar + 2 * edge);
   for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
@@ -61,7 +63,8 @@ std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
   std::vector<std::string> lines{fmt::format("{}: spring {} went first", robot.name, spring.index)};
   if (!all) return lines;
   lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));
-  lines.push_back(fmt::format("{} long, {} at rest", length_text(spring.figures.length), length_text(spring.figures.rest_length)));
+  lines.push_back(
+      fmt::format("{} long, {} at rest", length_text(spring.figures.length), length_text(spring.figures.rest_length)));
   return lines;
 }
 
@@ -88,7 +91,8 @@ std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& l
                            {middle.x, middle.y + away}};
   for (const ImVec2 low : places) {
     const Box box{low, {low.x + size.x, low.y + size.y}};
-    if (inside(area, box.low) && inside(area, box.high) && std::ranges::none_of(taken, [&](const Box& other) { return box.meets(other); }))
+    if (inside(area, box.low) && inside(area, box.high) &&
+        std::ranges::none_of(taken, [&](const Box& other) { return box.meets(other); }))
       return box;
   }
   return std::nullopt;
@@ -101,16 +105,18 @@ void write(const std::vector<std::string>& lines, const Box& place) {
   list.AddRect(place.low, place.high, palette().mark, 0.35f * text, 0, 0.08f * text);
   float y = place.low.y + margin / 2;
   for (std::size_t i = 0; i < lines.size(); ++i, y += 1.2f * text)
-    list.AddText({place.low.x + margin, y}, i == 0 ? ImGui::GetColorU32(ImGuiCol_Text) : palette().faint, lines[i].c_str());
+    list.AddText({place.low.x + margin, y}, i == 0 ? ImGui::GetColorU32(ImGuiCol_Text) : palette().faint,
+                 lines[i].c_str());
 }
 
 }  // namespace
 
-void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, Observations& observations,
-                          const PictureArea& area, const render::Camera& camera) {
+void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks,
+                          Observations& observations, const PictureArea& area, const render::Camera& camera) {
   std::vector<std::pair<const ExplodedRobot*, Line>> drawn;
   for (const ExplodedRobot& robot : robots)
-    if (const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt) drawn.emplace_back(&robot, *line);
+    if (const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt)
+      drawn.emplace_back(&robot, *line);
   std::stable_partition(drawn.begin(), drawn.end(), [&](const auto& one) { return one.first->robot == marks.chosen; });
   ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
   std::vector<Box> taken{{marks.covered_low, marks.covered_high}};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/file_dialog.h"
 
 #define GLFW_INCLUDE_NONE
@@ -71,14 +72,23 @@ void FileDialog::press(const Press& press) {
     reveal_ = true;
   };
   switch (press.key) {
-    case GLFW_KEY_UP: move(-1); break;
-    case GLFW_KEY_DOWN: move(1); break;
-    case GLFW_KEY_PAGE_UP: move(-page); break;
-    case GLFW_KEY_PAGE_DOWN: move(page); break;
+    case GLFW_KEY_UP:
+      move(-1);
+      break;
+    case GLFW_KEY_DOWN:
+      move(1);
+      break;
+    case GLFW_KEY_PAGE_UP:
+      move(-page);
+      break;
+    case GLFW_KEY_PAGE_DOWN:
+      move(page);
+      break;
     case GLFW_KEY_BACKSPACE:
       if (text_.empty() && !place_active_) go_up();
       break;
-    default: entered_ = entered_ || is_enter(press);
+    default:
+      entered_ = entered_ || is_enter(press);
   }
 }
 
@@ -137,7 +147,8 @@ void FileDialog::accept_typed() {
     return;
   }
   const std::vector<std::string>& known = question_.extensions;
-  if (question_.kind == Kind::save && !known.empty() && std::find(known.begin(), known.end(), path.extension()) == known.end())
+  if (question_.kind == Kind::save && !known.empty() &&
+      std::find(known.begin(), known.end(), path.extension()) == known.end())
     path += known[static_cast<std::size_t>(question_.formats.empty() ? 0 : format_)];
   finish({std::move(path)});
 }

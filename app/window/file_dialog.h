@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Asks for files or a folder, in the middle of the window.
 #pragma once
 
@@ -13,7 +14,8 @@
 namespace mercury::window {
 
 struct FileQuestion {
-  // Files that there are; a name for one that there need not be; a folder. A name typed for the latter need not be there.
+  // Files that there are; a name for one that there need not be; a folder. A name typed for the latter need not be
+  // there.
   enum class Kind { open, save, folder } kind = Kind::open;
   std::string title, button;
   std::vector<std::string> extensions;  // of the files shown; the first is given to a name without one
@@ -62,7 +64,7 @@ class FileDialog {
   int text_edition_ = 0;              // counts what was put into the name's field by us
   int format_ = 0;
   bool open_ = false, fresh_ = false, shown_ = false;
-  bool focus_ = false, reveal_ = false;  // to come: the name's field is typed into, the marked row is seen
+  bool focus_ = false, reveal_ = false;          // to come: the name's field is typed into, the marked row is seen
   bool place_active_ = false, entered_ = false;  // the folder's field is typed into; Enter was pressed
   FileAnswer answer_;
   bool answered_ = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the file dialog looks.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -35,10 +36,13 @@ void sign(bool folder) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (folder) {
-    list.AddRectFilled({corner.x, corner.y + 0.2f * text}, {corner.x + 0.45f * text, corner.y + 0.5f * text}, palette().accent, 0.1f * text);
-    list.AddRectFilled({corner.x, corner.y + 0.32f * text}, {corner.x + text, corner.y + 0.95f * text}, palette().accent, 0.1f * text);
+    list.AddRectFilled({corner.x, corner.y + 0.2f * text}, {corner.x + 0.45f * text, corner.y + 0.5f * text},
+                       palette().accent, 0.1f * text);
+    list.AddRectFilled({corner.x, corner.y + 0.32f * text}, {corner.x + text, corner.y + 0.95f * text},
+                       palette().accent, 0.1f * text);
   } else {
-    list.AddRect({corner.x + 0.15f * text, corner.y + 0.1f * text}, {corner.x + 0.8f * text, corner.y + 0.97f * text}, palette().faint, 0.1f * text);
+    list.AddRect({corner.x + 0.15f * text, corner.y + 0.1f * text}, {corner.x + 0.8f * text, corner.y + 0.97f * text},
+                 palette().faint, 0.1f * text);
   }
   ImGui::Dummy({1.25f * text, text});
   ImGui::SameLine(0, 0);
@@ -69,7 +73,8 @@ void FileDialog::draw(Observations& observations) {
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 46 * text), std::min(0.94f * screen.y, 32 * text)});
-  if (!ImGui::BeginPopupModal(id.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
+  if (!ImGui::BeginPopupModal(id.c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
     open_ = shown_ = false;
     return;
   }
@@ -119,21 +124,27 @@ void FileDialog::draw_places(Observations& observations) {
 }
 
 void FileDialog::draw_items(Observations& observations) {
-  const float lines = (error_.empty() ? 2.0f : 3.0f) + (question_.formats.empty() ? 0.0f : 1.0f) + (question_.kind == Kind::folder ? 1.0f : 0.0f);
+  const float lines = (error_.empty() ? 2.0f : 3.0f) + (question_.formats.empty() ? 0.0f : 1.0f) +
+                      (question_.kind == Kind::folder ? 1.0f : 0.0f);
   const float height = ImGui::GetContentRegionAvail().y - lines * ImGui::GetFrameHeightWithSpacing();
-  const auto flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Sortable;
+  const auto flags =
+      ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Sortable;
   if (!ImGui::BeginTable("items", 3, flags, {0, std::max(height, 4 * ImGui::GetFrameHeight())})) return;
   const float text = ImGui::GetFontSize();
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch | ImGuiTableColumnFlags_DefaultSort);
-  ImGui::TableSetupColumn("size", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 5 * text);
-  ImGui::TableSetupColumn("changed", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending, 9 * text);
+  ImGui::TableSetupColumn("size", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending,
+                          5 * text);
+  ImGui::TableSetupColumn("changed", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending,
+                          9 * text);
   ImGui::TableHeadersRow();
   if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0)
-    view_.sort(static_cast<FolderView::Order>(specs->Specs[0].ColumnIndex), specs->Specs[0].SortDirection == ImGuiSortDirection_Descending);
+    view_.sort(static_cast<FolderView::Order>(specs->Specs[0].ColumnIndex),
+               specs->Specs[0].SortDirection == ImGuiSortDirection_Descending);
   const float row_height = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   if (std::exchange(reveal_, false) && view_.cursor()) {
-    const float row = row_height * static_cast<float>(*view_.cursor()), seen = ImGui::GetWindowHeight() - 2 * row_height;
+    const float row = row_height * static_cast<float>(*view_.cursor()),
+                seen = ImGui::GetWindowHeight() - 2 * row_height;
     if (row < ImGui::GetScrollY()) ImGui::SetScrollY(row);
     if (row > ImGui::GetScrollY() + seen) ImGui::SetScrollY(row - seen);
   }
@@ -143,7 +154,8 @@ void FileDialog::draw_items(Observations& observations) {
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       // A click may have gone to another folder.
-      if (static_cast<std::size_t>(i) < view_.items().size() && view_.folder() == folder) draw_row(static_cast<std::size_t>(i), observations);
+      if (static_cast<std::size_t>(i) < view_.items().size() && view_.folder() == folder)
+        draw_row(static_cast<std::size_t>(i), observations);
   ImGui::EndTable();
 }
 
@@ -152,7 +164,8 @@ void FileDialog::draw_row(std::size_t index, Observations& observations) {
   ImGui::PushID(static_cast<int>(index));
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  const bool clicked = ImGui::Selectable("##row", item.marked, ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
+  const bool clicked = ImGui::Selectable("##row", item.marked,
+                                         ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
   if (index < 20) observations.item(fmt::format("file.{}", item.name));
   ImGui::SameLine(0, 0);
   sign(item.folder);
@@ -177,7 +190,8 @@ void FileDialog::draw_name(Observations& observations) {
     ImGui::PopStyleColor();
   }
   static constexpr const char* names[] = {"name", "name", "folder"};
-  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path", "a folder in this one, or none"};
+  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path",
+                                           "a folder in this one, or none"};
   const auto kind = static_cast<std::size_t>(question_.kind);
   const float names_width = 6 * ImGui::GetFontSize();
   label(names[kind], names_width);
@@ -190,17 +204,22 @@ void FileDialog::draw_name(Observations& observations) {
   if (question_.kind != Kind::open) hint("folders that are missing are made");
   if (text_ != before) typed();
   if (question_.kind == Kind::folder)
-    note(shortened(question_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(), ImGui::GetContentRegionAvail().x, true).c_str());
+    note(shortened(
+             question_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(),
+             ImGui::GetContentRegionAvail().x, true)
+             .c_str());
   if (question_.formats.empty()) return;
   label("kind", names_width);
-  if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) && question_.kind == Kind::save)
+  if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) &&
+      question_.kind == Kind::save)
     set_text(fs::path(text_).replace_extension(question_.extensions[static_cast<std::size_t>(format_)]).string());
   observations.item("files.format");
   hint("JSON can be read by people; CBOR is the same, and smaller");
 }
 
 void FileDialog::draw_buttons(Observations& observations) {
-  const float text = ImGui::GetFontSize(), width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
+  const float text = ImGui::GetFontSize(),
+              width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
   if (question_.kind == Kind::open) {
     ImGui::BeginDisabled(view_.file_count() == 0);
     if (ImGui::Button(fmt::format("All {} shown", view_.file_count()).c_str())) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/film_panel.h"
 
 #include <fmt/format.h>
@@ -18,15 +19,19 @@ constexpr std::array<PictureSize, 4> sizes{{{1280, 720}, {1920, 1080}, {2560, 14
 
 void progress(const FilmStatus& status, const char* doing) {
   const bool finishing = status.state == FilmStatus::State::finishing;
-  const float share = status.total > 0 ? static_cast<float>(status.frames) / static_cast<float>(status.total) : finishing ? 1.0f : 0.0f;
-  const std::string frames = status.total > 0 ? fmt::format("{} of {}", status.frames, status.total) : fmt::format("{}", status.frames);
+  const float share = status.total > 0 ? static_cast<float>(status.frames) / static_cast<float>(status.total)
+                      : finishing      ? 1.0f
+                                       : 0.0f;
+  const std::string frames =
+      status.total > 0 ? fmt::format("{} of {}", status.frames, status.total) : fmt::format("{}", status.frames);
   ImGui::ProgressBar(share, {-1, 0}, finishing ? "finishing" : fmt::format("{}: {} frames", doing, frames).c_str());
   if (status.dropped > 0) note(fmt::format("{} frames were left out: the encoder is behind", status.dropped).c_str());
 }
 
 void tell_end(Desk& desk, const FilmStatus& status) {
   if (status.state == FilmStatus::State::failed) desk.toasts.say(Tone::error, status.error);
-  if (status.state == FilmStatus::State::cancelled) desk.toasts.say(Tone::news, "the video was given up; nothing was kept");
+  if (status.state == FilmStatus::State::cancelled)
+    desk.toasts.say(Tone::news, "the video was given up; nothing was kept");
   if (status.state != FilmStatus::State::done) return;
   desk.toasts.say(Tone::success, "video saved: " + status.file);
   desk.observations.tell("recorded", {{"file", status.file}, {"frames", status.frames}});
@@ -65,7 +70,8 @@ void FilmPanel::draw_screen(Desk& desk) {
     hint("what is on the screen, until you end it (key V)");
     return;
   }
-  ImGui::TextUnformatted(fmt::format("{:.1f} s, {} x {}", seconds(), screen_->size().width, screen_->size().height).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("{:.1f} s, {} x {}", seconds(), screen_->size().width, screen_->size().height).c_str());
   progress(screen_->status(), "recording");
   ImGui::BeginDisabled(ending_);
   if (ImGui::Button("End the video", {-1, 0})) toggle(desk);
@@ -98,8 +104,10 @@ void FilmPanel::draw_group(Desk& desk) {
 void FilmPanel::draw_group_options(Desk&) {
   choice("size", "of the video", size_, {"1280 x 720", "1920 x 1080", "2560 x 1440", "3840 x 2160"});
   auto length = static_cast<float>(options_.seconds), speed = static_cast<float>(options_.speed);
-  if (slider("length", "simulated time", length, 10, {1, 120, "%.0f s", true}) && length > 0) options_.seconds = static_cast<double>(length);
-  if (slider("speed", "simulated seconds a second of video", speed, 1, {0.1f, 10, "\xc3\x97 %.2f", true}) && speed > 0) options_.speed = static_cast<double>(speed);
+  if (slider("length", "simulated time", length, 10, {1, 120, "%.0f s", true}) && length > 0)
+    options_.seconds = static_cast<double>(length);
+  if (slider("speed", "simulated seconds a second of video", speed, 1, {0.1f, 10, "\xc3\x97 %.2f", true}) && speed > 0)
+    options_.speed = static_cast<double>(speed);
 }
 
 void FilmPanel::toggle(Desk& desk) {
@@ -113,7 +121,9 @@ void FilmPanel::toggle(Desk& desk) {
   if (hide_panels_) desk.preferences.panels = true;
 }
 
-double FilmPanel::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+double FilmPanel::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
 
 void FilmPanel::begin(Desk& desk, WindowSize pixels) {
   wanted_ = ending_ = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Videos of what is shown, clean group videos, pictures.
 #pragma once
 
@@ -31,11 +32,11 @@ class FilmPanel {
   double seconds() const;
 
   std::unique_ptr<ScreenRecording> screen_;
-  bool ending_ = false;   // no more pictures are given
-  bool wanted_ = false;   // begins with the next frame
+  bool ending_ = false;  // no more pictures are given
+  bool wanted_ = false;  // begins with the next frame
   std::chrono::steady_clock::time_point start_;
-  int rate_ = 30;         // frames a second
-  int kind_ = 0;          // of file: mp4, webm, gif
+  int rate_ = 30;  // frames a second
+  int kind_ = 0;   // of file: mp4, webm, gif
   bool hide_panels_ = false;
 
   std::unique_ptr<GroupFilm> group_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/folder_reader.h"
 
 #include <algorithm>
@@ -29,7 +30,8 @@ void FolderReader::list() {
   std::sort(folders_.begin(), folders_.end());
   std::sort(files_.begin(), files_.end());
   if (files_.size() > most_) files_.resize(most_);
-  if (folder_.has_parent_path() && folder_ != folder_.root_path()) folders_.insert(folders_.begin(), folder_.parent_path());
+  if (folder_.has_parent_path() && folder_ != folder_.root_path())
+    folders_.insert(folders_.begin(), folder_.parent_path());
 }
 
 void FolderReader::read(std::stop_token stop) {

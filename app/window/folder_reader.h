@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robots of a folder, read one after the other on a thread of their own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/folder_view.h"
 
 #include <algorithm>
@@ -20,7 +21,8 @@ std::string lower(std::string text) {
 
 std::time_t time_of(fs::file_time_type time) {
   const auto system = std::chrono::file_clock::to_sys(time);
-  return std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::system_clock::duration>(system));
+  return std::chrono::system_clock::to_time_t(
+      std::chrono::time_point_cast<std::chrono::system_clock::duration>(system));
 }
 
 FolderItem item_of(const fs::directory_entry& entry) {
@@ -39,7 +41,8 @@ fs::path typed_path(const fs::path& folder, std::string text) {
   const std::size_t begin = text.find_first_not_of(' ');
   if (begin == std::string::npos) return {};
   text = text.substr(begin, text.find_last_not_of(' ') - begin + 1);
-  if (const char* home = std::getenv("HOME"); home && (text == "~" || text.starts_with("~/"))) text = home + text.substr(1);
+  if (const char* home = std::getenv("HOME"); home && (text == "~" || text.starts_with("~/")))
+    text = home + text.substr(1);
   return (folder / text).lexically_normal();
 }
 
@@ -87,13 +90,15 @@ void FolderView::sort(Order order, bool descending) {
 }
 
 std::size_t FolderView::file_count() const {
-  return static_cast<std::size_t>(std::count_if(shown_.begin(), shown_.end(), [](const FolderItem& item) { return !item.folder; }));
+  return static_cast<std::size_t>(
+      std::count_if(shown_.begin(), shown_.end(), [](const FolderItem& item) { return !item.folder; }));
 }
 
 bool FolderView::is_shown(const FolderItem& item) const {
   if (!filter_.empty() && lower(item.name).find(filter_) == std::string::npos) return false;
   if (item.folder || extensions_.empty()) return true;
-  return std::find(extensions_.begin(), extensions_.end(), lower(fs::path(item.name).extension().string())) != extensions_.end();
+  return std::find(extensions_.begin(), extensions_.end(), lower(fs::path(item.name).extension().string())) !=
+         extensions_.end();
 }
 
 // From all_, keeping what is marked.

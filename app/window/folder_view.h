@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder as a file dialog shows it: what is in it, filtered and sorted, and what is marked. Knows no window.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/frame_report.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,8 @@ std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& p
   std::vector<std::array<float, 2>> places;
   for (const render::Bounds& box : scene.picture().bounds()) {
     if (places.size() == most_places) break;
-    const Eigen::Vector3f p = picture.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
+    const Eigen::Vector3f p =
+        picture.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
     places.push_back({area.low.x + p.x(), area.low.y + p.y()});
   }
   return places;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a program that watches the window is told of every frame (docs/window.md).
 #pragma once
 
@@ -28,8 +29,8 @@ class FrameReport {
 
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::int64_t frames_ = 0;
-  std::uint64_t input_ = 0;   // told of last
-  double told_ = -1;          // when a frame was told of last [s]
+  std::uint64_t input_ = 0;  // told of last
+  double told_ = -1;         // when a frame was told of last [s]
   std::size_t robots_ = 0;
 };
 

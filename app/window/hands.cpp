@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/hands.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr double rest = 0.25;  // before figures are shown [s]
+constexpr double rest = 0.25;   // before figures are shown [s]
 constexpr float wheel = 0.88f;  // of the distance, a notch
 
 bool inside(const PictureArea& area, ImVec2 p) {
@@ -18,7 +19,8 @@ bool inside(const PictureArea& area, ImVec2 p) {
 }
 
 render::Ray ray_at(const PictureArea& area, const render::Camera& camera, ImVec2 p) {
-  return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()),
+                    static_cast<int>(area.height()));
 }
 
 ImVec2 on_screen(const PictureArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
@@ -36,7 +38,8 @@ void label(ImVec2 at, const std::string& text) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float margin = 0.4f * ImGui::GetFontSize();
-  list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + size.x + margin, at.y + size.y + margin / 2}, palette().on_picture, margin);
+  list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + size.x + margin, at.y + size.y + margin / 2},
+                     palette().on_picture, margin);
   list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
 }
 
@@ -72,7 +75,9 @@ void Hands::press(Desk& desk, const PictureArea& area, const render::Camera& cam
       pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
       desk.scene.begin_pull(*hit);
       desk.scene.select(hit->robot);
-      desk.observations.tell("pull", {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x(), hit->point.y(), hit->point.z()}}});
+      desk.observations.tell(
+          "pull",
+          {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x(), hit->point.y(), hit->point.z()}}});
     }
     return;
   }
@@ -97,7 +102,7 @@ void Hands::drag(Desk& desk, const PictureArea& area, const render::Camera& came
 
 void Hands::release(Desk& desk, const PictureArea& area, const render::Camera& camera) {
   if (grip_ == Grip::pull) {
-    if (const auto pull = desk.scene.pull()) 
+    if (const auto pull = desk.scene.pull())
       desk.observations.tell("pulled", {{"force", pull->force}, {"at", {pull->at.x(), pull->at.y(), pull->at.z()}}});
     desk.scene.end_pull();
   } else if (grip_ == Grip::turn && !dragged_) {
@@ -142,19 +147,22 @@ void Hands::draw(Desk& desk, const PictureArea& area, const render::Camera& came
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float text_height = ImGui::GetFontSize();
   const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;
-  ImGui::SetNextWindowPos({mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)},
-                          ImGuiCond_Always, {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
+  ImGui::SetNextWindowPos(
+      {mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)}, ImGuiCond_Always,
+      {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
   ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hovered_->mass), speed.c_str(), figures.mass.springs);
-  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x), static_cast<double>(figures.mass.position.y),
-              static_cast<double>(figures.mass.position.z));
+  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
+              static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
   if (figures.spring) {
     ImGui::Text("spring: %s", figures.spring->material_name.c_str());
-    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain), static_cast<double>(figures.spring->force));
-    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length), static_cast<double>(figures.spring->rest_length));
+    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
+                static_cast<double>(figures.spring->force));
+    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+                static_cast<double>(figures.spring->rest_length));
   }
   ImGui::PopStyleColor();
   ImGui::EndTooltip();

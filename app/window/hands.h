@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mouse on the picture: camera, selection, pulling, figures of what is under it.
 #pragma once
 
@@ -35,11 +36,11 @@ class Hands {
   int button_ = 0;
   bool dragged_ = false;
   ImVec2 pressed_at_{0, 0};
-  float pull_depth_ = 0;   // of the pulled place along the line of sight [m]
-  bool follows_ = false;   // the press was a double click
+  float pull_depth_ = 0;  // of the pulled place along the line of sight [m]
+  bool follows_ = false;  // the press was a double click
   std::optional<Hit> hovered_;
   ImVec2 rests_at_{-1, -1};
-  double rested_ = 0;      // how long the mouse has not moved [s]
+  double rested_ = 0;  // how long the mouse has not moved [s]
 };
 
 }  // namespace mercury::window

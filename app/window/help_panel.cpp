@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/help_panel.h"
 
 #include <algorithm>
@@ -54,8 +55,9 @@ void draw_help(bool& open, Observations& observations) {
   ImGui::SetNextWindowSize({size.x, std::min(size.y, screen.y - top - 0.2f * text)}, ImGuiCond_Appearing);
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    observations.item("panel.Help", ImGui::GetWindowPos(),
-                      {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
+    observations.item(
+        "panel.Help", ImGui::GetWindowPos(),
+        {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
     if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingStretchSame)) {
       ImGui::TableNextColumn();
       mouse();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All keys and gestures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/input_queue.h"
 
 #define GLFW_INCLUDE_NONE
@@ -23,7 +24,8 @@ std::vector<InputEvent> InputQueue::take() {
     if ((event.kind == Kind::button && typed) || (event.kind == Kind::move && scrolled)) break;
     waiting_.pop_front();
     events.push_back(event);
-    const bool press = event.action == GLFW_PRESS, of_key = event.kind == Kind::key, of_button = event.kind == Kind::button;
+    const bool press = event.action == GLFW_PRESS, of_key = event.kind == Kind::key,
+               of_button = event.kind == Kind::button;
     typed = typed || of_key || event.kind == Kind::character;
     scrolled = scrolled || event.kind == Kind::scroll;
     if (event.kind == Kind::scroll || ((of_key || of_button) && press)) ++taken_;

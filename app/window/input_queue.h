@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the user does with mouse and keyboard, in order, and how much of it one frame of the window takes.
 #pragma once
 
@@ -9,12 +10,12 @@ namespace mercury::window {
 
 struct InputEvent {
   enum class Kind { move, enter, focus, button, scroll, key, character } kind = Kind::move;
-  double x = 0, y = 0;               // of move and scroll
-  bool on = false;                   // entered, got the focus
-  int code = 0;                      // GLFW's of the button or key; of a character: in Unicode
+  double x = 0, y = 0;                     // of move and scroll
+  bool on = false;                         // entered, got the focus
+  int code = 0;                            // GLFW's of the button or key; of a character: in Unicode
   int scancode = 0, action = 0, mods = 0;  // as GLFW gives them
-  char32_t name = 0;                 // of a key: the character on it; 0 = none
-  bool types = false;                // of a key: a character follows
+  char32_t name = 0;                       // of a key: the character on it; 0 = none
+  bool types = false;                      // of a key: a character follows
 };
 
 // A slow frame loses nothing: what is pressed is seen where and in the order in which it was pressed. A frame takes the

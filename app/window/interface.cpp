@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/interface.h"
 
 #include <epoxy/gl.h>
 // Only after epoxy, which brings OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -22,8 +23,9 @@ constexpr float text_height = 17;  // of a line, at a scale of 1 [pixels]
 
 // Latin and Greek letters, and the few signs that panels use.
 const ImWchar* glyphs() {
-  static const ImWchar ranges[] = {0x20, 0x17f, 0x391, 0x3c9, 0x2010, 0x2027, 0x2030, 0x2030, 0x2070, 0x207f, 0x2190, 0x2193,
-                                   0x2206, 0x2206, 0x2212, 0x2212, 0x221e, 0x221e, 0x2248, 0x2248, 0x2264, 0x2265, 0};
+  static const ImWchar ranges[] = {0x20,   0x17f,  0x391,  0x3c9,  0x2010, 0x2027, 0x2030, 0x2030,
+                                   0x2070, 0x207f, 0x2190, 0x2193, 0x2206, 0x2206, 0x2212, 0x2212,
+                                   0x221e, 0x221e, 0x2248, 0x2248, 0x2264, 0x2265, 0};
   return ranges;
 }
 
@@ -91,15 +93,23 @@ void Interface::feed(const InputEvent& event) {
       pointer_.inside = event.on;
       ImGui_ImplGlfw_CursorEnterCallback(window, event.on);
       break;
-    case InputEvent::Kind::focus: ImGui_ImplGlfw_WindowFocusCallback(window, event.on); break;
+    case InputEvent::Kind::focus:
+      ImGui_ImplGlfw_WindowFocusCallback(window, event.on);
+      break;
     case InputEvent::Kind::button:
       if (event.code >= 0 && event.code < static_cast<int>(pointer_.down.size()))
         pointer_.down[static_cast<std::size_t>(event.code)] = event.action == GLFW_PRESS;
       ImGui_ImplGlfw_MouseButtonCallback(window, event.code, event.action, event.mods);
       break;
-    case InputEvent::Kind::scroll: ImGui_ImplGlfw_ScrollCallback(window, event.x, event.y); break;
-    case InputEvent::Kind::key: ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode, event.action, event.mods); break;
-    case InputEvent::Kind::character: ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code)); break;
+    case InputEvent::Kind::scroll:
+      ImGui_ImplGlfw_ScrollCallback(window, event.x, event.y);
+      break;
+    case InputEvent::Kind::key:
+      ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode, event.action, event.mods);
+      break;
+    case InputEvent::Kind::character:
+      ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code));
+      break;
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dear ImGui in a window: its context, fonts and looks.
 #pragma once
 
@@ -27,8 +28,8 @@ class Interface {
 
   // With what the user did for it.
   void begin_frame(const std::vector<InputEvent>& events);
-  void end_frame();      // draws it over the window's framebuffer
-  void end_unseen();     // or does not draw it
+  void end_frame();   // draws it over the window's framebuffer
+  void end_unseen();  // or does not draw it
 
  private:
   void build_fonts();

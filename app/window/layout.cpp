@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/layout.h"
 
 #include <algorithm>
@@ -24,12 +25,14 @@ void Column::draw(Desk& desk, float top, float bottom, std::string& open, float&
   ImGui::SetNextWindowPos({right_ ? screen - size : 0, top});
   ImGui::SetNextWindowSize({size, bottom - top});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-  ImGui::Begin(id_, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                 ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::Begin(id_, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   draw_tabs(desk, open);
   ImGui::Separator();
-  const auto panel = std::find_if(panels_.begin(), panels_.end(), [&](const Panel& other) { return other.name == open; });
+  const auto panel =
+      std::find_if(panels_.begin(), panels_.end(), [&](const Panel& other) { return other.name == open; });
   // Every panel keeps its own place where it is scrolled.
   if (ImGui::BeginChild(panel->name, {0, 0})) panel->draw();
   ImGui::EndChild();

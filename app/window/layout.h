@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which part of the window is whose: columns of panels left and right, the play bar below, the picture between them.
 #pragma once
 

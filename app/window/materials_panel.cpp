@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/materials_panel.h"
 
 #include <fmt/format.h>
@@ -37,8 +38,11 @@ void MaterialsPanel::draw(Desk& desk) {
     return;
   }
   const std::size_t selected = desk.scene.selection().size();
-  note(fmt::format("of {}", selected == 0 ? fmt::format("all {} robots; select some to change only those", robots.size())
-                                          : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected))).c_str());
+  note(fmt::format("of {}",
+                   selected == 0
+                       ? fmt::format("all {} robots; select some to change only those", robots.size())
+                       : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected)))
+           .c_str());
   draw_factors(desk, robots);
   if (ImGui::Button("As in the file", {-1, 0})) {
     scale_ = {};
@@ -51,9 +55,11 @@ void MaterialsPanel::draw(Desk& desk) {
 }
 
 void MaterialsPanel::draw_factors(Desk& desk, const std::vector<RobotId>& robots) {
-  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1, {0.1f, 10, "\xc3\x97 %.2f", true});
+  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1,
+                        {0.1f, 10, "\xc3\x97 %.2f", true});
   desk.observations.item("materials.stiffness");
-  changed |= slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
+  changed |=
+      slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
   changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
   changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
   if (changed) desk.scene.scale_materials(robots, scale_);
@@ -70,7 +76,8 @@ void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
   row("material", fmt::format("those that {} is made of", document->body.name).c_str());
   if (ImGui::BeginCombo("##material", name_of_material(robot, material_).c_str())) {
     for (const int id : used)
-      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_)) material_ = id;
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_))
+        material_ = id;
     ImGui::EndCombo();
   }
   const std::span<const Material> table = desk.scene.materials(shown);
@@ -79,7 +86,8 @@ void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
   Material material = table[id];
   const Material made = materials_of(robot)[id];
   bool changed = slider("stiffness", "k of a spring", material.stiffness, made.stiffness, {0, 500, "%.1f N/m"});
-  changed |= slider("amplitude", "relative change of length, 0 = does not move", material.amplitude, made.amplitude, {0, 0.6f, "%.3f"});
+  changed |= slider("amplitude", "relative change of length, 0 = does not move", material.amplitude, made.amplitude,
+                    {0, 0.6f, "%.3f"});
   changed |= slider("frequency", "omega", material.frequency, made.frequency, {0, 25, "%.2f rad/s"});
   changed |= slider("phase", "phi", material.phase, made.phase, {-pi, 2 * pi, "%.2f rad"});
   if (changed && is_valid(material)) desk.scene.set_material(robots, static_cast<MaterialId>(material_), material);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials of the chosen robots, as sliders that act at once.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/measure_panel.h"
 
 #include <fmt/format.h>
@@ -36,7 +37,8 @@ void MeasurePanel::draw(Desk& desk) {
     const QuantityName& name = quantities()[i];
     if (i != 0) {
       ImGui::SameLine();
-      if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name.name).x + 1.5f * ImGui::GetFontSize()) ImGui::NewLine();
+      if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name.name).x + 1.5f * ImGui::GetFontSize())
+        ImGui::NewLine();
     }
     if (toggle(name.name, shown_[i])) shown_[i] = !shown_[i];
     desk.observations.item(std::string("measure.") + name.name);
@@ -59,13 +61,15 @@ void MeasurePanel::draw_plots(Desk& desk) {
     std::vector<std::vector<double>> values(curves.size());
     std::vector<PlotLine> lines;
     for (std::size_t k = 0; k < curves.size(); ++k) {
-      for (const Sample& sample : curves[k].series.samples) values[k].push_back(static_cast<double>(sample.of(quantity.quantity)));
+      for (const Sample& sample : curves[k].series.samples)
+        values[k].push_back(static_cast<double>(sample.of(quantity.quantity)));
       lines.push_back({curves[k].name, render::category_color(static_cast<int>(k)), curves[k].series.times, values[k]});
     }
     plot(quantity.name, {.title = quantity.name, .unit = quantity.unit, .height = 9 * ImGui::GetFontSize()}, lines);
   }
   std::vector<PlotLine> names;
-  for (std::size_t k = 0; k < curves.size(); ++k) names.push_back({curves[k].name, render::category_color(static_cast<int>(k)), {}, {}});
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    names.push_back({curves[k].name, render::category_color(static_cast<int>(k)), {}, {}});
   plot_key(names);
 }
 
@@ -84,7 +88,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
   };
   std::vector<Named> rows;
   for (const RankingRow& row : desk.scene.ranking()) rows.push_back({name_of_robot(desk.scene, row.robot), row});
-  const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
+  const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
+                     ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
   const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
   if (ImGui::BeginTable("ranking", 6, flags, {0, std::max(height, 6 * ImGui::GetFrameHeight())})) {
     ImGui::TableSetupScrollFreeze(1, 1);
@@ -107,7 +112,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
     }
     const auto key = [&](const Named& named) {
       const RankingRow& r = named.row;
-      const double keys[] = {0, r.distance, r.mean_speed, r.speed, r.kinetic_energy + r.elastic_energy, r.largest_strain};
+      const double keys[] = {
+          0, r.distance, r.mean_speed, r.speed, r.kinetic_energy + r.elastic_energy, r.largest_strain};
       return keys[std::clamp(column_, 0, 5)];
     };
     std::stable_sort(rows.begin(), rows.end(), [&](const Named& a, const Named& b) {
@@ -117,7 +123,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
     if (std::exchange(sorted_, true) == false) {
       std::vector<std::string> names;
       for (const Named& named : rows) names.push_back(named.name);
-      desk.observations.tell("ranking", {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
+      desk.observations.tell("ranking",
+                             {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
     }
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(rows.size()));
@@ -133,7 +140,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
           if (ImGui::IsMouseDoubleClicked(0)) frame_robots(desk, {row.robot}, aspect);
         }
         if (i < 20) desk.observations.item(fmt::format("ranking.{}", i));
-        const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy, row.largest_strain};
+        const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy,
+                                  row.largest_strain};
         for (const double number : numbers) {
           ImGui::TableNextColumn();
           right_aligned(fmt::format("{:.3g}", number));

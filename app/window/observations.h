@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells a watching program what happens in the window: `mercury view --report FILE`.
 //
 // One JSON object a line, each with "event":

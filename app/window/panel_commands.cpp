@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What keys and menus do.
 #include <fmt/format.h>
 #include <imgui.h>
@@ -14,19 +15,45 @@ void Panels::carry_out(const Command& command) {
   LiveScene& scene = desk_.scene;
   const std::vector<RobotId> selection = scene.selection();
   switch (command.action) {
-    case Action::play_pause: scene.toggle(); break;
-    case Action::step: scene.step(); break;
-    case Action::faster: scene.change_speed(1); break;
-    case Action::slower: scene.change_speed(-1); break;
-    case Action::real_time: scene.set_speed(1); break;
-    case Action::as_fast_as_it_goes: scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed); break;
-    case Action::reset: scene.reset(); break;
-    case Action::new_random: robots_.random.generate(desk_); break;
-    case Action::duplicate: scene.duplicate(selection); break;
-    case Action::remove: scene.remove(selection); break;
-    case Action::mutate: robots_.mutate(desk_); break;
-    case Action::select_all: scene.select_all(); break;
-    case Action::deselect: escape(); break;
+    case Action::play_pause:
+      scene.toggle();
+      break;
+    case Action::step:
+      scene.step();
+      break;
+    case Action::faster:
+      scene.change_speed(1);
+      break;
+    case Action::slower:
+      scene.change_speed(-1);
+      break;
+    case Action::real_time:
+      scene.set_speed(1);
+      break;
+    case Action::as_fast_as_it_goes:
+      scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed);
+      break;
+    case Action::reset:
+      scene.reset();
+      break;
+    case Action::new_random:
+      robots_.random.generate(desk_);
+      break;
+    case Action::duplicate:
+      scene.duplicate(selection);
+      break;
+    case Action::remove:
+      scene.remove(selection);
+      break;
+    case Action::mutate:
+      robots_.mutate(desk_);
+      break;
+    case Action::select_all:
+      scene.select_all();
+      break;
+    case Action::deselect:
+      escape();
+      break;
     case Action::undo:
       if (scene.can_undo()) desk_.toasts.say(Tone::news, "undone: " + scene.undo_name());
       scene.undo();
@@ -35,24 +62,44 @@ void Panels::carry_out(const Command& command) {
       if (scene.can_redo()) desk_.toasts.say(Tone::news, "done again: " + scene.redo_name());
       scene.redo();
       break;
-    case Action::open: open_robots(desk_); break;
-    case Action::save: save_robots(desk_); break;
+    case Action::open:
+      open_robots(desk_);
+      break;
+    case Action::save:
+      save_robots(desk_);
+      break;
     case Action::frame:
     case Action::follow:
     case Action::turntable:
-    case Action::top_view: change_camera(command.action); break;
+    case Action::top_view:
+      change_camera(command.action);
+      break;
     case Action::drag_arrows:
     case Action::color:
     case Action::springs:
     case Action::labels:
     case Action::legend:
-    case Action::theme: change_view(command.action, command.number); break;
-    case Action::hide_panels: desk_.preferences.panels = !desk_.preferences.panels; break;
-    case Action::full_screen: window_.toggle_full_screen(); break;
-    case Action::screenshot: screenshot_wanted_ = true; break;
-    case Action::record: film_.toggle(desk_); break;
-    case Action::help: help_ = !help_; break;
-    case Action::quit: quit(); break;
+    case Action::theme:
+      change_view(command.action, command.number);
+      break;
+    case Action::hide_panels:
+      desk_.preferences.panels = !desk_.preferences.panels;
+      break;
+    case Action::full_screen:
+      window_.toggle_full_screen();
+      break;
+    case Action::screenshot:
+      screenshot_wanted_ = true;
+      break;
+    case Action::record:
+      film_.toggle(desk_);
+      break;
+    case Action::help:
+      help_ = !help_;
+      break;
+    case Action::quit:
+      quit();
+      break;
   }
 }
 
@@ -74,10 +121,17 @@ void Panels::change_view(Action action, int number) {
       view.shown.springs = !view.shown.springs;
       view.shown.skin = !view.shown.springs;
       break;
-    case Action::labels: view.shown.labels = !view.shown.labels; break;
-    case Action::legend: view.shown.legend = !view.shown.legend; break;
-    case Action::theme: view.theme = view.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark; break;
-    default: return;
+    case Action::labels:
+      view.shown.labels = !view.shown.labels;
+      break;
+    case Action::legend:
+      view.shown.legend = !view.shown.legend;
+      break;
+    case Action::theme:
+      view.theme = view.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
+      break;
+    default:
+      return;
   }
   desk_.scene.set_view(view);
 }

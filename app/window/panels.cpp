@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels.h"
 
 #include <fmt/format.h>
@@ -57,15 +58,18 @@ Panels::Panels(Desk& desk, Window& window, PictureView& picture)
               {"Tune", "solver, environment, materials", [this] { draw_tune(desk_, materials_); }},
               {"Measure", "plots over time", [this] { measure_.draw(desk_); }},
               {"Film", "videos and pictures", [this] { film_.draw(desk_, [this] { screenshot_wanted_ = true; }); }},
-              {"Stats", "where the computer's time goes",
-               [this] { performance_.draw(desk_.scene.moment(), picture_, desk_.scene.device_name(), window_.context().describe()); }}}) {}
+              {"Stats", "where the computer's time goes", [this] {
+                 performance_.draw(desk_.scene.moment(), picture_, desk_.scene.device_name(),
+                                   window_.context().describe());
+               }}}) {}
 
 PictureArea Panels::draw_frame() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   PictureArea area{{0, 0}, screen};
   if (desk_.preferences.panels) {
     draw_menu();
-    const float top = ImGui::GetFrameHeight(), bar = 1.15f * ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
+    const float top = ImGui::GetFrameHeight(),
+                bar = 1.15f * ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
     area = {{Column::pixels(desk_.preferences.left_width), top},
             {screen.x - Column::pixels(desk_.preferences.right_width), screen.y - bar}};
     left_.draw(desk_, top, area.high.y, desk_.preferences.left_panel, desk_.preferences.left_width);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All panels of the window, and what keys and menus do with them.
 #pragma once
 

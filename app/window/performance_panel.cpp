@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/performance_panel.h"
 
 #include <fmt/format.h>
@@ -44,7 +45,8 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
   ImGui::TextUnformatted(device.c_str());
   ImGui::PopTextWrapPos();
   if (begin_figures("physics")) {
-    figure("springs evaluated", short_number(moment.springs_per_second) + "/s", "while it steps; the paper's measure of speed");
+    figure("springs evaluated", short_number(moment.springs_per_second) + "/s",
+           "while it steps; the paper's measure of speed");
     figure("a step of all robots", milliseconds(moment.step_seconds), "wall time of one time step");
     figure("reading results", milliseconds(moment.telling_seconds),
            "reading positions, and what is coloured by, by the thread that simulates");
@@ -69,7 +71,8 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
     figure("panels", milliseconds(mean.panels), "the panels themselves");
     figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
     figure("picture's size",
-           fmt::format("{} x {} ({:.0f} %)", picture.renderer().width(), picture.renderer().height(), 100 * picture.share()),
+           fmt::format("{} x {} ({:.0f} %)", picture.renderer().width(), picture.renderer().height(),
+                       100 * picture.share()),
            "smaller than the window while it moves, where drawing is slow");
     ImGui::EndTable();
   }
@@ -79,8 +82,15 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
     whole.push_back(1000 * costs_[i].whole);
     drawn.push_back(1000 * costs_[i].picture);
   }
-  const PlotLine lines[] = {{"frame", render::category_color(0), number, whole}, {"picture", render::category_color(1), number, drawn}};
-  plot("costs", {.title = "frame and picture", .unit = "ms", .x_title = "frame, 0 = now", .x_unit = "", .height = 8 * ImGui::GetFontSize()}, lines);
+  const PlotLine lines[] = {{"frame", render::category_color(0), number, whole},
+                            {"picture", render::category_color(1), number, drawn}};
+  plot("costs",
+       {.title = "frame and picture",
+        .unit = "ms",
+        .x_title = "frame, 0 = now",
+        .x_unit = "",
+        .height = 8 * ImGui::GetFontSize()},
+       lines);
   plot_key(lines);
   if (!picture.renderer().times().empty() && ImGui::CollapsingHeader("Parts of the picture")) {
     if (begin_figures("passes")) {

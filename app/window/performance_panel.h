@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the time goes.
 #pragma once
 
@@ -12,10 +13,10 @@ namespace mercury::window {
 
 // What the parts of one frame of the window took [s].
 struct FrameCost {
-  double whole = 0;      // from frame to frame
-  double scene = 0;      // following the physics
-  double picture = 0;    // drawing the robots
-  double panels = 0;     // this and the other panels
+  double whole = 0;    // from frame to frame
+  double scene = 0;    // following the physics
+  double picture = 0;  // drawing the robots
+  double panels = 0;   // this and the other panels
   double thumbnails = 0;
 };
 

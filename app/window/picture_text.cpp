@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/picture_text.h"
 
 #include <fmt/format.h>
@@ -52,17 +53,20 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
   std::vector<Box> boxes;
   for (const Placed& label : placed) {
     const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
-    Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin}, {label.at.x + size.x / 2, label.at.y - margin}, label.text};
+    Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
+            {label.at.x + size.x / 2, label.at.y - margin},
+            label.text};
     // Not over an edge, for a robot that is seen.
     if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
     if (label.at.x > area.low.x && label.at.x < area.high.x)
-      box.low.x = std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
+      box.low.x =
+          std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
     box.high = {box.low.x + size.x, box.low.y + size.y};
     const float wanted = box.low.y;
     for (int attempts = 0; attempts < 4; ++attempts) {
       const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const Box& other) {
-        return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin && box.low.y < other.high.y + margin &&
-               other.low.y < box.high.y + margin;
+        return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin &&
+               box.low.y < other.high.y + margin && other.low.y < box.high.y + margin;
       });
       if (covered == boxes.end()) break;
       box.low.y = covered->low.y - size.y - margin;
@@ -99,11 +103,13 @@ void draw_legend(const render::Legend& legend, const PictureArea& area) {
   const float text = ImGui::GetFontSize(), step = 1.35f * text;
   const std::string title = legend.unit.empty() ? legend.title : fmt::format("{} [{}]", legend.title, legend.unit);
   float width = ImGui::CalcTextSize(title.c_str()).x;
-  for (const auto& [color, name] : legend.swatches) width = std::max(width, 1.4f * text + ImGui::CalcTextSize(name.c_str()).x);
+  for (const auto& [color, name] : legend.swatches)
+    width = std::max(width, 1.4f * text + ImGui::CalcTextSize(name.c_str()).x);
   width = std::max(width, 5 * text);
   const float rows = legend.scale ? 9 : static_cast<float>(legend.swatches.size());
   const ImVec2 low{area.high.x - width - 1.6f * text, area.low.y + 1.2f * text};
-  backing({low.x - 0.6f * text, low.y - 0.5f * text}, {low.x + width + 0.6f * text, low.y + (rows + 1) * step + 0.4f * text});
+  backing({low.x - 0.6f * text, low.y - 0.5f * text},
+          {low.x + width + 0.6f * text, low.y + (rows + 1) * step + 0.4f * text});
   list.AddText(low, text_color(), title.c_str());
   if (legend.scale) {
     draw_scale(legend, {low.x, low.y + 1.6f * text}, {low.x + width, low.y + (rows + 1) * step - 0.3f * text});
@@ -123,12 +129,15 @@ void draw_length(const PictureArea& area, const render::Camera& camera) {
   const float pixels_a_metre = area.height() / (2 * depth * std::tan(camera.field_of_view / 2));
   const float metres = render::round_length(0.22f * area.width() / pixels_a_metre), across = metres * pixels_a_metre;
   const float text = ImGui::GetFontSize();
-  const std::string name = metres < 0.01f ? fmt::format("{:g} mm", 1000 * metres) : metres < 1 ? fmt::format("{:g} cm", 100 * metres) : fmt::format("{:g} m", metres);
+  const std::string name = metres < 0.01f ? fmt::format("{:g} mm", 1000 * metres)
+                           : metres < 1   ? fmt::format("{:g} cm", 100 * metres)
+                                          : fmt::format("{:g} m", metres);
   const ImVec2 end{area.high.x - 1.4f * text, area.high.y - 1.2f * text};
   backing({end.x - across - 0.5f * text, end.y - 1.7f * text}, {end.x + 0.5f * text, end.y + 0.5f * text});
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled({end.x - across, end.y - 0.12f * text}, {end.x, end.y + 0.12f * text}, text_color());
-  list.AddText({end.x - across / 2 - ImGui::CalcTextSize(name.c_str()).x / 2, end.y - 1.4f * text}, text_color(), name.c_str());
+  list.AddText({end.x - across / 2 - ImGui::CalcTextSize(name.c_str()).x / 2, end.y - 1.4f * text}, text_color(),
+               name.c_str());
 }
 
 }  // namespace

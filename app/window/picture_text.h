@@ -1,4 +1,6 @@
-// What is written on the picture: names, legend, clock, lengths; by ImGui, so that it is sharp however coarse the picture.
+// SPDX-License-Identifier: Apache-2.0
+// What is written on the picture: names, legend, clock, lengths; by ImGui, so that it is sharp however coarse the
+// picture.
 #pragma once
 
 #include "app/window/hands.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 3D picture in its part of the window, drawn so that the window stays quick whatever a picture costs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/play_bar.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,9 @@ bool sign_button(const char* id, Sign sign, const char* explanation, bool lit = 
   const ImVec2 c{corner.x + side / 2, corner.y + side / 2};
   const float r = 0.24f * side;
   switch (sign) {
-    case Sign::play: list.AddTriangleFilled({c.x - 0.7f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.7f * r, c.y + r}, color); break;
+    case Sign::play:
+      list.AddTriangleFilled({c.x - 0.7f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.7f * r, c.y + r}, color);
+      break;
     case Sign::pause:
       list.AddRectFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.2f * r, c.y + r}, color);
       list.AddRectFilled({c.x + 0.25f * r, c.y - r}, {c.x + 0.85f * r, c.y + r}, color);
@@ -67,14 +70,18 @@ void draw_speed(Desk& desk) {
   auto speed = static_cast<float>(unlimited ? 100 : scene.speed());
   const std::string shown = unlimited ? "-" : "\xc3\x97 " + factor_text(static_cast<double>(speed));
   ImGui::BeginDisabled(unlimited);
-  if (ImGui::SliderFloat("##speed", &speed, 0.001f, 100, shown.c_str(), ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat) &&
+  if (ImGui::SliderFloat("##speed", &speed, 0.001f, 100, shown.c_str(),
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat) &&
       std::isfinite(speed))
     scene.set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
   desk.observations.item("speed");
   hint("simulated seconds a second, 1/1000 to 100 (keys + and -)");
   ImGui::SameLine();
-  if (toggle("\xc3\x97" "1", scene.speed() == 1)) scene.set_speed(1);
+  if (toggle("\xc3\x97"
+             "1",
+             scene.speed() == 1))
+    scene.set_speed(1);
   desk.observations.item("speed.one");
   hint("real time (key 0)");
   ImGui::SameLine();
@@ -96,15 +103,18 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
   ImGui::SetNextWindowPos(low);
   ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-  ImGui::Begin("##play", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::Begin("##play", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   LiveScene& scene = desk.scene;
   const float text = ImGui::GetFontSize();
   if (sign_button("##reset", Sign::reset, "back to the start (key R)")) scene.reset();
   desk.observations.item("reset");
   ImGui::SameLine();
-  if (sign_button("##toggle", scene.playing() ? Sign::pause : Sign::play, scene.playing() ? "pause (Space)" : "play (Space)", true)) scene.toggle();
+  if (sign_button("##toggle", scene.playing() ? Sign::pause : Sign::play,
+                  scene.playing() ? "pause (Space)" : "play (Space)", true))
+    scene.toggle();
   desk.observations.item("play");
   ImGui::SameLine();
   if (sign_button("##step", Sign::step, "one step of time (right arrow or .)")) scene.step();
@@ -113,15 +123,19 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
   // All of the line in the middle of the buttons' height.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   ImGui::PushFont(large_font());
-  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 - ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
+  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 -
+                       ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
   ImGui::TextUnformatted(time_text(scene.moment().time, scene.speed() < 0.05 ? 3 : 2).c_str());
   ImGui::PopFont();
-  hint(fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt).c_str());
+  hint(
+      fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt)
+          .c_str());
   ImGui::SameLine();
   ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
   draw_speed(desk);
   const std::string rate = short_number(scene.moment().springs_per_second) + " springs/s";
-  const std::string where = fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
+  const std::string where =
+      fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
   const float width = ImGui::CalcTextSize(where.c_str()).x;
   ImGui::SameLine();
   const float room = ImGui::GetContentRegionAvail().x - width;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time: play, pause, step, reset and speed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/plot.h"
 
 #include <fmt/format.h>
@@ -54,7 +55,8 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     list.AddLine(p, {frame.high.x, p.y}, palette().grid);
     const float step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : 1;
     const std::string label = render::tick_text(tick, step);
-    list.AddText({p.x - ImGui::CalcTextSize(label.c_str()).x - 0.3f * text, p.y - 0.5f * text}, palette().faint, label.c_str());
+    list.AddText({p.x - ImGui::CalcTextSize(label.c_str()).x - 0.3f * text, p.y - 0.5f * text}, palette().faint,
+                 label.c_str());
   }
   const auto x_ticks = render::ticks(static_cast<float>(frame.x.low), static_cast<float>(frame.x.high), 5);
   for (const float tick : x_ticks) {
@@ -77,7 +79,8 @@ void draw_line(const Frame& frame, const PlotLine& line) {
   std::vector<ImVec2> points;
   const auto flush = [&] {
     if (points.size() > 1)
-      list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0, 1.6f * ImGui::GetFontSize() / 17);
+      list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0,
+                       1.6f * ImGui::GetFontSize() / 17);
     points.clear();
   };
   const std::size_t count = std::min(line.x.size(), line.y.size());
@@ -103,7 +106,8 @@ void show_values(const Frame& frame, const PlotAxes& axes, std::span<const PlotL
   for (const PlotLine& line : lines) {
     const auto next = std::lower_bound(line.x.begin(), line.x.end(), x);
     if (line.x.empty()) continue;
-    const std::size_t i = std::min(static_cast<std::size_t>(next - line.x.begin()), std::min(line.x.size(), line.y.size()) - 1);
+    const std::size_t i =
+        std::min(static_cast<std::size_t>(next - line.x.begin()), std::min(line.x.size(), line.y.size()) - 1);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(line.color));
     ImGui::TextUnformatted("\xe2\x80\xa2");
     ImGui::PopStyleColor();
@@ -137,8 +141,9 @@ void plot_key(std::span<const PlotLine> lines) {
     }
     first = false;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text}, {corner.x + 0.6f * text, corner.y + 0.8f * text},
-                                              packed(line.color), 0.1f * text);
+    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text},
+                                              {corner.x + 0.6f * text, corner.y + 0.8f * text}, packed(line.color),
+                                              0.1f * text);
     ImGui::Dummy({0.7f * text, text});
     ImGui::SameLine();
     ImGui::TextUnformatted(name.c_str());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plot of several lines over time, with axes, ticks and units.
 #pragma once
 
@@ -19,10 +20,10 @@ struct PlotLine {
 };
 
 struct PlotAxes {
-  std::string title;    // "speed"
-  std::string unit;     // "m/s"
+  std::string title;  // "speed"
+  std::string unit;   // "m/s"
   std::string x_title = "time [s]", x_unit = "s";
-  float height = 140;   // [pixels]
+  float height = 140;  // [pixels]
 };
 
 // Draws it over the whole width that is left. Hovering shows the values under the cursor.

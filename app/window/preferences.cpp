@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/preferences.h"
 
 #include <algorithm>
@@ -24,7 +25,8 @@ void take(const json& document, const char* name, Value& value) {
 }  // namespace
 
 std::filesystem::path settings_folder() {
-  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder) return std::filesystem::path(folder) / "mercury";
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
+    return std::filesystem::path(folder) / "mercury";
   if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".config" / "mercury";
   return {};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a window remembers for the next one, apart from what the scene remembers.
 #pragma once
 
@@ -12,11 +13,11 @@ namespace mercury::window {
 struct Preferences {
   WindowSize size;
   float text_scale = 1;
-  bool panels = true;             // shown at all
+  bool panels = true;                     // shown at all
   float left_width = 0, right_width = 0;  // of the columns of panels, in lines of text; 0 = as the window suggests
   std::string left_panel = "Robots", right_panel = "See";
   render::Quality quality = render::Quality::automatic;
-  std::string folder;             // shown by the browser last
+  std::string folder;                    // shown by the browser last
   std::string open_folder, save_folder;  // where files were opened and saved last
   bool pause_on_explosion = false;
 };

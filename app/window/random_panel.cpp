@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/random_panel.h"
 
 #include <algorithm>
@@ -7,7 +8,8 @@
 namespace mercury::window {
 namespace {
 
-bool whole_number(const char* name, const char* explanation, int& value, int low, int high, Desk& desk, const char* item) {
+bool whole_number(const char* name, const char* explanation, int& value, int low, int high, Desk& desk,
+                  const char* item) {
   ImGui::PushID(name);
   row(name, explanation);
   const bool changed = ImGui::InputInt("##value", &value, 1, 10);
@@ -22,7 +24,8 @@ bool whole_number(const char* name, const char* explanation, int& value, int low
 void RandomPanel::draw(Desk& desk) {
   heading("Random robots");
   int kind = static_cast<int>(generation.kind);
-  if (choice("kind", "voxel: patches of muscle, tissue and bone. Network: grown by a neural network", kind, {"voxel", "network"}))
+  if (choice("kind", "voxel: patches of muscle, tissue and bone. Network: grown by a neural network", kind,
+             {"voxel", "network"}))
     generation.kind = static_cast<Generation::Kind>(kind);
   desk.observations.item("generate.kind");
   auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
@@ -54,10 +57,12 @@ void RandomPanel::draw_voxel_options(Desk& desk) {
     voxel.largest[i] = std::clamp(voxel.largest[i], voxel.smallest[i], 24);
   }
   auto air = static_cast<float>(100 * voxel.air);
-  if (slider("air", "share of the voxels that are empty", air, 30, {0, 90, "%.0f %%"})) voxel.air = std::clamp(static_cast<double>(air) / 100, 0.0, 0.95);
+  if (slider("air", "share of the voxels that are empty", air, 30, {0, 90, "%.0f %%"}))
+    voxel.air = std::clamp(static_cast<double>(air) / 100, 0.0, 0.95);
   desk.observations.item("generate.air");
   int mirror = static_cast<int>(voxel.mirror);
-  if (choice("symmetry", "halves that face each other along this axis", mirror, {"none", "x", "y", "z"})) voxel.mirror = static_cast<Mirror>(mirror);
+  if (choice("symmetry", "halves that face each other along this axis", mirror, {"none", "x", "y", "z"}))
+    voxel.mirror = static_cast<Mirror>(mirror);
   desk.observations.item("generate.symmetry");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random robots: how they are made, and the button that makes them.
 #pragma once
 

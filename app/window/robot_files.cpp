@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/robot_files.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,9 @@ const std::vector<std::string> robot_extensions{".json", ".cbor"};
 const std::vector<const char*> robot_formats{"JSON", "CBOR"};
 
 void save_one(Desk& desk, const RobotEntry& robot) {
-  const fs::path file = robot.file.empty() ? fs::path(desk.preferences.save_folder) / (file_name_of(robot.name) + ".json") : fs::path(robot.file);
+  const fs::path file = robot.file.empty()
+                            ? fs::path(desk.preferences.save_folder) / (file_name_of(robot.name) + ".json")
+                            : fs::path(robot.file);
   desk.dialogs.ask_files({.kind = FileQuestion::Kind::save,
                           .title = "Save " + robot.name,
                           .button = "Save",
@@ -25,7 +28,9 @@ void save_one(Desk& desk, const RobotEntry& robot) {
                          [&desk, id = robot.id](const FileAnswer& answer) {
                            const fs::path path = answer.paths.front();
                            desk.preferences.save_folder = path.parent_path().string();
-                           save_with_care(desk, "robot", [&desk, id, path](bool overwrite) { return desk.scene.save(id, path, overwrite); });
+                           save_with_care(desk, "robot", [&desk, id, path](bool overwrite) {
+                             return desk.scene.save(id, path, overwrite);
+                           });
                          });
 }
 
@@ -41,9 +46,10 @@ void save_many(Desk& desk, const std::vector<RobotId>& robots) {
                            const fs::path folder = answer.paths.front();
                            const RobotFormat format = answer.format == 1 ? RobotFormat::cbor : RobotFormat::json;
                            desk.preferences.save_folder = folder.string();
-                           save_with_care(desk, fmt::format("{} robots", robots.size()), [&desk, robots, folder, format](bool overwrite) {
-                             return desk.scene.save_all(robots, folder, format, overwrite);
-                           });
+                           save_with_care(desk, fmt::format("{} robots", robots.size()),
+                                          [&desk, robots, folder, format](bool overwrite) {
+                                            return desk.scene.save_all(robots, folder, format, overwrite);
+                                          });
                          });
 }
 
@@ -112,8 +118,9 @@ void quit_with_care(Desk& desk, std::function<void()> quit) {
     return;
   }
   desk.observations.tell("asks", {{"what", "quit"}});
-  const std::string question = lost.size() == 1 ? "One robot was made or changed here and is not saved."
-                                                : fmt::format("{} robots were made or changed here and are not saved.", lost.size());
+  const std::string question = lost.size() == 1
+                                   ? "One robot was made or changed here and is not saved."
+                                   : fmt::format("{} robots were made or changed here and are not saved.", lost.size());
   desk.dialogs.ask({.title = "Quit without saving?",
                     .text = question,
                     .button = "Quit",

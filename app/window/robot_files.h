@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots from files and into files, as the user asks for it.
 #pragma once
 

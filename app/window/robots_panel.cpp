@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/robots_panel.h"
 
 #include <fmt/format.h>
@@ -49,13 +50,16 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
   const std::vector<RobotEntry> entries = scene.entries();
   const std::size_t selected = scene.selection().size();
   heading(fmt::format("{} robot{}{}", entries.size(), entries.size() == 1 ? "" : "s",
-                      selected ? fmt::format(", {} selected", selected) : "").c_str());
+                      selected ? fmt::format(", {} selected", selected) : "")
+              .c_str());
   // Whole rows, and the heading: as many as leave room for what is below.
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random.height();
   const float most = std::max(5.0f, std::floor((ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - below) / line) - 1);
   const float height = (std::clamp(static_cast<float>(entries.size()), 3.0f, most) + 1) * line + 2;
-  if (!ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter, {0, height})) return;
+  if (!ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
+                         {0, height}))
+    return;
   ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("springs", ImGuiTableColumnFlags_WidthFixed);
   ImGui::TableSetupColumn("shown", ImGuiTableColumnFlags_WidthFixed);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robots of the scene: list, changes, and the making of random ones.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/screenshot.h"
 
 #include <epoxy/gl.h>
@@ -20,7 +21,8 @@ render::Image read_window(WindowSize pixels, render::PixelFormat format) {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, pixels.width, pixels.height, channels == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, image.bytes.data());
+  glReadPixels(0, 0, pixels.width, pixels.height, channels == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE,
+               image.bytes.data());
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   for (int upper = 0, lower = pixels.height - 1; upper < lower; ++upper, --lower)
     std::swap_ranges(image.bytes.begin() + upper * static_cast<std::ptrdiff_t>(row),
@@ -36,7 +38,8 @@ std::filesystem::path fresh_name(const std::filesystem::path& folder, const std:
   const std::string name = fmt::format("mercury-{:%Y-%m-%d-%H%M%S}", local);
   std::filesystem::path path = folder / (name + extension);
   std::error_code ignored;
-  for (int number = 2; std::filesystem::exists(path, ignored); ++number) path = folder / fmt::format("{}-{}{}", name, number, extension);
+  for (int number = 2; std::filesystem::exists(path, ignored); ++number)
+    path = folder / fmt::format("{}-{}{}", name, number, extension);
   return path;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/see_panel.h"
 
 #include <fmt/format.h>
@@ -69,7 +70,8 @@ bool color_section(ViewSettings& view, const Environment& environment, Observati
     if (on) ImGui::PopStyleColor(2);
     ImGui::EndDisabled();
     observations.item("color." + name);
-    hint(fmt::format("{} (key {}){}", colorings[i].meaning, i + 1, offered ? "" : "; only in the ocean environment").c_str());
+    hint(fmt::format("{} (key {}){}", colorings[i].meaning, i + 1, offered ? "" : "; only in the ocean environment")
+             .c_str());
   }
   if (view.color == ColorBy::material) return changed;
   bool fixed = view.scale.has_value();
@@ -81,7 +83,8 @@ bool color_section(ViewSettings& view, const Environment& environment, Observati
   if (view.scale) {
     float ends[2] = {view.scale->first, view.scale->second};
     row("from, to", "values at the ends of the colours");
-    if (ImGui::InputFloat2("##scale", ends, "%.4g") && std::isfinite(ends[0]) && std::isfinite(ends[1]) && ends[0] < ends[1]) {
+    if (ImGui::InputFloat2("##scale", ends, "%.4g") && std::isfinite(ends[0]) && std::isfinite(ends[1]) &&
+        ends[0] < ends[1]) {
       view.scale = std::pair(ends[0], ends[1]);
       changed = true;
     }
@@ -110,7 +113,8 @@ bool show_section(ViewSettings& view, const Environment& environment, Observatio
     ImGui::TableNextColumn();
     changed |= check("Names", "name, distance and rank above each robot (key L)", shown.labels, "labels", observations);
     changed |= check("Legend", "what the colours mean (key K)", shown.legend, "legend", observations);
-    changed |= check("Clock", "simulated time, in videos and where the panels are hidden", shown.clock, "clock", observations);
+    changed |=
+        check("Clock", "simulated time, in videos and where the panels are hidden", shown.clock, "clock", observations);
     changed |= check("Scale bar", "a length in metres", shown.scale_bar, "scale_bar", observations);
     ImGui::EndTable();
   }
@@ -119,18 +123,22 @@ bool show_section(ViewSettings& view, const Environment& environment, Observatio
     const bool ocean = is_ocean(environment);
     ImGui::TableNextColumn();
     ImGui::BeginDisabled(!ocean && !shown.arrows.drag);
-    changed |= check("Drag", "of the water on each face (key D); only in the ocean environment", shown.arrows.drag, "drag", observations);
+    changed |= check("Drag", "of the water on each face (key D); only in the ocean environment", shown.arrows.drag,
+                     "drag", observations);
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!ocean && !shown.arrows.lift);
-    changed |= check("Lift", "of the water on each face; only in the ocean environment", shown.arrows.lift, "lift", observations);
+    changed |= check("Lift", "of the water on each face; only in the ocean environment", shown.arrows.lift, "lift",
+                     observations);
     ImGui::EndDisabled();
     ImGui::TableNextColumn();
     changed |= check("Velocity", "of each centre of mass", shown.arrows.velocity, "velocity", observations);
     ImGui::BeginDisabled(!has_gravity(environment) && !shown.arrows.gravity);
-    changed |= check("Gravity", "at each centre of mass, where there is gravity", shown.arrows.gravity, "gravity", observations);
+    changed |= check("Gravity", "at each centre of mass, where there is gravity", shown.arrows.gravity, "gravity",
+                     observations);
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!is_land(environment) && !shown.arrows.contact);
-    changed |= check("Contact", "of the floor with each mass on it; only on land", shown.arrows.contact, "contact", observations);
+    changed |= check("Contact", "of the floor with each mass on it; only on land", shown.arrows.contact, "contact",
+                     observations);
     ImGui::EndDisabled();
     ImGui::EndTable();
   }
@@ -169,11 +177,12 @@ void camera_section(CameraHand& camera, Observations& observations) {
     const char* name;
     const char* meaning;
   };
-  static constexpr Mode modes[] = {{CameraMode::still, "Free", "stays where you put it"},
-                                   {CameraMode::group, "Group", "keeps all robots in view"},
-                                   {CameraMode::follow, "Follow", "goes along with the selected robot, or the group (key G)"},
-                                   {CameraMode::turntable, "Circle", "circles the group (key T)"},
-                                   {CameraMode::top, "Top", "looks straight down (key Z)"}};
+  static constexpr Mode modes[] = {
+      {CameraMode::still, "Free", "stays where you put it"},
+      {CameraMode::group, "Group", "keeps all robots in view"},
+      {CameraMode::follow, "Follow", "goes along with the selected robot, or the group (key G)"},
+      {CameraMode::turntable, "Circle", "circles the group (key T)"},
+      {CameraMode::top, "Top", "looks straight down (key Z)"}};
   for (const Mode& mode : modes) {
     if (mode.mode != CameraMode::still) ImGui::SameLine(0, 0.3f * ImGui::GetFontSize());
     if (toggle(mode.name, camera.mode() == mode.mode)) camera.set_mode(mode.mode);
@@ -181,7 +190,8 @@ void camera_section(CameraHand& camera, Observations& observations) {
     hint(mode.meaning);
   }
   float degrees = camera.field_of_view * 57.29578f;
-  if (slider("angle of view", "of the picture's height; small = like a telescope", degrees, 0.6f * 57.29578f, {5, 90, "%.0f\xc2\xb0"}))
+  if (slider("angle of view", "of the picture's height; small = like a telescope", degrees, 0.6f * 57.29578f,
+             {5, 90, "%.0f\xc2\xb0"}))
     camera.field_of_view = degrees / 57.29578f;
 }
 
@@ -198,7 +208,8 @@ bool look_section(ViewSettings& view, Preferences& preferences, int robots, Obse
     row("columns", "of the grid; 0 = as suits the picture");
     if (ImGui::InputInt("##columns", &columns)) {
       columns = std::clamp(columns, 0, 1000);
-      view.grid = columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;
+      view.grid =
+          columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;
       changed = true;
     }
     observations.item("columns");
@@ -214,9 +225,11 @@ bool look_section(ViewSettings& view, Preferences& preferences, int robots, Obse
     preferences.quality = static_cast<render::Quality>(quality);
   observations.item("quality");
   row("text size", "of the panels");
-  if (ImGui::Button("-##text", {1.8f * ImGui::GetFontSize(), 0})) preferences.text_scale = std::max(0.7f, preferences.text_scale - 0.1f);
+  if (ImGui::Button("-##text", {1.8f * ImGui::GetFontSize(), 0}))
+    preferences.text_scale = std::max(0.7f, preferences.text_scale - 0.1f);
   ImGui::SameLine();
-  if (ImGui::Button("+##text", {1.8f * ImGui::GetFontSize(), 0})) preferences.text_scale = std::min(2.5f, preferences.text_scale + 0.1f);
+  if (ImGui::Button("+##text", {1.8f * ImGui::GetFontSize(), 0}))
+    preferences.text_scale = std::min(2.5f, preferences.text_scale + 0.1f);
   ImGui::SameLine();
   ImGui::Text("%.0f %%", 100 * static_cast<double>(preferences.text_scale));
   return changed;

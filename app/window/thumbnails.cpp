@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/thumbnails.h"
 
 #include <vector>
@@ -10,7 +11,7 @@ namespace mercury::window {
 
 ImTextureID Thumbnails::find(const std::string& name) const {
   const auto found = pictures_.find(name);
-  return found == pictures_.end() ? ImTextureID() : (ImTextureID)static_cast<std::intptr_t>(found->second.get());
+  return found == pictures_.end() ? ImTextureID() : (ImTextureID) static_cast<std::intptr_t>(found->second.get());
 }
 
 void Thumbnails::draw(const std::string& name, const Robot& robot, render::Theme theme) {
@@ -21,7 +22,8 @@ void Thumbnails::draw(const std::string& name, const Robot& robot, render::Theme
   const render::Body body = shape.body();
   renderer_->set_bodies(std::span(&body, 1));
   std::vector<render::Look> looks;
-  for (const render::Color color : material_colors(materials_of(robot), robot.materials.empty())) looks.push_back({.color = color});
+  for (const render::Color color : material_colors(materials_of(robot), robot.materials.empty()))
+    looks.push_back({.color = color});
   const render::Placement placement{.smooth = kind_of(robot) == "nn"};
   render::Scene scene{.placements = std::span(&placement, 1),
                       .looks = looks,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small pictures of robots, drawn a few a frame by the renderer of the window's context.
 #pragma once
 

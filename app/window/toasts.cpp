@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/toasts.h"
 
 #include <fmt/format.h>
@@ -14,20 +15,28 @@ constexpr std::size_t most = 5;
 
 const char* name_of(Tone tone) {
   switch (tone) {
-    case Tone::news: return "news";
-    case Tone::success: return "success";
-    case Tone::warning: return "warning";
-    case Tone::error: return "error";
+    case Tone::news:
+      return "news";
+    case Tone::success:
+      return "success";
+    case Tone::warning:
+      return "warning";
+    case Tone::error:
+      return "error";
   }
   return "";
 }
 
 ImU32 color_of(Tone tone) {
   switch (tone) {
-    case Tone::success: return palette().good;
-    case Tone::warning: return palette().warning;
-    case Tone::error: return palette().bad;
-    default: return palette().accent;
+    case Tone::success:
+      return palette().good;
+    case Tone::warning:
+      return palette().warning;
+    case Tone::error:
+      return palette().bad;
+    default:
+      return palette().accent;
   }
 }
 
@@ -45,7 +54,8 @@ void Toasts::say(Tone tone, std::string text) {
   // "picture saved: ..." takes the place of the one before.
   const std::string kind = text.substr(0, text.find(": "));
   std::erase_if(toasts_, [&](const Toast& toast) {
-    return tone == Tone::success && toast.tone == tone && toast.told && toast.text.substr(0, toast.text.find(": ")) == kind;
+    return tone == Tone::success && toast.tone == tone && toast.told &&
+           toast.text.substr(0, toast.text.find(": ")) == kind;
   });
   toasts_.push_back({tone, std::move(text), stays});
   if (toasts_.size() > most) toasts_.pop_front();
@@ -65,8 +75,8 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, Observations& observations
     ImGui::SetNextWindowSize({std::min(needed, width + 2.4f * line), 0});
     ImGui::SetNextWindowBgAlpha(0.94f * static_cast<float>(std::clamp(toast.left * 2, 0.0, 1.0)));
     ImGui::Begin(fmt::format("##toast{}", number++).c_str(), nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + 0.3f * line, corner.y + size.y}, color_of(toast.tone),
                                               ImGui::GetStyle().WindowRounding, ImDrawFlags_RoundCornersLeft);

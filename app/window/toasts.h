@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages that appear over the picture and go by themselves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/tune_panel.h"
 
 #include <cmath>
@@ -10,23 +11,28 @@ namespace {
 
 bool edit(Ocean& ocean) {
   static const Ocean standard;
-  bool changed = slider("density", "of the water, rho", ocean.density, standard.density, {0, 2000, "%.0f kg/m\xc2\xb3"});
-  changed |= slider("drag coefficient", "C_D of a face across the flow", ocean.drag_coefficient, standard.drag_coefficient, {0, 3, "%.2f"});
-  changed |= slider("lift coefficient", "C_L of a face", ocean.lift_coefficient, standard.lift_coefficient, {0, 1, "%.2f"});
+  bool changed =
+      slider("density", "of the water, rho", ocean.density, standard.density, {0, 2000, "%.0f kg/m\xc2\xb3"});
+  changed |= slider("drag coefficient", "C_D of a face across the flow", ocean.drag_coefficient,
+                    standard.drag_coefficient, {0, 3, "%.2f"});
+  changed |=
+      slider("lift coefficient", "C_L of a face", ocean.lift_coefficient, standard.lift_coefficient, {0, 1, "%.2f"});
   changed |= slider("flow", "velocity of the water [m/s]", ocean.flow, standard.flow, {-2, 2, "%.2f"});
   return changed;
 }
 
 bool edit(OceanSimple& ocean) {
   static const OceanSimple standard;
-  bool changed = slider("drag of a mass", "force over speed through the water", ocean.point_drag, standard.point_drag, {0, 10, "%.2f N s/m"});
+  bool changed = slider("drag of a mass", "force over speed through the water", ocean.point_drag, standard.point_drag,
+                        {0, 10, "%.2f N s/m"});
   changed |= slider("flow", "velocity of the water [m/s]", ocean.flow, standard.flow, {-2, 2, "%.2f"});
   return changed;
 }
 
 bool edit(Land& land) {
   static const Land standard;
-  bool changed = slider("friction", "Coulomb coefficient of the floor", land.friction, standard.friction, {0, 2, "%.2f"});
+  bool changed =
+      slider("friction", "Coulomb coefficient of the floor", land.friction, standard.friction, {0, 2, "%.2f"});
   ImGui::PushID("collision");
   row("self-collision", "masses of one robot that no spring joins repel each other");
   changed |= ImGui::Checkbox("##on", &land.self_collision);
@@ -41,9 +47,10 @@ bool edit(Land& land) {
 template <class Kind>
 bool edit_common(Kind& environment) {
   static const Kind standard;
-  bool changed = slider("gravity", "acceleration [m/s\xc2\xb2]", environment.gravity, standard.gravity, {-20, 20, "%.2f"});
-  changed |= slider("stiffness scale", "multiplies every spring's stiffness", environment.stiffness_scale, standard.stiffness_scale,
-                    {0.01f, 1000, "\xc3\x97 %.2f", true});
+  bool changed =
+      slider("gravity", "acceleration [m/s\xc2\xb2]", environment.gravity, standard.gravity, {-20, 20, "%.2f"});
+  changed |= slider("stiffness scale", "multiplies every spring's stiffness", environment.stiffness_scale,
+                    standard.stiffness_scale, {0.01f, 1000, "\xc3\x97 %.2f", true});
   return changed;
 }
 
@@ -51,22 +58,25 @@ bool solver_section(Configuration& configuration, Observations& observations) {
   heading("Solver");
   bool changed = false;
   int solver = static_cast<int>(configuration.solver);
-  if (choice("method", "force: Hooke's law, explicit. XPBD: positions, stable at large steps", solver, {"force", "XPBD"})) {
+  if (choice("method", "force: Hooke's law, explicit. XPBD: positions, stable at large steps", solver,
+             {"force", "XPBD"})) {
     configuration.solver = static_cast<Solver>(solver);
     changed = true;
   }
   observations.item("tune.solver");
   static const Configuration standard;
   auto dt = static_cast<float>(1000 * configuration.dt);
-  if (slider("time step", "smaller is more exact and more stable, and slower", dt, static_cast<float>(1000 * standard.dt),
-             {0.01f, 20, "%.3g ms", true}) && dt > 0) {
+  if (slider("time step", "smaller is more exact and more stable, and slower", dt,
+             static_cast<float>(1000 * standard.dt), {0.01f, 20, "%.3g ms", true}) &&
+      dt > 0) {
     configuration.dt = static_cast<double>(dt) / 1000;
     changed = true;
   }
   observations.item("tune.dt");
   auto damping = static_cast<float>(configuration.damping);
   if (slider("damping", "velocities shrink by exp(-damping dt) a step", damping, static_cast<float>(standard.damping),
-             {0, 5, "%.2f 1/s"}) && damping >= 0) {
+             {0, 5, "%.2f 1/s"}) &&
+      damping >= 0) {
     configuration.damping = static_cast<double>(damping);
     changed = true;
   }
@@ -80,7 +90,9 @@ bool environment_section(Configuration& configuration, Observations& observation
   auto kind = static_cast<int>(configuration.environment.index());
   if (choice("where", "ocean: drag on the skin. Simple ocean: drag on each mass. Land: floor, friction, gravity", kind,
              {"ocean", "simple ocean", "land"})) {
-    configuration.environment = kind == 0 ? Environment(Ocean{}) : kind == 1 ? Environment(OceanSimple{}) : Environment(Land{});
+    configuration.environment = kind == 0   ? Environment(Ocean{})
+                                : kind == 1 ? Environment(OceanSimple{})
+                                            : Environment(Land{});
     changed = true;
   }
   observations.item("tune.environment");

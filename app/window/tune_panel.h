@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solver, environment and their parameters, as sliders that act at once.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury view: the interactive window.
 #include <fmt/format.h>
 
@@ -66,7 +67,8 @@ int view(const ViewCommandOptions& options) {
   const std::vector<Robot> robots = options.robots.load_files();
   if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
   viewer.files = options.robots.files();
-  for (const RobotOptions::RandomRobots& request : options.robots.random()) viewer.generations.push_back(generation_of(request));
+  for (const RobotOptions::RandomRobots& request : options.robots.random())
+    viewer.generations.push_back(generation_of(request));
   return window::run_viewer(std::move(viewer));
 }
 
@@ -79,7 +81,8 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--size", options->size, "Size of the window (default: that of the last time, or 1280x720)",
            "WIDTHxHEIGHT")
       ->group("Window");
-  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Effort of drawing")->group("Window");
+  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Effort of drawing")
+      ->group("Window");
   command->add_flag("--paused", options->paused, "Begin at rest")->group("Window");
   command->add_flag("--fresh", options->fresh, "Neither use nor keep settings of earlier windows")->group("Window");
   add_text(*command, "--report", options->report,

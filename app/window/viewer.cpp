@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/viewer.h"
 
 #include <epoxy/gl.h>
@@ -26,7 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double frame_time = 1.0 / 60;  // at least, where the display sets no pace [s]
 constexpr double idle_time = 0.2;        // between looks at what goes on while nothing moves [s]
-constexpr double unseen_share = 4;       // of the time without a picture to that of drawing one, while it catches up with the user
+constexpr double unseen_share =
+    4;  // of the time without a picture to that of drawing one, while it catches up with the user
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -40,9 +42,12 @@ Preferences remembered(const ViewerOptions& options, const std::filesystem::path
 
 Tone tone_of(Severity severity) {
   switch (severity) {
-    case Severity::warning: return Tone::warning;
-    case Severity::error: return Tone::error;
-    default: return Tone::news;
+    case Severity::warning:
+      return Tone::warning;
+    case Severity::error:
+      return Tone::error;
+    default:
+      return Tone::news;
   }
 }
 
@@ -80,17 +85,17 @@ class Viewer {
   Hands hands_;
   Screenshot screenshot_;
 
-  std::uint64_t bodies_ = 0;       // revision that the renderer has
-  bool turned_ = false;            // the camera moved in the last picture
-  bool framed_ = false;            // the camera has found its first robots
-  int redraw_ = 3;                 // pictures to be drawn though nothing in them moves
+  std::uint64_t bodies_ = 0;  // revision that the renderer has
+  bool turned_ = false;       // the camera moved in the last picture
+  bool framed_ = false;       // the camera has found its first robots
+  int redraw_ = 3;            // pictures to be drawn though nothing in them moves
   std::int64_t shown_steps_ = -1;
-  double shown_time_ = -1;         // of the robots in the picture [s]
-  render::Camera shown_;           // the picture was drawn with
+  double shown_time_ = -1;  // of the robots in the picture [s]
+  render::Camera shown_;    // the picture was drawn with
   PictureArea area_{{0, 0}, {16, 9}};
   FrameCost cost_;
-  Clock::time_point seen_;         // the last picture
-  double seeing_ = 0;              // time that it took [s]
+  Clock::time_point seen_;  // the last picture
+  double seeing_ = 0;       // time that it took [s]
 };
 
 Viewer::Viewer(ViewerOptions options)
@@ -109,10 +114,12 @@ Viewer::~Viewer() {
   Messages untold;
   ViewSettings view = scene_.view();
   view.camera = {.mode = camera_.mode()};  // all else is of this scene
-  save_remembered(remembered_path(), {.view = view,
-                                      .generation = panels_.generation(),
-                                      .pause_on_explosion = preferences_.pause_on_explosion,
-                                      .folder = preferences_.folder}, untold);
+  save_remembered(remembered_path(),
+                  {.view = view,
+                   .generation = panels_.generation(),
+                   .pause_on_explosion = preferences_.pause_on_explosion,
+                   .folder = preferences_.folder},
+                  untold);
   if (const WindowSize size = window_.size(); size.width > 0) preferences_.size = size;
   save(preferences_, settings("window.json"));
 }
@@ -155,8 +162,9 @@ int Viewer::run() {
 }
 
 bool Viewer::anything_moves() const {
-  return redraw_ > 0 || turned_ || scene_.playing() || camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() ||
-         panels_.busy() || panels_.film().busy() || screenshot_.under_way() || !scene_.work().empty() || hands_.busy() || picture_.coarse();
+  return redraw_ > 0 || turned_ || scene_.playing() || camera_.gliding() || camera_.mode() == CameraMode::turntable ||
+         !toasts_.empty() || panels_.busy() || panels_.film().busy() || screenshot_.under_way() ||
+         !scene_.work().empty() || hands_.busy() || picture_.coarse();
 }
 
 void Viewer::listen(const std::vector<InputEvent>& events) {
@@ -175,7 +183,9 @@ void Viewer::listen(const std::vector<InputEvent>& events) {
       continue;
     }
     if (!command) continue;
-    if (typing && (!press.control || command->action == Action::undo || command->action == Action::redo || command->action == Action::select_all) &&
+    if (typing &&
+        (!press.control || command->action == Action::undo || command->action == Action::redo ||
+         command->action == Action::select_all) &&
         command->action != Action::help)
       continue;
     panels_.carry_out(*command);
@@ -230,7 +240,8 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
     redraw_ = 3;
   }
   if (!framed_ && !live.bounds().empty()) {
-    camera_.set_orbit(direction_of(scene_.view().camera, std::holds_alternative<Land>(scene_.configuration().environment)));
+    camera_.set_orbit(
+        direction_of(scene_.view().camera, std::holds_alternative<Land>(scene_.configuration().environment)));
     camera_.start(live.bounds(), area.aspect());
     camera_.set_mode(scene_.view().camera.mode);
     framed_ = true;

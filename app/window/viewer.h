@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interactive window, from its opening to its end.
 #pragma once
 
@@ -15,9 +16,9 @@
 namespace mercury::window {
 
 struct ViewerOptions {
-  std::vector<Robot> robots;                   // that come from no file
-  std::vector<std::filesystem::path> files;    // read when the window is open
-  std::vector<Generation> generations;         // made when the window is open
+  std::vector<Robot> robots;                 // that come from no file
+  std::vector<std::filesystem::path> files;  // read when the window is open
+  std::vector<Generation> generations;       // made when the window is open
   Configuration configuration;
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/widgets.h"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ constexpr float name_share = 0.42f;  // of a row's width
 constexpr double rest = 0.4;         // of the pointer, before an explanation is shown [s]
 constexpr const char* text_of_reset = "back to the default";
 
-// The name of a row; where the value differs from the standard, a button behind it that is true when it was clicked. The
-// next item is as wide as the rest of the row.
+// The name of a row; where the value differs from the standard, a button behind it that is true when it was clicked.
+// The next item is as wide as the rest of the row.
 bool row_with_reset(const char* name, const char* text, bool differs) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
   const float side = 0.75f * ImGui::GetFrameHeight();
@@ -124,7 +125,8 @@ bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, cons
   ImGui::PushID(name);
   const bool reset = row_with_reset(name, text, value != standard);
   float edited[3] = {value.x, value.y, value.z};
-  bool changed = ImGui::DragFloat3("##value", edited, (amount.high - amount.low) / 400, amount.low, amount.high, amount.format);
+  bool changed =
+      ImGui::DragFloat3("##value", edited, (amount.high - amount.low) / 400, amount.low, amount.high, amount.format);
   hint("x, y and z: drag sideways, or Ctrl-click to type");
   if (reset) {
     edited[0] = standard.x, edited[1] = standard.y, edited[2] = standard.z;

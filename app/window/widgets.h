@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small pieces that several panels are made of.
 #pragma once
 
@@ -15,8 +16,8 @@ namespace mercury::window {
 // A heading with a line, and room above it.
 void heading(const char* text);
 
-// A row: the name on the left, the following item as wide as the rest of the row. `hint` appears when the mouse rests on
-// the name.
+// A row: the name on the left, the following item as wide as the rest of the row. `hint` appears when the mouse rests
+// on the name.
 void row(const char* name, const char* hint = nullptr);
 
 // Whether the pointer has rested for a while on the item that was just put. Asked of one that is hovered.
@@ -36,11 +37,11 @@ bool toggle(const char* text, bool on);
 
 struct Amount {
   float low, high;
-  const char* format;       // as "%.2f s"
+  const char* format;  // as "%.2f s"
   bool logarithmic = false;
 };
-// A slider in a row; beside the name a button that puts it back to `standard`, shown where it differs. True when the value
-// changed.
+// A slider in a row; beside the name a button that puts it back to `standard`, shown where it differs. True when the
+// value changed.
 bool slider(const char* name, const char* hint, float& value, float standard, const Amount& amount);
 // Three of them.
 bool slider(const char* name, const char* hint, Vec3& value, Vec3 standard, const Amount& amount);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/window/window.h"
 
 #include <epoxy/gl.h>
@@ -30,7 +31,8 @@ std::string reason() {
 void start_glfw() {
   glfwSetErrorCallback(on_error);
   if (!glfwInit())
-    throw NoDisplay("no display to open a window on (" + reason() + "); mercury render makes videos and pictures without one");
+    throw NoDisplay("no display to open a window on (" + reason() +
+                    "); mercury render makes videos and pictures without one");
 }
 
 GLFWwindow* open_window(const std::string& title, WindowSize size) {
@@ -64,8 +66,8 @@ Window::Window(const std::string& title, WindowSize size) {
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   listen();
   try {
-    context_ = render::adopt_context([this] { glfwMakeContextCurrent(window_); },
-                                     [] { glfwMakeContextCurrent(nullptr); });
+    context_ =
+        render::adopt_context([this] { glfwMakeContextCurrent(window_); }, [] { glfwMakeContextCurrent(nullptr); });
   } catch (const render::ContextError& error) {
     glfwDestroyWindow(window_);
     glfwTerminate();
@@ -91,8 +93,13 @@ void Window::listen() {
     const bool control = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
     const char* name = glfwGetKeyName(key, scancode);
     const char32_t letter = name && !name[1] ? static_cast<unsigned char>(name[0]) : 0;
-    window_of(handle).push({.kind = Kind::key, .code = key, .scancode = scancode, .action = action, .mods = mods,
-                            .name = letter, .types = name && !control});
+    window_of(handle).push({.kind = Kind::key,
+                            .code = key,
+                            .scancode = scancode,
+                            .action = action,
+                            .mods = mods,
+                            .name = letter,
+                            .types = name && !control});
   });
   glfwSetCharCallback(window_, [](GLFWwindow* handle, unsigned character) {
     window_of(handle).push({.kind = Kind::character, .code = static_cast<int>(character)});
@@ -129,8 +136,11 @@ std::vector<Press> presses_of(const std::vector<InputEvent>& events) {
     const bool control = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
     if (event.kind == InputEvent::Kind::key) repeated = event.action == GLFW_REPEAT;
     if (event.kind == InputEvent::Kind::key && event.action != GLFW_RELEASE && !event.types)
-      presses.push_back({.character = event.name, .key = event.code, .control = control,
-                         .shift = (event.mods & GLFW_MOD_SHIFT) != 0, .repeated = repeated});
+      presses.push_back({.character = event.name,
+                         .key = event.code,
+                         .control = control,
+                         .shift = (event.mods & GLFW_MOD_SHIFT) != 0,
+                         .repeated = repeated});
     // Space goes by its key.
     if (event.kind == InputEvent::Kind::character && event.code != ' ')
       presses.push_back({.character = static_cast<char32_t>(event.code), .repeated = repeated});
@@ -168,7 +178,8 @@ float Window::content_scale() const {
   glfwGetWindowContentScale(window_, &across, &down);
   // Where the framebuffer has more pixels than the window has coordinates, coordinates are scaled already.
   const WindowSize coordinates = size(), framebuffer = pixels();
-  const float done = coordinates.width > 0 ? static_cast<float>(framebuffer.width) / static_cast<float>(coordinates.width) : 1;
+  const float done =
+      coordinates.width > 0 ? static_cast<float>(framebuffer.width) / static_cast<float>(coordinates.width) : 1;
   return std::max(0.5f, across / std::max(done, 0.1f));
 }
 

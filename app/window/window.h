@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A window on the screen with an OpenGL context, and what the user does to it.
 #pragma once
 
@@ -20,12 +21,13 @@ class NoDisplay : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What was typed, in order. A character is what the keyboard's layout makes of the key; other keys go by GLFW's numbers.
+// What was typed, in order. A character is what the keyboard's layout makes of the key; other keys go by GLFW's
+// numbers.
 struct Press {
   char32_t character = 0;  // of a key without Ctrl or Alt that types one
   int key = 0;             // GLFW_KEY_*, where no character came
   bool control = false, shift = false;
-  bool repeated = false;   // by holding the key
+  bool repeated = false;  // by holding the key
 };
 
 struct WindowSize {
@@ -55,9 +57,9 @@ class Window {
   void poll(double wait);
   void show_picture();  // swaps the buffers
 
-  WindowSize size() const;        // in screen coordinates
-  WindowSize pixels() const;      // of the framebuffer
-  float content_scale() const;    // how much larger than usual text should be on this screen
+  WindowSize size() const;      // in screen coordinates
+  WindowSize pixels() const;    // of the framebuffer
+  float content_scale() const;  // how much larger than usual text should be on this screen
   void set_title(const std::string& title);
   void toggle_full_screen();
 
@@ -78,7 +80,9 @@ class Window {
   InputQueue input_;
   std::vector<std::filesystem::path> dropped_;
   bool active_ = true;
-  struct { int x, y, width, height; } windowed_{0, 0, 0, 0};  // before full screen
+  struct {
+    int x, y, width, height;
+  } windowed_{0, 0, 0, 0};  // before full screen
 };
 
 }  // namespace mercury::window

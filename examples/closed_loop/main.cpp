@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steers eels to targets, in a closed loop.
 //
 // Five equal eels set out ahead, each with a target of its own, up to 60 degrees to either side. Muscles along the left
-// and right side of an eel pull in turn, in a wave that runs from head to tail and pushes it ahead. A side whose muscles
-// pull less lets the other side win: the eel turns away from its weaker side. So once a period of the wave, each eel's
-// controller
+// and right side of an eel pull in turn, in a wave that runs from head to tail and pushes it ahead. A side whose
+// muscles pull less lets the other side win: the eel turns away from its weaker side. So once a period of the wave,
+// each eel's controller
 //   - reads where the centre of mass is (telemetry: one call for the whole batch); the way since the last look, over
 //     which the wriggling averages out, is the course,
 //   - compares the course with the direction to the target, and
@@ -44,7 +45,8 @@ std::vector<Material> muscles(float left, float right) {
   std::array<Material, base_material_count> bases{};
   for (std::size_t i = 0; i < segments; ++i) {
     const float from_head = (segments - 0.5f - static_cast<float>(i)) / segments;
-    bases[i] = {.stiffness = 6000, .amplitude = 0.3f * right, .frequency = frequency, .phase = -2 * pi * waves * from_head};
+    bases[i] = {
+        .stiffness = 6000, .amplitude = 0.3f * right, .frequency = frequency, .phase = -2 * pi * waves * from_head};
     bases[i + segments] = bases[i];
     bases[i + segments].amplitude = -0.3f * left;
   }

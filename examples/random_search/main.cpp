@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Learns to swim by random search.
 //
 // An eel of 12 x 2 x 2 voxels has six muscles along its left side and their antagonists along its right side. All of
@@ -65,7 +66,8 @@ std::vector<float> swim(Simulation& simulation, const std::vector<Phases>& candi
 int main() {
   const Robot robot = make_voxel_robot(eel(), {.name = "eel", .materials = muscles({})});
   Simulation simulation({.dt = dt, .environment = Ocean{}}, std::vector<Robot>(children, robot));
-  std::printf("%d eels of %zu springs at a time on %s\n", children, robot.springs.size(), simulation.device_name().c_str());
+  std::printf("%d eels of %zu springs at a time on %s\n", children, robot.springs.size(),
+              simulation.device_name().c_str());
 
   Random random(1);
   Phases best{};

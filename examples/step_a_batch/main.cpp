@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps 64 random voxel robots for five seconds and prints how far each has swum.
 #include <cstdio>
 

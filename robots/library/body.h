@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the sample robots are shaped with: a grid, and up to 20 muscles of their own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +14,7 @@ constexpr float turn = 2 * std::numbers::pi_v<float>;
 // A leg's front and back muscles work a quarter turn apart, so that it stretches and swings, and its foot runs round
 // an ellipse: back along the ground while the leg is long.
 struct Gait {
-  float stiffness = 60;    // [N/m], times 200 on land
+  float stiffness = 60;  // [N/m], times 200 on land
   float amplitude = 0.25f;
   float frequency = 6;     // [rad/s]
   float split = turn / 8;  // half of what the two muscles are apart [rad]
@@ -31,8 +32,8 @@ Robot quadruped_of(const Gait& gait, float trot) {
     const bool is_leg = (x < 2 || (x > 5 && x < 8)) && (y < 2 || y > 3);
     // In a trot, legs across from each other step together.
     if (z < 3) return is_leg ? leg_muscle(body, gait, x % 2 == 1, (x < 2) == (y < 2) ? 0 : trot) : air;
-    if (x > 7) return z > 3 && y > 1 && y < 4 ? bone : air;                  // the head
-    if (z == 5) return x > 5 && y > 1 && y < 4 ? bone : air;                 // the neck
+    if (x > 7) return z > 3 && y > 1 && y < 4 ? bone : air;   // the head
+    if (z == 5) return x > 5 && y > 1 && y < 4 ? bone : air;  // the neck
     return z == 3 || (y > 0 && y < 5) ? tissue : air;
   });
   return body.robot();
@@ -45,7 +46,7 @@ Robot hopper_of(const Gait& gait, float lag) {
   body.fill([&](int x, int y, int z) -> MaterialId {
     const bool is_leg_y = y < 2 || y > 3;
     if (z < 2) {
-      const bool hind = x < 3, fore = x > 5;
+      const bool hind = x<3, fore = x> 5;
       if (!is_leg_y || !(hind || fore)) return air;
       return leg_muscle(body, gait, hind ? x > 1 : x > 6, hind ? 0 : lag);
     }

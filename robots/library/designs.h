@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample robots. Each says in its origin where it lives.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random voxel robots that a search found: mercury new voxel --best-of (docs/library.md has the commands).
 #include "robots/library/designs.h"
 #include "robots/random_voxel.h"

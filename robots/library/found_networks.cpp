@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random network robots that a search found: mercury new nn --best-of (docs/library.md has the commands).
 #include "robots/library/designs.h"
 #include "robots/nn_robot.h"

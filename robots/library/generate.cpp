@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the sample robots: generate_library FOLDER
 #include <cstdio>
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -24,8 +25,7 @@ struct Wave {
 MaterialId muscle_of(Body& body, const Wave& wave, float way, float strength) {
   const int segment = std::clamp(static_cast<int>(way * static_cast<float>(wave.segments)), 0, wave.segments - 1);
   const float middle = (static_cast<float>(segment) + 0.5f) / static_cast<float>(wave.segments);
-  return body.muscle(
-      {wave.stiffness, wave.amplitude * strength, wave.frequency, -turn * wave.waves * middle});
+  return body.muscle({wave.stiffness, wave.amplitude * strength, wave.frequency, -turn * wave.waves * middle});
 }
 
 float sign(float x) { return x < 0 ? -1.f : 1.f; }
@@ -46,9 +46,9 @@ Robot fish_of(const Wave& wave) {
     const float height = std::abs(from_middle(z, body.nz()));
     const bool is_tail_fin = x < 3;
     // A deep body that narrows to the tail's stem, and a forked fin.
-    const float half_height =
-        is_tail_fin ? 3.2f - 0.9f * static_cast<float>(x)
-                    : 2.4f * std::sin(turn / 2 * std::pow(along(x - 3, body.nx() - 2), 0.7f)) + 0.9f;
+    const float half_height = is_tail_fin
+                                  ? 3.2f - 0.9f * static_cast<float>(x)
+                                  : 2.4f * std::sin(turn / 2 * std::pow(along(x - 3, body.nx() - 2), 0.7f)) + 0.9f;
     if (height > half_height || (x == 0 && height < 1.5f)) return air;
     return muscle_of(body, wave, 1 - along(x, body.nx()), sign(from_middle(y, 2)));
   });
@@ -170,9 +170,7 @@ Robot turtle_of(const Wave& wave) {
 Robot eel() { return eel_of({.waves = 1.4f}); }
 Robot fish() { return fish_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
 Robot ray() { return ray_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 6, .waves = 1.2f}); }
-Robot manta() {
-  return manta_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 11, .waves = 1, .segments = 5});
-}
+Robot manta() { return manta_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 11, .waves = 1, .segments = 5}); }
 Robot jellyfish() { return jellyfish_of({.stiffness = 15000, .frequency = 10, .waves = 1.8f, .segments = 5}); }
 Robot squid() { return squid_of({.stiffness = 12000, .frequency = 6, .waves = 1, .segments = 9}); }
 Robot turtle() { return turtle_of({.stiffness = 12000, .frequency = 10, .waves = 0.5f}); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrays that start on a cache line, so that vector loads of whole blocks do not straddle two.
 #pragma once
 

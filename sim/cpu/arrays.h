@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body's arrays as vector code addresses them. Loops keep a copy of this: a store of a vector may change anything as
 // far as the compiler knows, so that it would read the body's own pointers again after each.
 #pragma once
@@ -49,8 +50,8 @@ struct Arrays {
 
   explicit Arrays(Body& body)
       : x(pointers(body.x)), v(pointers(body.v)), x_rows(body.x_rows.data()), v_rows(body.v_rows.data()),
-        own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)),
-        taken(pointers(body.sums.taken)), row_sums(body.sums.rows.data()), bias(body.springs.bias.data()), places(body.places.mass_at.size()),
+        own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)), taken(pointers(body.sums.taken)),
+        row_sums(body.sums.rows.data()), bias(body.springs.bias.data()), places(body.places.mass_at.size()),
         stride(body.places.padded()) {}
 
   HWY_INLINE void store_x_rows(Lanes3 value, std::size_t place) const {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CPU backend: robots are shared out over the cores, each stepped by one of them.
 #include "sim/backend.h"
 
@@ -28,7 +29,8 @@ class CpuBackend final : public Backend {
       : kernel_(kernel), arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
     // Without this, more threads than cores are refused, with a warning on stderr.
     if (device.threads > oneapi::tbb::info::default_concurrency())
-      allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(device.threads));
+      allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                         static_cast<std::size_t>(device.threads));
   }
 
   std::string device_name() const override {
@@ -136,9 +138,7 @@ class CpuBackend final : public Backend {
  private:
   template <class Work>
   void for_each_body(const Work& work) const {
-    arena_.execute([&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); });
-    });
+    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
   }
 
   // Robots are shared out anew before the next step.
@@ -157,7 +157,7 @@ class CpuBackend final : public Backend {
   std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
-  std::vector<Pack> packs_;  // empty = to be made before the next step
+  std::vector<Pack> packs_;       // empty = to be made before the next step
   std::size_t out_of_place_ = 0;  // groups broken up, robots made whole again or exploded by order
   Configuration configuration_;
   StepSetting setting_;
@@ -166,7 +166,9 @@ class CpuBackend final : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_cpu_backend(const Device& device) { return cpu::make_backend(device, cpu::kernels().front()); }
+std::unique_ptr<Backend> make_cpu_backend(const Device& device) {
+  return cpu::make_backend(device, cpu::kernels().front());
+}
 
 std::unique_ptr<Backend> cpu::make_backend(const Device& device, const Kernel& kernel) {
   return std::make_unique<CpuBackend>(device, kernel);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CPU backend with a kernel of choice; make_cpu_backend() takes the best.
 #pragma once
 

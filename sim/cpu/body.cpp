@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/body.h"
 
 #include <algorithm>
@@ -51,8 +52,9 @@ void update_laws(Body& body, const Configuration& configuration) {
   std::array<float, max_materials> of_material;  // stiffness or compliance
   for (std::size_t id = 0; id < max_materials; ++id) {
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
-    of_material[id] = force ? static_cast<float>(stiffness) * body.scale.force
-                            : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
+    of_material[id] =
+        force ? static_cast<float>(stiffness) * body.scale.force
+              : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
   }
   of_material[air] = force ? 0 : std::numeric_limits<float>::infinity();
 
@@ -62,7 +64,8 @@ void update_laws(Body& body, const Configuration& configuration) {
   for (std::size_t s = 0; s < robot.springs.size(); ++s) {
     const Spring& spring = robot.springs[s];
     const float of_its = of_material[spring.material];
-    body.hardness[s] = force ? of_its : xpbd_stiffness(static_cast<float>(at[spring.a] + at[spring.b]) * per_scale, of_its);
+    body.hardness[s] =
+        force ? of_its : xpbd_stiffness(static_cast<float>(at[spring.a] + at[spring.b]) * per_scale, of_its);
   }
   SpringPlan& springs = body.springs;
   for (std::size_t i = 0; i < springs.hardness.size(); ++i)
@@ -72,7 +75,8 @@ void update_laws(Body& body, const Configuration& configuration) {
 void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {
   SpringPlan& springs = body.springs;
   for (std::size_t i = 0; i < springs.factor.size(); ++i)
-    springs.factor[i] = springs.spring[i] == no_spring ? FactorId{0} : factors[body.robot->springs[springs.spring[i]].material];
+    springs.factor[i] =
+        springs.spring[i] == no_spring ? FactorId{0} : factors[body.robot->springs[springs.spring[i]].material];
 }
 
 void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities) {

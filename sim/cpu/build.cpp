@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/build.h"
 
 #include <algorithm>
@@ -63,13 +64,15 @@ Assembly assemble(std::span<const Sitter> sitters, std::size_t seats) {
     }
     for (std::uint32_t i = 0; i < sitters[s].faces.size(); ++i) {
       const FacePair& p = sitters[s].faces[i];
-      faces.push_back({(std::uint64_t{seat[p.a]} << 16 | seat[p.b]) << 32 | std::uint64_t{seat[p.c]} << 16 | seat[p.d], 0, s, i});
+      faces.push_back(
+          {(std::uint64_t{seat[p.a]} << 16 | seat[p.b]) << 32 | std::uint64_t{seat[p.c]} << 16 | seat[p.d], 0, s, i});
     }
   }
   for_each(
       springs,
       [&](const Claim& claim) {
-        const auto owner = static_cast<std::uint32_t>(claim.seats >> 16), partner = static_cast<std::uint32_t>(claim.seats & 0xffff);
+        const auto owner = static_cast<std::uint32_t>(claim.seats >> 16),
+                   partner = static_cast<std::uint32_t>(claim.seats & 0xffff);
         build.partners.push_back(partner);
         ++build.joints[owner].owned;
         ++build.joints[owner].slots;
@@ -92,7 +95,8 @@ FaceHalves halves_of(std::size_t pairs, std::span<const std::shared_ptr<const Se
   std::vector<std::uint8_t> in_halves(pairs);  // 1 = lower, 2 = upper
   for (std::size_t s = 0; s < seatings.size(); ++s) {
     const int half = 2 * s < seatings.size() ? 1 : 2;
-    for (const std::uint32_t pair : seatings[s]->faces) in_halves[pair] = static_cast<std::uint8_t>(in_halves[pair] | half);
+    for (const std::uint32_t pair : seatings[s]->faces)
+      in_halves[pair] = static_cast<std::uint8_t>(in_halves[pair] | half);
   }
   FaceHalves halves;
   for (std::uint32_t pair = 0; pair < pairs; ++pair) {

@@ -1,6 +1,7 @@
-// What robots that are stepped together, one a lane, share: seats, each for one mass of every robot, and slots, each for
-// one spring of every robot between the same two seats. Robots of one build fill every lane of it. Others leave lanes
-// empty: a seat without a mass holds a stand-in, a slot without a spring gives no force.
+// SPDX-License-Identifier: Apache-2.0
+// What robots that are stepped together, one a lane, share: seats, each for one mass of every robot, and slots, each
+// for one spring of every robot between the same two seats. Robots of one build fill every lane of it. Others leave
+// lanes empty: a seat without a mass holds a stand-in, a slot without a spring gives no force.
 #pragma once
 
 #include <cstdint>

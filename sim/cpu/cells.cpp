@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/cells.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ std::vector<Cell> cells_of(const Robot& robot) {
     const std::size_t index = at[0] + across * (at[1] + across * at[2]);
     if (taken[index]) return {};
     taken[index] = true;
-    cells.push_back({static_cast<std::uint8_t>(at[0]), static_cast<std::uint8_t>(at[1]), static_cast<std::uint8_t>(at[2])});
+    cells.push_back(
+        {static_cast<std::uint8_t>(at[0]), static_cast<std::uint8_t>(at[1]), static_cast<std::uint8_t>(at[2])});
   }
   return cells;
 }

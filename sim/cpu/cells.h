@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot as a pattern of cells, one a mass, by which robots that are built in much the same way are found.
 #pragma once
 
@@ -17,8 +18,8 @@ struct Cell {
 // More cells than these across are not looked at: a robot of so many masses gains nothing from others.
 inline constexpr int most_cells_across = 32;
 
-// The cell of each mass at rest, as wide as the shortest spring spans, from the lowest corner on; empty if two masses would
-// share one, or the robot is too large.
+// The cell of each mass at rest, as wide as the shortest spring spans, from the lowest corner on; empty if two masses
+// would share one, or the robot is too large.
 std::vector<Cell> cells_of(const Robot& robot);
 
 // The same pattern, turned and mirrored: widest along x, then y, and most masses in the lower half of each. Robots of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of a robot, compiled once for every instruction set. All of them give the same bits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <hwy/detect_targets.h>
 #undef HWY_TARGET
 #define HWY_TARGET HWY_AVX3
@@ -9,6 +10,6 @@
 namespace mercury::cpu {
 
 const Kernel avx512_kernel{"AVX-512", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
-                          HWY_NAMESPACE::advance_together};
+                           HWY_NAMESPACE::advance_together};
 
 }  // namespace mercury::cpu

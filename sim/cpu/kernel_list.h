@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One entry a source file kernel_*.cpp.
 #pragma once
 

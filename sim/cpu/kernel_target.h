@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a source file of one instruction set includes after it has set HWY_TARGET. The equations stand between the
 // marks of that instruction set, so that their templates are compiled for it; nothing may include them before.
 #pragma once

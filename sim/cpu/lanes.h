@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // A vector of floats that computes as a float does, for the instruction set that the including file is compiled for:
 // with the names of sim/host_device.h the equations of sim/ hold for several masses or springs at once.
 //
-// Products and sums are never fused, square roots and divisions are IEEE's: every lane holds the bits that a float would.
+// Products and sums are never fused, square roots and divisions are IEEE's: every lane holds the bits that a float
+// would.
 #pragma once
 
 #include <hwy/highway.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/lockstep.h"
 
 #include <algorithm>
@@ -39,7 +40,8 @@ void share_slots_of_faces(Lockstep& group) {
     return Lockstep::Corners<std::uint32_t>{group.start_of(a), group.start_of(b), group.start_of(c), group.start_of(d)};
   };
   const FaceHalves halves = halves_of(group.build->faces.size(), group.seatings);
-  const std::size_t shared = group.lanes < least_lanes_to_split ? 0 : std::min(halves.lower.size(), halves.upper.size());
+  const std::size_t shared =
+      group.lanes < least_lanes_to_split ? 0 : std::min(halves.lower.size(), halves.upper.size());
   std::vector<bool> is_split(pairs.size());
   for (const std::vector<std::uint32_t>* half : {&halves.lower, &halves.upper})
     for (std::size_t i = 0; i < shared; ++i) is_split[(*half)[i]] = true;
@@ -50,7 +52,8 @@ void share_slots_of_faces(Lockstep& group) {
       group.faces.push_back(corners(pair));
     }
   for (std::size_t i = 0; i < shared; ++i) {
-    group.face_slots[halves.lower[i]] = group.face_slots[halves.upper[i]] = static_cast<std::uint32_t>(group.faces.size() + i);
+    group.face_slots[halves.lower[i]] = group.face_slots[halves.upper[i]] =
+        static_cast<std::uint32_t>(group.faces.size() + i);
     const auto lower = corners(halves.lower[i]), upper = corners(halves.upper[i]);
     group.split_faces.push_back({{lower.a, upper.a}, {lower.b, upper.b}, {lower.c, upper.c}, {lower.d, upper.d}});
   }
@@ -58,17 +61,21 @@ void share_slots_of_faces(Lockstep& group) {
 
 }  // namespace
 
-Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts) {
+Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly,
+                       bool contacts) {
   Lockstep group;
   group.lanes = bodies[members.front()].places.lanes;
   group.build = std::move(assembly.build);
   group.bodies = std::move(members);
   // A sum holds rounding_magic_bits once for each slot that the seat is partner in, less those that it owns.
   for (const auto& [owned, slots] : group.build->joints)
-    group.joints.push_back({owned, static_cast<std::int32_t>((2 * owned - slots) * std::uint32_t{rounding_magic_bits})});
+    group.joints.push_back(
+        {owned, static_cast<std::int32_t>((2 * owned - slots) * std::uint32_t{rounding_magic_bits})});
   for (const std::uint32_t partner : group.build->partners) group.partners.push_back(group.start_of(partner));
-  for (std::size_t lane = 0; lane < group.lanes; ++lane) group.seatings.push_back(assembly.seatings[member_of(group, lane)]);
-  const std::size_t slots = group.build->partners.size() * group.lanes, seats = group.build->joints.size() * group.lanes;
+  for (std::size_t lane = 0; lane < group.lanes; ++lane)
+    group.seatings.push_back(assembly.seatings[member_of(group, lane)]);
+  const std::size_t slots = group.build->partners.size() * group.lanes,
+                    seats = group.build->joints.size() * group.lanes;
   group.rest_length.resize(slots);
   group.hardness.resize(slots);
   group.factor.resize(slots);
@@ -77,15 +84,16 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
     coefficients->resize((group.faces.size() + group.split_faces.size()) * group.lanes);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * seats);
   group.sums.resize(3 * seats);
-  for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance,
-                                   &group.most_force, &group.squared_diagonal})
+  for (Aligned<float>* of_lanes : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit,
+                                   &group.contact_distance, &group.most_force, &group.squared_diagonal})
     of_lanes->resize(group.lanes);
   std::vector<bool> taken(seats);
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
     for (const std::uint32_t seat : group.seatings[lane]->seats) taken[seat * group.lanes + lane] = true;
   for (std::uint32_t i = 0; i < seats; ++i)
     if (!taken[i])
-      group.stand_ins.push_back({i / static_cast<std::uint32_t>(group.lanes), i % static_cast<std::uint32_t>(group.lanes)});
+      group.stand_ins.push_back(
+          {i / static_cast<std::uint32_t>(group.lanes), i % static_cast<std::uint32_t>(group.lanes)});
   if (contacts) {
     group.listed_x.resize(3 * seats);
     group.is_mass.assign(seats, 1.0f);
@@ -141,7 +149,8 @@ void load(Lockstep& group, std::span<Body> bodies) {
     }
   }
   for (std::size_t lane = 0; lane < group.bodies.size(); ++lane)
-    group.members[lane]->residence = {&group, group.x.data() + lane, group.v.data() + lane, group.seatings[lane]->seats.data(), group.lanes};
+    group.members[lane]->residence = {&group, group.x.data() + lane, group.v.data() + lane,
+                                      group.seatings[lane]->seats.data(), group.lanes};
   std::ranges::fill(group.squared_diagonal, std::numeric_limits<float>::infinity());
   group.steps_since_settled = std::numeric_limits<std::int64_t>::max() / 2;
   if (group.lists != present_lists(group)) group.lists.clear();
@@ -171,7 +180,8 @@ void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead) {
   if (group.steps_since_settled <= most_steps) return;
   group.steps_since_settled = steps_ahead;
   for (const auto [seat, lane] : group.stand_ins) {
-    put(group, group.x, group.first_of(seat, lane), at(group, group.x, group.first_of(group.seatings[lane]->seats[0], lane)));
+    put(group, group.x, group.first_of(seat, lane),
+        at(group, group.x, group.first_of(group.seatings[lane]->seats[0], lane)));
     put(group, group.v, group.first_of(seat, lane), {});
   }
 }
@@ -196,7 +206,8 @@ void list_near_pairs(Lockstep& group, std::uint32_t lanes, void (*list)(Body&)) 
     if ((lanes >> lane & 1) == 0) continue;
     Body& body = *group.members[lane];
     for (std::size_t mass = 0; mass < body.robot->masses.size(); ++mass) {
-      const std::size_t place = body.places.of_mass[mass], first = group.first_of(group.seatings[lane]->seats[mass], lane);
+      const std::size_t place = body.places.of_mass[mass],
+                        first = group.first_of(group.seatings[lane]->seats[mass], lane);
       const Vec3 x = at(group, group.x, first);
       put(group, group.listed_x, first, x);
       body.x.x[place] = x.x;

@@ -1,5 +1,6 @@
-// Small robots side by side, one a lane: what a vector loads of a mass or a spring then is that of as many robots, and few
-// lanes are empty. The robots of a group are of one build, or of builds that have most in common (sim/cpu/build.h).
+// SPDX-License-Identifier: Apache-2.0
+// Small robots side by side, one a lane: what a vector loads of a mass or a spring then is that of as many robots, and
+// few lanes are empty. The robots of a group are of one build, or of builds that have most in common (sim/cpu/build.h).
 //
 // A group keeps its robots' state from call to call. It is stepped as long as all goes well in it. If a robot of it
 // explodes, the steps since the last checkpoint are made again one robot after the other (sim/cpu/stepper.h), where all
@@ -28,8 +29,8 @@ struct Lockstep {
     std::int32_t bias = 0;  // takes out again what the integers of the springs carry (sim/fixed_point.h)
   };
   std::vector<Joint> joints;
-  // Slots of pairs of faces. In those that are split, lanes of the lower half stand at other seats than those of the upper:
-  // two of the build's pairs that few robots have.
+  // Slots of pairs of faces. In those that are split, lanes of the lower half stand at other seats than those of the
+  // upper: two of the build's pairs that few robots have.
   struct Halves {
     std::uint32_t lower = 0, upper = 0;
   };
@@ -42,7 +43,7 @@ struct Lockstep {
   std::vector<std::uint32_t> face_slots;  // by the build's pairs; split ones are numbered after the others
   // Of every lane.
   std::vector<std::shared_ptr<const Seating>> seatings;
-  std::vector<Body*> members;       // from load() on
+  std::vector<Body*> members;  // from load() on
 
   // [slot][lane], as in SpringPlan; no force where a robot has no spring
   Aligned<float> rest_length, hardness;
@@ -51,8 +52,8 @@ struct Lockstep {
   Aligned<float> face_drag, face_lift;
 
   // [seat][x, y, z][lane]
-  Aligned<float> x, v;           // during XPBD's springs: the prediction and v + dt F
-  Aligned<std::int32_t> sums;    // what acts on the masses, in units; zero between steps
+  Aligned<float> x, v;         // during XPBD's springs: the prediction and v + dt F
+  Aligned<std::int32_t> sums;  // what acts on the masses, in units; zero between steps
   Aligned<float> checkpoint_x, checkpoint_v;
   // Where the masses were when their robot's near pairs were listed, and which of its lists that was, by lane.
   Aligned<float> listed_x;
@@ -77,8 +78,8 @@ struct Lockstep {
   Aligned<float> force_scale, correction_scale;  // FixedPointScale
   Aligned<float> squared_stretch_limit;
   Aligned<float> contact_distance;
-  Aligned<float> most_force;                     // of a face, less than this times |2 A n| |sum of velocities|^2 [units]
-  Aligned<float> squared_diagonal;               // of a box around all of a lane's masses [m2]; infinite if not known
+  Aligned<float> most_force;        // of a face, less than this times |2 A n| |sum of velocities|^2 [units]
+  Aligned<float> squared_diagonal;  // of a box around all of a lane's masses [m2]; infinite if not known
 
   bool resident() const { return !members.empty() && members.front()->residence.group == this; }
   std::uint32_t start_of(std::uint32_t seat) const { return static_cast<std::uint32_t>(3 * lanes) * seat; }
@@ -86,7 +87,8 @@ struct Lockstep {
 };
 
 // A group of 1 to as many bodies as they have lanes, without laws or state.
-Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly, bool contacts);
+Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> members, Assembly assembly,
+                       bool contacts);
 
 // Takes the bodies' laws as they stand; `factors`, by body, are those of their materials.
 void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& hooks,
@@ -103,8 +105,8 @@ void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead);
 void take_pulls(Lockstep& group);
 void add_pulls(Lockstep& group);
 
-// Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes' contacts.
-// `list` does it for a body whose masses are at body.x.
+// Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes'
+// contacts. `list` does it for a body whose masses are at body.x.
 void list_near_pairs(Lockstep& group, std::uint32_t lanes, void (*list)(Body&));
 void add_contacts(Lockstep& group, float stiffness);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step of a group of robots in lockstep (lockstep.h), in vector code.
 #pragma once
 
@@ -15,9 +16,11 @@ class LockstepStepper {
  public:
   LockstepStepper(Lockstep& group, const Hooks& hooks, const StepSetting& setting)
       : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), joints_(group.joints),
-        hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness), force_scale_(load_aligned(group.force_scale.data())),
+        hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness),
+        force_scale_(load_aligned(group.force_scale.data())),
         correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
-        per_correction_(inverse(correction_scale_)), squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
+        per_correction_(inverse(correction_scale_)),
+        squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
 
   // False if a robot may have exploded.
   bool step(Solver solver, const float* factors) {
@@ -56,14 +59,15 @@ class LockstepStepper {
     }
     if (!within_reach(predicted)) return false;
     Box box;
-    const bool sound = add_springs(factors, compact(squared_diagonal(predicted)), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
-      const Lanes3 correction = per_correction_ * float_of(sum);
-      Lanes3 x = of_mass(x_, mass) + correction;
-      Lanes3 v = multiply_add(constants_.inverse_dt, correction, of_mass(v_, mass));
-      end_step(x, v, hooks_, constants_);
-      keep(x, v, mass);
-      box.add(x);
-    });
+    const bool sound =
+        add_springs(factors, compact(squared_diagonal(predicted)), [&](std::size_t mass, Integers3 sum) HWY_ATTR {
+          const Lanes3 correction = per_correction_ * float_of(sum);
+          Lanes3 x = of_mass(x_, mass) + correction;
+          Lanes3 v = multiply_add(constants_.inverse_dt, correction, of_mass(v_, mass));
+          end_step(x, v, hooks_, constants_);
+          keep(x, v, mass);
+          box.add(x);
+        });
     store_aligned(squared_diagonal(box), group_.squared_diagonal.data());
     return sound && within_reach(box);
   }
@@ -90,7 +94,8 @@ class LockstepStepper {
     Lanes farthest_squared = 0.0f;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
       const Lanes is_mass = load_aligned(group_.is_mass.data() + mass * lane_count);
-      farthest_squared = larger(farthest_squared, is_mass * squared_length(of_mass(x_, mass) - of_mass(listed, mass) - common));
+      farthest_squared =
+          larger(farthest_squared, is_mass * squared_length(of_mass(x_, mass) - of_mass(listed, mass) - common));
     }
     return farthest_squared > reach * reach;
   }
@@ -98,7 +103,8 @@ class LockstepStepper {
   // False if a face's force is out of range. That is looked for only where no bound excludes it.
   bool add_faces() {
     const Lanes fastest_squared = add_face_forces();
-    const Lanes most = load_aligned(group_.most_force.data()) * load_aligned(group_.squared_diagonal.data()) * fastest_squared;
+    const Lanes most =
+        load_aligned(group_.most_force.data()) * load_aligned(group_.squared_diagonal.data()) * fastest_squared;
     return every(most < 0.5f * face_limit_units) || face_forces_fit();
   }
   // Returns the greatest square of the sum of a face's velocities.
@@ -117,7 +123,8 @@ class LockstepStepper {
   }
   HWY_NOINLINE bool face_forces_fit() const {
     Integers largest_force = no_integers();
-    for_each_pair_of_faces([&](const auto&, const FaceForces& f) HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
+    for_each_pair_of_faces([&](const auto&, const FaceForces& f)
+                               HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
     return largest(largest_force) < mercury::bits_of(face_limit_units);
   }
   // Calls visit(corners, FaceForces).
@@ -137,8 +144,8 @@ class LockstepStepper {
       const Lanes3 xa = at(x, a);
       Lanes3 common = at(v, a) + at(v, c);
       if constexpr (!Hooks::calm) common = common - thrice_flow;
-      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x, b) - xa, at(x, c) - xa, at(x, d) - xa,
-                                        common + at(v, b), common + at(v, d)));
+      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x, b) - xa, at(x, c) - xa,
+                                        at(x, d) - xa, common + at(v, b), common + at(v, d)));
       drag += lane_count;
       lift += lane_count;
     }
@@ -175,7 +182,9 @@ class LockstepStepper {
 
   // x, y and z of a seat start so far apart.
   template <class T>
-  static HWY_INLINE Pointers3<T> lanes_of(T* first) { return {first, first + lane_count, first + 2 * lane_count}; }
+  static HWY_INLINE Pointers3<T> lanes_of(T* first) {
+    return {first, first + lane_count, first + 2 * lane_count};
+  }
   // Of the seat whose values start there.
   static HWY_INLINE Lanes3 at(const float* values, std::uint32_t seat) {
     const float* const first = values + seat;
@@ -210,9 +219,11 @@ class LockstepStepper {
     store_aligned(v, lanes_of(v_ + 3 * lane_count * mass), 0);
   }
   static Lanes squared_diagonal(const Box& box) { return squared_length(box.high - box.low); }
-  // Whether all masses in the box are. None is NaN: what acts on masses is made of integers, and a velocity that a robot
-  // comes with is finite (ready()).
-  static bool within_reach(const Box& box) { return every(mercury::within_reach(box.low) & mercury::within_reach(box.high)); }
+  // Whether all masses in the box are. None is NaN: what acts on masses is made of integers, and a velocity that a
+  // robot comes with is finite (ready()).
+  static bool within_reach(const Box& box) {
+    return every(mercury::within_reach(box.low) & mercury::within_reach(box.high));
+  }
   // Whether no two masses of a robot are farther apart than its springs may be long.
   bool compact(Lanes squared_diagonal) const { return every(squared_diagonal <= squared_stretch_limit_); }
 
@@ -227,7 +238,8 @@ class LockstepStepper {
 };
 
 template <class Hooks>
-bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
+bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& setting, Factors factors,
+                  std::int64_t steps) {
   LockstepStepper stepper(group, hooks, setting);
   for (std::int64_t n = 0; n < steps; ++n)
     if (!stepper.step(setting.solver, factors.of_step(n))) return false;

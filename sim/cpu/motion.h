@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the masses of a body move, block by block, once what acts on them is summed.
 #pragma once
 
@@ -18,8 +19,8 @@ struct Box {
   }
   // Rounded like the length of any spring in it, so that no spring can come out longer.
   HWY_INLINE float squared_diagonal() const {
-    return squared_length(Vec3{largest(high.x) - smallest(low.x), largest(high.y) - smallest(low.y),
-                               largest(high.z) - smallest(low.z)});
+    return squared_length(
+        Vec3{largest(high.x) - smallest(low.x), largest(high.y) - smallest(low.y), largest(high.z) - smallest(low.z)});
   }
 };
 
@@ -30,10 +31,11 @@ inline bool note_bad(Body& body, std::size_t place) {
   return mass != no_mass;
 }
 
-// The velocity before damping, from a sum in units of which a newton has 1 / `per_unit`. That is a power of two, so that it
-// does not matter when it is multiplied by.
+// The velocity before damping, from a sum in units of which a newton has 1 / `per_unit`. That is a power of two, so
+// that it does not matter when it is multiplied by.
 template <class Hooks>
-HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const Hooks& hooks, const StepConstants& constants) {
+HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const Hooks& hooks,
+                                 const StepConstants& constants) {
   if constexpr (Hooks::calm) return multiply_add(constants.dt * per_unit, float_of(sum), v);
   return accelerated(v, per_unit * float_of(sum) + hooks.on_mass(v), constants);
 }
@@ -42,7 +44,8 @@ template <class Call>
 HWY_INLINE auto with_hooks(const StepSetting& setting, const Call& call) {
   constexpr float least_dt = 1e-6f;  // [s]; with much smaller ones a product of it with a unit would not be exact
   const auto* const ocean = std::get_if<OceanHooks>(&setting.hooks);
-  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt) return call(CalmOceanHooks{*ocean});
+  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt)
+    return call(CalmOceanHooks{*ocean});
   return std::visit(call, setting.hooks);
 }
 

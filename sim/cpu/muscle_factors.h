@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The muscle law for all muscles, many steps ahead.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/muscles.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ Muscles::Muscles() {
   factor_of_.emplace(Movement{0, 0, 0}, FactorId{0});
 }
 
-std::array<FactorId, max_materials> Muscles::add(std::span<const Material> table, const std::array<bool, max_materials>& wanted) {
+std::array<FactorId, max_materials> Muscles::add(std::span<const Material> table,
+                                                 const std::array<bool, max_materials>& wanted) {
   std::array<FactorId, max_materials> factors{};
   for (std::size_t id = 0; id < max_materials; ++id) {
     if (!wanted[id]) continue;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The muscles of the robots that are stepped together, on their way through time.
 #pragma once
 
@@ -22,7 +23,8 @@ class Muscles {
   Muscles();
 
   // The factors of these materials of a table of max_materials elements; 0 for those not wanted.
-  std::array<FactorId, max_materials> add(std::span<const Material> table, const std::array<bool, max_materials>& wanted);
+  std::array<FactorId, max_materials> add(std::span<const Material> table,
+                                          const std::array<bool, max_materials>& wanted);
   // How many factors there are; with `table`'s materials, at most.
   std::size_t size() const { return movements_.size(); }
   std::size_t size_with(const std::array<bool, max_materials>& wanted) const;
@@ -40,8 +42,8 @@ class Muscles {
   using Movement = std::tuple<float, float, float>;  // amplitude, frequency, phase
   std::vector<Material> movements_;
   std::map<Movement, FactorId> factor_of_;
-  Clock clock_;            // of the last move_to()
-  bool current_ = false;   // the phases are those of step `step` by clock_
+  Clock clock_;           // of the last move_to()
+  bool current_ = false;  // the phases are those of step `step` by clock_
 };
 
 }  // namespace mercury::cpu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/near_pairs.h"
 
 #include <algorithm>
@@ -35,7 +36,9 @@ struct NearPairs::Grid {
   std::vector<std::uint32_t> start, sorted;
   std::vector<std::array<std::uint32_t, 3>> cell;  // of each entry of `sorted`
 
-  std::uint32_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const { return x + size[0] * (y + size[1] * z); }
+  std::uint32_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    return x + size[0] * (y + size[1] * z);
+  }
 
   Grid(std::span<const std::uint32_t> masses, const std::array<std::span<const float>, 3>& x, float radius) {
     std::array<float, 3> low, inverse;
@@ -80,7 +83,8 @@ struct NearPairs::Grid {
   }
 };
 
-void NearPairs::list_in_row(const Grid& grid, std::uint32_t i, std::uint32_t first, std::uint32_t last, float squared_radius) {
+void NearPairs::list_in_row(const Grid& grid, std::uint32_t i, std::uint32_t first, std::uint32_t last,
+                            float squared_radius) {
   for (std::uint32_t n = first; n < last; ++n) {
     const std::uint32_t j = grid.sorted[n];
     const Vec3 d{x_[j] - x_[i], y_[j] - y_[i], z_[j] - z_[i]};
@@ -111,7 +115,8 @@ void NearPairs::start(std::span<const float> x, std::span<const float> y, std::s
   ++times_listed_;
 }
 
-void NearPairs::list(std::span<const float> x, std::span<const float> y, std::span<const float> z, float contact_distance) {
+void NearPairs::list(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                     float contact_distance) {
   start(x, y, z);
   const float radius = list_radius * contact_distance;
   const Grid grid(masses_, {x, y, z}, radius);

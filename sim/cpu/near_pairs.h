@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Masses of one robot that are near each other without a spring between them.
 //
-// The list holds every pair within a margin more than the contact distance. It is made anew only when some mass may have
-// moved so far that it could miss a pair; whenever that is, the pairs that touch are the same, and so are their sums.
+// The list holds every pair within a margin more than the contact distance. It is made anew only when some mass may
+// have moved so far that it could miss a pair; whenever that is, the pairs that touch are the same, and so are their
+// sums.
 #pragma once
 
 #include <cstdint>
@@ -33,11 +35,11 @@ class NearPairs {
   void list(std::span<const float> x, std::span<const float> y, std::span<const float> z, float contact_distance);
   void forget() { listed_ = false; }
 
-  // The other way, for robots of few masses: the caller looks at all pairs, many at once (sim/cpu/near_search.h), and adds
-  // those that are near.
+  // The other way, for robots of few masses: the caller looks at all pairs, many at once (sim/cpu/near_search.h), and
+  // adds those that are near.
   bool few() const { return masses_.size() <= 64 * lanes_; }
-  // For each place, for each block of places: one bit a lane, set where the mass at it comes later and no spring joins the
-  // two. So many bytes a block.
+  // For each place, for each block of places: one bit a lane, set where the mass at it comes later and no spring joins
+  // the two. So many bytes a block.
   std::span<const std::uint8_t> candidates();
   static constexpr std::size_t bytes_of(std::size_t lanes) { return lanes > 8 ? 2 : 1; }
   void start(std::span<const float> x, std::span<const float> y, std::span<const float> z);
@@ -56,11 +58,11 @@ class NearPairs {
   struct Grid;
   void list_in_row(const Grid& grid, std::uint32_t i, std::uint32_t first, std::uint32_t last, float squared_radius);
 
-  std::vector<std::uint32_t> masses_;           // places with a mass
-  std::vector<std::uint32_t> start_, joined_;   // places joined by a spring to place i: [start_[i], start_[i + 1])
+  std::vector<std::uint32_t> masses_;          // places with a mass
+  std::vector<std::uint32_t> start_, joined_;  // places joined by a spring to place i: [start_[i], start_[i + 1])
   std::vector<Pair> pairs_;
   std::size_t lanes_ = 1;
-  std::vector<std::uint8_t> candidates_;        // made when first asked for
+  std::vector<std::uint8_t> candidates_;  // made when first asked for
   Aligned<float> x_, y_, z_;
   bool listed_ = false;
   std::uint64_t times_listed_ = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Near pairs of masses, found by looking at all pairs: for robots of few masses quicker than sorting them into a grid.
 #pragma once
 
@@ -27,7 +28,8 @@ inline void list_near_pairs(Body& body) {
       const Mask near = (squared_length(load_aligned(arrays.x, block * lane_count) - own) < squared_radius) & candidate;
       if (HWY_LIKELY(hn::AllFalse(floats, near.m))) continue;
       for (std::uint32_t lanes = bits_of(near); lanes != 0; lanes &= lanes - 1)
-        list.add({i, static_cast<std::uint32_t>(block * lane_count) + static_cast<std::uint32_t>(std::countr_zero(lanes))});
+        list.add(
+            {i, static_cast<std::uint32_t>(block * lane_count) + static_cast<std::uint32_t>(std::countr_zero(lanes))});
     }
   }
 }

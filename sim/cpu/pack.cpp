@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/pack.h"
 
 #include <algorithm>
@@ -20,7 +21,8 @@ class Packer {
 
   // The pack that takes so many more bodies, which may move so many muscles and touch so many bytes.
   Pack& pack_for(std::size_t bodies, std::size_t muscles, std::size_t bytes) {
-    if (packs_.empty() || bodies_ + bodies > most_bodies_ || muscles_ + muscles > most_muscles || bytes_ + bytes > cache_share) {
+    if (packs_.empty() || bodies_ + bodies > most_bodies_ || muscles_ + muscles > most_muscles ||
+        bytes_ + bytes > cache_share) {
       packs_.emplace_back();
       bodies_ = muscles_ = bytes_ = 0;
     }
@@ -36,7 +38,9 @@ class Packer {
   std::vector<Pack> packs_;
 };
 
-std::size_t muscles_of(const Body& body) { return static_cast<std::size_t>(std::ranges::count(body.measures.used, true)); }
+std::size_t muscles_of(const Body& body) {
+  return static_cast<std::size_t>(std::ranges::count(body.measures.used, true));
+}
 
 // The factors of bodies' materials; a body with the table of the one before has the same.
 class Casting {
@@ -125,8 +129,8 @@ std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const 
   return packer.take();
 }
 
-std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, const StepSetting& setting, const Clock& clock,
-                    std::int64_t steps) {
+std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, const StepSetting& setting,
+                    const Clock& clock, std::int64_t steps) {
   if (pack.laws_are_stale) take_laws(pack, bodies, setting.hooks);
   std::size_t broken = 0;
   const auto break_up_counted = [&](Lockstep& group) {
@@ -144,7 +148,8 @@ std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, co
   }
   pack.muscles.move_to(clock);
   const std::size_t muscles = pack.muscles.amplitude.size();
-  const std::int64_t at_once = std::clamp(static_cast<std::int64_t>(most_factors / muscles), std::int64_t{1}, most_steps_at_once);
+  const std::int64_t at_once =
+      std::clamp(static_cast<std::int64_t>(most_factors / muscles), std::int64_t{1}, most_steps_at_once);
   pack.factors.resize(static_cast<std::size_t>(std::min(steps, at_once)) * muscles);
   for (std::int64_t done = 0; done < steps; done += at_once) {
     const std::int64_t now = std::min(at_once, steps - done);

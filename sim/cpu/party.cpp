@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/party.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -15,11 +16,13 @@ namespace {
 
 using Group = std::vector<std::size_t>;
 
-// A party is stepped several times at a stretch; twice the cache of a core is still quicker than one robot after the other.
+// A party is stepped several times at a stretch; twice the cache of a core is still quicker than one robot after the
+// other.
 std::size_t cache_of_a_core() {
   constexpr std::size_t least = 256 * 1024;
 #ifdef _SC_LEVEL2_CACHE_SIZE
-  if (const long size = sysconf(_SC_LEVEL2_CACHE_SIZE); size > 0) return std::max(least, static_cast<std::size_t>(size));
+  if (const long size = sysconf(_SC_LEVEL2_CACHE_SIZE); size > 0)
+    return std::max(least, static_cast<std::size_t>(size));
 #endif
   return least;
 }
@@ -41,7 +44,8 @@ std::vector<Group> alike_groups(std::span<const Body> bodies, Group& left) {
   for (auto first = left.begin(); first != left.end();) {
     const std::size_t lanes = bodies[*first].places.lanes;
     auto last = first + 1;
-    while (last != left.end() && static_cast<std::size_t>(last - first) < lanes && alike(bodies[*first], bodies[*last])) ++last;
+    while (last != left.end() && static_cast<std::size_t>(last - first) < lanes && alike(bodies[*first], bodies[*last]))
+      ++last;
     if (4 * static_cast<std::size_t>(last - first) >= 3 * lanes)
       groups.emplace_back(first, last);
     else
@@ -71,7 +75,8 @@ Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> 
 }
 
 // Groups of robots with masses and faces in much the same places.
-std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns, std::span<const std::size_t> left, bool faces) {
+std::vector<Group> similar_groups(std::span<const Body> bodies, const Patterns& patterns,
+                                  std::span<const std::size_t> left, bool faces) {
   Group candidates;
   std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
   if (candidates.empty()) return {};
@@ -165,7 +170,8 @@ bool pays(std::span<const Body> bodies, const Party& party, bool faces) {
   // More lanes make rows dearer.
   const std::size_t lanes = bodies[party.bodies.front()].places.lanes;
   const double dearer = lanes > 8 ? 1.15 : lanes < 8 ? 0.95 : 1.0;
-  return footprint(*party.assembly.build, lanes) <= party_share && cost_together(*party.assembly.build, faces) < dearer * alone;
+  return footprint(*party.assembly.build, lanes) <= party_share &&
+         cost_together(*party.assembly.build, faces) < dearer * alone;
 }
 
 }  // namespace
@@ -197,7 +203,8 @@ std::vector<Party> find_parties(std::span<const Body> bodies, std::size_t thread
 
   std::vector<Party> parties(groups.size());
   oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
-    parties[g] = g < alike ? party_of_alike(bodies, std::move(groups[g])) : party_of_similar(bodies, patterns, std::move(groups[g]));
+    parties[g] = g < alike ? party_of_alike(bodies, std::move(groups[g]))
+                           : party_of_similar(bodies, patterns, std::move(groups[g]));
     if (g >= alike && !pays(bodies, parties[g], faces)) parties[g] = {};
   });
   std::erase_if(parties, [](const Party& party) { return party.bodies.empty(); });

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which robots step together, one a lane.
 #pragma once
 

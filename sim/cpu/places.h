@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a robot's masses stand in the CPU's arrays.
 #pragma once
 
@@ -12,7 +13,7 @@ namespace mercury::cpu {
 struct Places {
   std::size_t lanes = 1;
   std::vector<std::uint32_t> of_mass;
-  std::vector<std::uint32_t> mass_at;     // no_mass at stand-ins
+  std::vector<std::uint32_t> mass_at;  // no_mass at stand-ins
   std::vector<std::uint32_t> stand_ins;
 
   std::size_t blocks() const { return mass_at.size() / lanes; }

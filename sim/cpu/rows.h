@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collecting masses one by one: each has a row of four numbers, so that a mass is one load or store of 16 bytes, and
 // four masses are turned into vectors of x, y, z by exchanging elements in registers.
 #pragma once
@@ -83,7 +84,8 @@ HWY_INLINE Rows collect(const float* rows, const std::uint32_t* offsets) {
 // One row over and over.
 HWY_INLINE Rows row_in_every(Vec3 row) {
   alignas(64) float values[lane_count];
-  for (std::size_t i = 0; i < lane_count; ++i) values[i] = i % 4 == 0 ? row.x : i % 4 == 1 ? row.y : i % 4 == 2 ? row.z : 0;
+  for (std::size_t i = 0; i < lane_count; ++i)
+    values[i] = i % 4 == 0 ? row.x : i % 4 == 1 ? row.y : i % 4 == 2 ? row.z : 0;
   const Lanes all = load_aligned(values);
   return {all, all, all, all};
 }

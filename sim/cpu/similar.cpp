@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/similar.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -20,9 +21,9 @@ using Word = std::uint64_t;
 // What a step costs, in slots of springs.
 constexpr double seat_cost = 1.4, pair_cost = 3;
 
-constexpr std::size_t most_at_once = 1024;   // robots that are compared
-constexpr std::size_t most_places = 4096;    // of masses, of springs and of pairs of faces, that are told apart
-constexpr std::size_t most_springs = 128;    // a robot; where there are more, masses stand for them
+constexpr std::size_t most_at_once = 1024;  // robots that are compared
+constexpr std::size_t most_places = 4096;   // of masses, of springs and of pairs of faces, that are told apart
+constexpr std::size_t most_springs = 128;   // a robot; where there are more, masses stand for them
 
 std::uint32_t index_of(Cell c) {
   return static_cast<std::uint32_t>(c.x + most_cells_across * (c.y + most_cells_across * c.z));
@@ -51,8 +52,10 @@ class Sets {
         springs.push_back({std::min(a, b) << 16 | std::max(a, b), m});
       }
       for (const auto& [a, b, c, d] : faces)
-        pairs.push_back({((std::uint64_t{index_of(masses[a])} << 16 | index_of(masses[b])) << 16 | index_of(masses[c])) << 16 |
-                             index_of(masses[d]), m});
+        pairs.push_back(
+            {((std::uint64_t{index_of(masses[a])} << 16 | index_of(masses[b])) << 16 | index_of(masses[c])) << 16 |
+                 index_of(masses[d]),
+             m});
     }
     const auto words_of = [](std::vector<Item>& items) { return (count_common(items) + 63) / 64; };
     springs_start_ = words_of(cells);
@@ -74,7 +77,8 @@ class Sets {
       for (std::size_t w = first; w < last; ++w) count += std::popcount(robot[w] & ~to[w]);
       return count;
     };
-    return mass_cost_ * more(0, springs_start_) + more(springs_start_, pairs_start_) + pair_cost * more(pairs_start_, words_);
+    return mass_cost_ * more(0, springs_start_) + more(springs_start_, pairs_start_) +
+           pair_cost * more(pairs_start_, words_);
   }
   void unite(Word* with, const Word* robot) const {
     for (std::size_t w = 0; w < words_; ++w) with[w] |= robot[w];
@@ -129,7 +133,9 @@ std::vector<Group> collect(const Sets& sets, std::size_t robots, std::size_t gro
       group.push_back(*chosen);
       left.erase(chosen);
     };
-    const auto price = [&](std::size_t robot) { return sets.added(together.data(), sets.of(robot)) - worth_of_size * sets.cost(robot); };
+    const auto price = [&](std::size_t robot) {
+      return sets.added(together.data(), sets.of(robot)) - worth_of_size * sets.cost(robot);
+    };
     take(left.begin());
     while (group.size() < group_size && !left.empty()) {
       const auto end = left.begin() + static_cast<std::ptrdiff_t>(std::min(most_compared, left.size()));
@@ -150,7 +156,8 @@ std::vector<Group> collect(const Sets& sets, std::size_t robots, std::size_t gro
 // Exchanges robots between groups of about the same size as long as that makes both together cheaper.
 class Exchange {
  public:
-  Exchange(const Sets& sets, std::vector<Group>& groups) : sets_(sets), groups_(groups), others_(groups.size()), own_(groups.size()) {
+  Exchange(const Sets& sets, std::vector<Group>& groups)
+      : sets_(sets), groups_(groups), others_(groups.size()), own_(groups.size()) {
     for (std::size_t g = 0; g < groups.size(); ++g) look_at(g);
   }
 
@@ -210,7 +217,8 @@ class Exchange {
   std::vector<std::vector<double>> own_;
 };
 
-std::vector<Group> groups_of(std::span<const Outline> robots, std::span<const std::size_t> members, std::size_t group_size) {
+std::vector<Group> groups_of(std::span<const Outline> robots, std::span<const std::size_t> members,
+                             std::size_t group_size) {
   const Sets sets(robots, members);
   std::vector<Group> groups = collect(sets, members.size(), group_size);
   Exchange(sets, groups).run();

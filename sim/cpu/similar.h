@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which robots are built in much the same way, so that few lanes stay empty where they are stepped together.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The water's forces on all faces of a body.
 #pragma once
 
@@ -21,7 +22,8 @@ struct FaceForces {
 // The ways from a to the other corners, and the sum of the velocities of each face's corners relative to the water;
 // of_sums() by `drag`, `lift`.
 template <class Hooks>
-HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 first, Lanes3 second) {
+HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 first,
+                                  Lanes3 second) {
   const Lanes first_squared = inner(first, first), second_squared = inner(second, second);
   return {Hooks::on_face(cross(to_c, to_b), first, first_squared, drag, lift),
           Hooks::on_face(cross(to_d, to_c), second, second_squared, drag, lift), larger(first_squared, second_squared)};
@@ -32,11 +34,12 @@ class Skin {
  public:
   Skin(Body& body, const Hooks& hooks)
       : arrays_(body), corners_(body.faces.data()), corners_end_(corners_ + body.faces.size()),
-        coefficients_(hooks.of_sums(body.scale.force)), most_per_squared_speed_(coefficients_.most() * body.squared_diagonal),
+        coefficients_(hooks.of_sums(body.scale.force)),
+        most_per_squared_speed_(coefficients_.most() * body.squared_diagonal),
         thrice_flow_(row_in_every(hooks.thrice_flow)) {}
 
-  // Adds a third of each face's force to each of its masses. False if a force is out of range. That is looked for only where
-  // no bound excludes it.
+  // Adds a third of each face's force to each of its masses. False if a force is out of range. That is looked for only
+  // where no bound excludes it.
   bool add_forces() const {
     Lanes fastest_squared = 0.0f;
     for (const std::uint32_t* corner = corners_; corner != corners_end_; corner += 4 * lane_count) {
@@ -65,7 +68,8 @@ class Skin {
  private:
   // Of pairs of faces, whose corners stand one after the other.
   HWY_INLINE FaceForces forces(const std::uint32_t* corner) const {
-    const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count, *const d = c + lane_count;
+    const std::uint32_t *const a = corner, *const b = a + lane_count, *const c = b + lane_count,
+                               *const d = c + lane_count;
     const Rows xa = x(a);
     Rows common = v(a) + v(c);
     if constexpr (!Hooks::calm) common = common - thrice_flow_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/spring_plan.h"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ struct Link {
   std::uint32_t spring;
 };
 
-// What a row costs in runs, and what it costs every block that a robot has rows at all: masses are then kept in rows too.
+// What a row costs in runs, and what it costs every block that a robot has rows at all: masses are then kept in rows
+// too.
 constexpr double row_cost = 2.5, rows_cost = 1.5;
 // Springs in rows a lane, about.
 constexpr double row_fill = 0.9;
@@ -51,7 +53,8 @@ class Planner {
     }
     // Two springs between the same masses cannot share a run.
     const auto key = [&](const Link& link) { return std::tuple(block_of(link.owner), link.partner - link.owner); };
-    std::ranges::sort(links_, {}, [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
+    std::ranges::sort(links_, {},
+                      [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
     for (auto first = links_.begin(); first != links_.end();) {
       const auto last = std::find_if(first, links_.end(), [&](const Link& link) { return key(link) != key(*first); });
       const auto again = std::stable_partition(first, last, [&, before = ~0u](const Link& link) mutable {
@@ -82,9 +85,11 @@ class Planner {
   double cost(std::size_t fewest_in_run) const {
     double runs = 0, rest = 0;
     for (const std::span<const Link> candidate : candidates_)
-      (candidate.size() >= fewest_in_run ? runs : rest) += candidate.size() >= fewest_in_run ? 1 : static_cast<double>(candidate.size());
+      (candidate.size() >= fewest_in_run ? runs : rest) +=
+          candidate.size() >= fewest_in_run ? 1 : static_cast<double>(candidate.size());
     if (rest == 0) return runs;
-    return runs + row_cost * rest / (row_fill * static_cast<double>(lanes_)) + rows_cost * static_cast<double>(places_.blocks());
+    return runs + row_cost * rest / (row_fill * static_cast<double>(lanes_)) +
+           rows_cost * static_cast<double>(places_.blocks());
   }
 
   // The longest lane sets how many rows a block has: springs go to the end that has fewer.
@@ -108,7 +113,8 @@ class Planner {
     const std::size_t first = plan_.rest_length.size();
     plan_.rest_length.resize(first + lanes_, 0.0f);
     plan_.spring.resize(first + lanes_, no_spring);
-    for (std::size_t lane = 0; lane < lanes_; ++lane) plan_.bias[block * lanes_ + lane] += std::uint32_t{rounding_magic_bits};
+    for (std::size_t lane = 0; lane < lanes_; ++lane)
+      plan_.bias[block * lanes_ + lane] += std::uint32_t{rounding_magic_bits};
     return first;
   }
   void fill(std::size_t slot, const Link& link) {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which the CPU meets a robot's springs.
 //
 // Each spring is owned by one of its masses; the other is its partner. A block of masses, one a lane, meets its springs
 // slot by slot: in one slot every lane has at most one spring. The owners' forces are summed in registers. In a run the
-// partners stand next to each other as the owners do, so that they are loaded and added to like any vector: in a lattice
-// most springs of one direction do. All other springs stand in rows, whose partners are collected one by one.
+// partners stand next to each other as the owners do, so that they are loaded and added to like any vector: in a
+// lattice most springs of one direction do. All other springs stand in rows, whose partners are collected one by one.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@
 
 namespace mercury::cpu {
 
-// Forces on partners of runs are added to one of several arrays in turn: a load that overlaps a store of other alignment
-// made shortly before would have to wait for it.
+// Forces on partners of runs are added to one of several arrays in turn: a load that overlaps a store of other
+// alignment made shortly before would have to wait for it.
 inline constexpr std::uint32_t reaction_arrays = 2;
 
 struct Run {

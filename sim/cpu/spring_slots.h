@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All springs of a body, slot by slot (spring_plan.h).
 #pragma once
 
@@ -33,9 +34,9 @@ struct SlotLaw {
 
 // Adds all springs' contributions to the sums. False if one is beyond the stretch limit, which only `checked` finds.
 //
-// Calls finish(place) for each block of which it has all contributions and needs the positions no more: in order and one
-// block behind, so that what was added to it has arrived in the cache. With rows, whose partners stand anywhere, that is
-// for all blocks at the end; so it is when the springs must all be checked before anything may move.
+// Calls finish(place) for each block of which it has all contributions and needs the positions no more: in order and
+// one block behind, so that what was added to it has arrived in the cache. With rows, whose partners stand anywhere,
+// that is for all blocks at the end; so it is when the springs must all be checked before anything may move.
 template <bool checked, bool spring_rows, class Finish>
 bool add_springs(Body& body, const float* factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !spring_rows;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/step.h"
 
 #include <algorithm>
@@ -32,8 +33,9 @@ void add_pulls(Body& body) {
 }
 
 void add_contacts(Body& body, float stiffness) {
-  for_each_contact(body, stiffness, [&](std::uint32_t place) { return Body::at(body.x, place); },
-                   [&](std::uint32_t place, Vec3 units) { add(body.sums, place, units); });
+  for_each_contact(
+      body, stiffness, [&](std::uint32_t place) { return Body::at(body.x, place); },
+      [&](std::uint32_t place, Vec3 units) { add(body.sums, place, units); });
 }
 
 bool accept_state(Body& body) {

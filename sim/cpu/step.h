@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a step of the CPU is told, and the parts of it that are not vector code.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step of one robot in vector code, for every pair of solver and environment.
 #pragma once
 
@@ -29,7 +30,9 @@ class Stepper {
   }
 
   // False if the robot has exploded.
-  bool step(Solver solver, const float* factors) { return solver == Solver::force ? step_force(factors) : step_xpbd(factors); }
+  bool step(Solver solver, const float* factors) {
+    return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
+  }
 
  private:
   using Moving = Motion<Hooks, spring_rows>;
@@ -39,7 +42,8 @@ class Stepper {
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.force);
-    if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); })) return false;
+    if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); }))
+      return false;
     settle_stand_ins();
     body_.squared_diagonal = end.squared_diagonal();
     return end.finite();
@@ -52,7 +56,8 @@ class Stepper {
     for (std::size_t place = 0; place < body_.places.mass_at.size(); place += lane_count) prediction.predict(place);
     if (!prediction.finite()) return false;
     Moving end(body_, hooks_, constants_, body_.scale.correction);
-    if (!add_springs(factors, prediction.squared_diagonal(), [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); }))
+    if (!add_springs(factors, prediction.squared_diagonal(),
+                     [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); }))
       return false;
     settle_stand_ins();
     body_.squared_diagonal = end.squared_diagonal();
@@ -73,8 +78,7 @@ class Stepper {
     if constexpr (Hooks::has_contacts) {
       const float distance = body_.measures.contact_distance();
       if (contact_stiffness_ != 0 && distance != 0) {
-        if (!body_.near_pairs.listed() || strayed(list_reach * distance))
-          list_near_pairs(body_);
+        if (!body_.near_pairs.listed() || strayed(list_reach * distance)) list_near_pairs(body_);
         add_contacts(body_, contact_stiffness_);
       }
     }
@@ -91,7 +95,7 @@ class Stepper {
   bool strayed(float reach) const {
     const Arrays arrays(body_);
     const float *const x = body_.near_pairs.x().data(), *const y = body_.near_pairs.y().data(),
-                *const z = body_.near_pairs.z().data();
+                       *const z = body_.near_pairs.z().data();
     const Lanes3 common{arrays.x.x[0] - x[0], arrays.x.y[0] - y[0], arrays.x.z[0] - z[0]};
     Lanes farthest_squared = 0.0f;
     for (std::size_t place = 0; place < arrays.places; place += lane_count) {
@@ -119,7 +123,8 @@ class Stepper {
 };
 
 template <class Hooks, bool spring_rows>
-std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& setting, Factors factors, std::int64_t steps) {
+std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& setting, Factors factors,
+                          std::int64_t steps) {
   Stepper<Hooks, spring_rows> stepper(body, hooks, setting);
   for (std::int64_t n = 0; n < steps; ++n)
     if (!stepper.step(setting.solver, factors.of_step(n))) return n;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/telemetry.h"
 
 #include <algorithm>
@@ -42,7 +43,8 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
     const float distance = length(body.position(spring.b) - body.position(spring.a));
     const float rest = spring.rest_length;
     const auto stretch = static_cast<double>(distance - rest * factor[spring.material]);
-    result.elastic_energy += 0.5 * static_cast<double>(scale * body.materials[spring.material].stiffness) * stretch * stretch;
+    result.elastic_energy +=
+        0.5 * static_cast<double>(scale * body.materials[spring.material].stiffness) * stretch * stretch;
     result.largest_strain = std::max(result.largest_strain, std::abs(distance - rest) / rest);
   }
   return result;

@@ -1,5 +1,6 @@
-// How a robot of a certain build stands on the device: which slot each mass has, the rows of its springs, the bundles of
-// its faces. Robots of one build share it, whatever their materials, lengths and states are.
+// SPDX-License-Identifier: Apache-2.0
+// How a robot of a certain build stands on the device: which slot each mass has, the rows of its springs, the bundles
+// of its faces. Robots of one build share it, whatever their materials, lengths and states are.
 #pragma once
 
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CUDA backend.
 #include "sim/backend.h"
 
@@ -24,7 +25,8 @@ class CudaBackend final : public Backend {
     const int count = cuda_device_count();
     if (count == 0) throw DeviceError("no CUDA device was found: use --device cpu");
     if (device_ >= count)
-      throw DeviceError("CUDA device " + std::to_string(device_) + " is not there, the last one is " + std::to_string(count - 1));
+      throw DeviceError("CUDA device " + std::to_string(device_) + " is not there, the last one is " +
+                        std::to_string(count - 1));
     use_device();
     name_ = cuda_device_name(device_);
   }
@@ -188,7 +190,8 @@ class CudaBackend final : public Backend {
   // No steps yet, from the clock on.
   StepArguments prepare(const Clock& clock) const {
     batch_.update_phases(clock);
-    StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0, shape_};
+    StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0,
+                            shape_};
     if (const Land* land = std::get_if<Land>(&configuration_.environment))
       arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
     return arguments;
@@ -201,7 +204,7 @@ class CudaBackend final : public Backend {
 
   int device_;
   std::string name_;
-  mutable Batch batch_;  // its phases follow the clock when somebody asks
+  mutable Batch batch_;                           // its phases follow the clock when somebody asks
   mutable MappedArray<DeviceTelemetry> reports_;  // of the present state, once made
   mutable bool report_made_ = false, report_expected_ = false;
   mutable DeviceArray<float> packed_;  // what is read of all masses
@@ -226,7 +229,8 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.group_stride = groups_of(robot);
   batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
   const Shape shape = choose_shape(configuration.solver, configuration.environment, batch, true);
-  const AnyHooks hooks = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+  const AnyHooks hooks =
+      std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
   return {most_shared_bytes(), shape.on_chip, shape.on_chip && shape.contacts_on_chip,
           robots_in_flight(configuration.solver, hooks, shape)};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/batch.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -16,9 +17,10 @@ constexpr unsigned threads = 256;
 
 // Turns the partner of every record from one unit into another: slot (rows 0) or word offset among groups of so
 // many rows.
-__global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_rows,
-                               std::uint32_t new_rows) {
-  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count; i += std::size_t{gridDim.x} * blockDim.x) {
+__global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
+                               std::uint32_t old_rows, std::uint32_t new_rows) {
+  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
+       i += std::size_t{gridDim.x} * blockDim.x) {
     std::uint32_t& key = records[i * record_words];
     const std::uint32_t place = key >> 16;
     const std::uint32_t slot = slot_at(place, old_rows);
@@ -44,7 +46,9 @@ __global__ void gather_rows(const float* state, const RobotRecord* records, cons
   }
 }
 
-unsigned blocks_for(std::size_t count) { return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536)); }
+unsigned blocks_for(std::size_t count) {
+  return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536));
+}
 
 // A mass's vector in groups of state_rows.
 Vec3 vector_at(std::span<const float> groups, std::uint32_t slot, std::uint32_t row) {
@@ -62,7 +66,8 @@ void put_vector(std::span<float> groups, std::uint32_t slot, std::uint32_t row, 
 
 Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), robots.end()) {
   measures_.resize(size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(), [&](std::size_t i) { measures_[i] = measure(*robots_[i]); });
+  oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(),
+                            [&](std::size_t i) { measures_[i] = measure(*robots_[i]); });
   for (const Robot* robot : robots_) {
     first_mass_.push_back(first_mass_.back() + robot->masses.size());
     group_stride_ = std::max(group_stride_, groups_of(*robot));
@@ -127,8 +132,14 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
       const Robot& robot = *robots_[i];
       const Arrangement anew = keep ? Arrangement{} : arrange(robot);
       const auto& [order, schedule, faces] = keep ? kept[first_alike[i]] : anew;
-      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()), schedule.groups(), static_cast<std::uint32_t>(faces.size()),
-                     static_cast<std::uint32_t>(robot.springs.size()), order.turn, 1, 1, measures[i].squared_stretch_limit(),
+      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()),
+                     schedule.groups(),
+                     static_cast<std::uint32_t>(faces.size()),
+                     static_cast<std::uint32_t>(robot.springs.size()),
+                     order.turn,
+                     1,
+                     1,
+                     measures[i].squared_stretch_limit(),
                      measures[i].contact_distance()};
       const std::size_t state_size = std::size_t{group_stride_} * state_rows * lanes;
       const auto groups = std::span(state).subspan(k * state_size, state_size);
@@ -197,7 +208,8 @@ void Batch::place_records(std::uint32_t rows) {
   rows_placed_ = rows;
 }
 
-void Batch::set_materials(std::size_t first_robot, std::span<const Material> tables, const Configuration& configuration) {
+void Batch::set_materials(std::size_t first_robot, std::span<const Material> tables,
+                          const Configuration& configuration) {
   std::ranges::copy(tables, materials_.begin() + static_cast<std::ptrdiff_t>(first_robot * max_materials));
   device_materials_.write(first_robot * max_materials, tables);
   phases_stale_ = true;
@@ -217,7 +229,8 @@ void Batch::update_phases(const Clock& clock) {
 void Batch::set_pulls(std::span<const Pull> pulls) {
   std::vector<DevicePull> converted;
   for (const Pull& pull : pulls)
-    converted.push_back({static_cast<std::uint32_t>(pull.robot), order_of(pull.robot).slot_of(pull.mass), pull.target, pull.stiffness});
+    converted.push_back(
+        {static_cast<std::uint32_t>(pull.robot), order_of(pull.robot).slot_of(pull.mass), pull.target, pull.stiffness});
   pulls_ = DeviceArray<DevicePull>(converted.size());
   pulls_.write(0, converted);
 }
@@ -230,10 +243,26 @@ void Batch::reserve_workspace(std::size_t bytes_a_robot) {
 }
 
 BatchView Batch::view() const {
-  return {device_records_.data(), device_statuses_.data(), state_.data(), springs_.data(), lengths_.data(), row_start_.data(),
-          face_pairs_.data(), splits_.data(), arrivals_.data(), device_materials_.data(), phases_.data(), pulls_.data(), workspace_.data(),
-          size(), group_stride_, row_stride_, face_stride_, static_cast<std::uint32_t>(pulls_.size()),
-          static_cast<std::uint32_t>(workspace_stride_), record_words_};
+  return {device_records_.data(),
+          device_statuses_.data(),
+          state_.data(),
+          springs_.data(),
+          lengths_.data(),
+          row_start_.data(),
+          face_pairs_.data(),
+          splits_.data(),
+          arrivals_.data(),
+          device_materials_.data(),
+          phases_.data(),
+          pulls_.data(),
+          workspace_.data(),
+          size(),
+          group_stride_,
+          row_stride_,
+          face_stride_,
+          static_cast<std::uint32_t>(pulls_.size()),
+          static_cast<std::uint32_t>(workspace_stride_),
+          record_words_};
 }
 
 void Batch::read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const {
@@ -268,7 +297,8 @@ void Batch::set_status(std::size_t robot, DeviceStatus status) { device_statuses
 
 void Batch::gather(float* device_out, std::uint32_t first_row) const {
   if (size() == 0) return;
-  gather_rows<<<size(), threads>>>(state_.data(), device_records_.data(), device_first_mass_.data(), group_stride_, first_row, device_out);
+  gather_rows<<<size(), threads>>>(state_.data(), device_records_.data(), device_first_mass_.data(), group_stride_,
+                                   first_row, device_out);
   check(cudaGetLastError(), "gathering masses");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A batch in device memory, built from robots.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a block of threads shares while it steps its robots.
 #pragma once
 

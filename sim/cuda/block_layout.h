@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the shared memory of a block is dealt out. Knows no CUDA, so that every build can tell what a robot needs.
 #pragma once
 
@@ -27,11 +28,11 @@ struct Shape {
   std::uint32_t robots_per_block = 1;
   std::uint32_t warps_per_robot = 1;
   std::uint32_t table_copy_bits = 0;  // 2^this many copies of the material table, at most 16
-  bool shared_table = false;        // all robots of the batch have the same materials
-  bool on_chip = true;              // masses in shared memory, else in the workspace
-  bool splits_on_chip = true;       // and beside them the number of springs at each, which XPBD needs
+  bool shared_table = false;          // all robots of the batch have the same materials
+  bool on_chip = true;                // masses in shared memory, else in the workspace
+  bool splits_on_chip = true;         // and beside them the number of springs at each, which XPBD needs
   std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
-  std::uint32_t record_words = 2;   // of the batch
+  std::uint32_t record_words = 2;     // of the batch
   bool contacts_on_chip = true;       // else behind the working memory in the workspace
   std::size_t shared_bytes = 0;
 };
@@ -42,8 +43,8 @@ struct alignas(8) SpringLaw {
   float factor;    // L / L0
 };
 
-// Shared memory of a block, in this order: material tables, failures, rest lengths, contact buckets and lists, working memory of its
-// robots. Ends of the parts in bytes.
+// Shared memory of a block, in this order: material tables, failures, rest lengths, contact buckets and lists, working
+// memory of its robots. Ends of the parts in bytes.
 struct BlockLayout {
   std::uint32_t tables, failures, lengths, contacts, total;
 };

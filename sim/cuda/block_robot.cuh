@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One robot of a block, as one of its threads sees it: where its masses stand, and a walk over their springs.
 //
 // A block steps `robots_per_block` robots side by side; each has `warps_per_robot` warps, which share its groups of 32
@@ -9,8 +10,8 @@
 
 namespace mercury::cuda {
 
-// A thread's place at a robot. Shared addresses: `table` of this lane's copy of the material table, `lengths` of the rest
-// lengths.
+// A thread's place at a robot. Shared addresses: `table` of this lane's copy of the material table, `lengths` of the
+// rest lengths.
 template <class Memory>
 struct Seat {
   std::uint32_t robot, warp, lane;
@@ -57,7 +58,8 @@ struct BlockPlaces {
     contacts = shape.contacts_on_chip
                    ? shared_memory + layout.lengths + number * contact_bytes(shape.contact_buckets, batch.group_stride)
                    : workspace + (Memory::on_chip ? 0 : working_bytes);
-    table = reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : number * table_copies * max_materials);
+    table =
+        reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : number * table_copies * max_materials);
     seat.table = shared_address(table + seat.lane % table_copies);
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
@@ -82,9 +84,13 @@ class BlockRobot {
  protected:
   __device__ std::uint32_t warps() const { return arguments_.shape.warps_per_robot; }
   __device__ std::uint32_t thread() const { return seat_.warp * lanes + seat_.lane; }
-  __device__ Mass<Memory> own(std::uint32_t group) const { return {seat_.masses + group * group_bytes + seat_.lane * 4}; }
+  __device__ Mass<Memory> own(std::uint32_t group) const {
+    return {seat_.masses + group * group_bytes + seat_.lane * 4};
+  }
   __device__ bool is_mass(std::uint32_t group) const { return group * lanes + seat_.lane < record_.masses; }
-  __device__ static std::uint32_t offset_of(std::uint32_t mass) { return mass / lanes * group_bytes + mass % lanes * 4; }
+  __device__ static std::uint32_t offset_of(std::uint32_t mass) {
+    return mass / lanes * group_bytes + mass % lanes * 4;
+  }
   __device__ Mass<Memory> at(std::uint32_t mass) const { return {seat_.masses + offset_of(mass)}; }
 
   __device__ float* state(std::uint32_t group) const {
@@ -104,8 +110,8 @@ class BlockRobot {
     else
       return at(record.x >> 16);
   }
-  // What springs give is in units of fixed point: their laws are those of the material table, which robots may share, and
-  // their lengths are multiplied by the units in a newton, or in a metre of correction, a power of two.
+  // What springs give is in units of fixed point: their laws are those of the material table, which robots may share,
+  // and their lengths are multiplied by the units in a newton, or in a metre of correction, a power of two.
   __device__ float unit() const { return solver == Solver::force ? record_.force_scale : record_.correction_scale; }
   __device__ float rest_length_of(const Record& record) const {
     if constexpr (record_words == 1)
@@ -115,7 +121,9 @@ class BlockRobot {
   }
   __device__ static std::uint32_t material_of(const Record& record) { return record.x & 0xff; }
   // .x = hardness, .y = factor
-  __device__ float2 law_of(const Record& record) const { return load_pair(seat_.table + material_of(record) * law_bytes()); }
+  __device__ float2 law_of(const Record& record) const {
+    return load_pair(seat_.table + material_of(record) * law_bytes());
+  }
 
   // begin(group, mass, rows) makes what a mass's springs are collected in, add(integral_constant count, records, that)
   // adds up to four rows to it, and end(mass, that) ends it, for each of this thread's masses. Their rows follow one

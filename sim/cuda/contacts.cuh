@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which masses of a robot are near each other without a spring between them.
 //
 // The cell grid is filled anew only when some mass may have moved so far that the list of near pairs could miss one;
@@ -17,10 +18,10 @@ inline constexpr float list_radius = 1.5f;
 inline constexpr float list_reach = 0.99f * (list_radius - 1) / 2;
 
 struct ContactMemory {
-  std::uint32_t* count;   // pairs found, of which contact_list_size fit
-  std::uint32_t* pairs;   // i << 16 | j
-  std::uint32_t* heads;   // of the buckets
-  std::uint16_t* links;   // from a mass to the next of its bucket
+  std::uint32_t* count;  // pairs found, of which contact_list_size fit
+  std::uint32_t* pairs;  // i << 16 | j
+  std::uint32_t* heads;  // of the buckets
+  std::uint16_t* links;  // from a mass to the next of its bucket
 
   __device__ ContactMemory(char* memory, std::uint32_t buckets)
       : count(reinterpret_cast<std::uint32_t*>(memory)), pairs(count + 1), heads(pairs + contact_list_size),
@@ -30,8 +31,8 @@ struct ContactMemory {
 
 // Calls visit(j) for every mass j within list_radius that comes after mass i, so that each pair is met once.
 template <class Position, class Visit>
-__device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets, float distance, std::uint32_t i, Vec3 x,
-                              const Position& position, const Visit& visit) {
+__device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets, float distance, std::uint32_t i,
+                              Vec3 x, const Position& position, const Visit& visit) {
   const float radius = list_radius * distance, inverse_size = 1 / radius;
   const Cell cell = cell_of(x, inverse_size);
   for (int n = 0; n < half_neighbourhood; ++n) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <random>
@@ -20,10 +21,12 @@ std::array<FacePair, 4> tellings(const FacePair& p) {
 }
 
 // Deals pairs out to a given number of bundles so that few want a bank twice in a column: each goes where it is in the
-// way of the fewest; then, again and again, those in each other's way go elsewhere. (Minton et al. 1992, min-conflicts.)
+// way of the fewest; then, again and again, those in each other's way go elsewhere. (Minton et al. 1992,
+// min-conflicts.)
 class Bundles {
  public:
-  Bundles(std::span<const FacePair> pairs, std::size_t bundles) : told_(pairs.size()), dealt_(pairs.size()), bundles_(bundles) {
+  Bundles(std::span<const FacePair> pairs, std::size_t bundles)
+      : told_(pairs.size()), dealt_(pairs.size()), bundles_(bundles) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       const auto all = tellings(pairs[p]);
       for (std::size_t t = 0; t < all.size(); ++t) told_[p][t] = banks_of(all[t]);
@@ -84,7 +87,8 @@ class Bundles {
     constexpr std::size_t most_asked = 64;
     unsigned fewest = ~0u;
     std::size_t bundle = random_() % bundles_.size();
-    for (std::size_t asked = 0; asked < bundles_.size() && fewest > 0; ++asked, bundle = (bundle + 1) % bundles_.size()) {
+    for (std::size_t asked = 0; asked < bundles_.size() && fewest > 0;
+         ++asked, bundle = (bundle + 1) % bundles_.size()) {
       if (asked >= most_asked && fewest != ~0u) break;
       if (bundles_[bundle].size == lanes) continue;
       for (std::size_t telling = 0; telling < 4; ++telling) {

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // How robots lie in device memory. Every robot has a chunk of each buffer, sized by the largest robot (paper, II.D).
 //
-// Masses stand in slots, 32 slots a group. A group is a stack of rows of 32 floats, one row a quantity, so that a slot is
-// one offset, every quantity of it lies a constant further, and a mass's bank is its slot mod 32 in every row. On the
-// device masses are named by their slots.
+// Masses stand in slots, 32 slots a group. A group is a stack of rows of 32 floats, one row a quantity, so that a slot
+// is one offset, every quantity of it lies a constant further, and a mass's bank is its slot mod 32 in every row. On
+// the device masses are named by their slots.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +34,8 @@ MERCURY_HOST_DEVICE constexpr std::uint32_t slot_at(std::uint32_t place, std::ui
 }
 
 // Which slot each mass stands in: slot 32 g + lane is the lane of group g. Within a group masses stand in their order,
-// turned on by so many lanes a group: where masses are numbered row by row, lattice neighbours in other rows would else be
-// likely to share a bank, or all corners of one kind would have even banks.
+// turned on by so many lanes a group: where masses are numbered row by row, lattice neighbours in other rows would else
+// be likely to share a bank, or all corners of one kind would have even banks.
 struct SlotOrder {
   std::uint32_t masses, turn;
 
@@ -62,10 +63,10 @@ inline constexpr std::uint32_t max_lengths = 256;
 
 struct RobotRecord {
   std::uint32_t masses, groups, face_pairs, springs;
-  std::uint32_t turn;                    // SlotOrder
-  float force_scale, correction_scale;   // FixedPointScale
-  float squared_stretch_limit;           // [m2]
-  float contact_distance;                // [m]
+  std::uint32_t turn;                   // SlotOrder
+  float force_scale, correction_scale;  // FixedPointScale
+  float squared_stretch_limit;          // [m2]
+  float contact_distance;               // [m]
 };
 
 MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotRecord& record) { return {record.masses, record.turn}; }
@@ -99,9 +100,9 @@ struct BatchView {
   const Material* materials;       // [robot][max_materials]
   MusclePhase* phases;             // [robot][max_materials], for the present clock base
   const DevicePull* pulls;
-  char* workspace;                 // [robot], what does not fit on the chip: contact lists, working memory
+  char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
   std::uint32_t robot_count, group_stride, row_stride, face_stride, pull_count, workspace_stride;
-  std::uint32_t record_words;      // 1 or 2
+  std::uint32_t record_words;  // 1 or 2
 };
 
 }  // namespace mercury::cuda

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where masses stand while they are stepped: on the chip, or in device memory if they are too many. All look alike to
 // the step kernel: an address, and rows at constant distances from it.
 #pragma once
@@ -63,7 +64,8 @@ struct Mass {
   typename Memory::Address at;
 
   __device__ Vec3 vector(std::uint32_t row) const {
-    return {Memory::load(at, row * row_bytes), Memory::load(at, (row + 1) * row_bytes), Memory::load(at, (row + 2) * row_bytes)};
+    return {Memory::load(at, row * row_bytes), Memory::load(at, (row + 1) * row_bytes),
+            Memory::load(at, (row + 2) * row_bytes)};
   }
   __device__ void set_vector(std::uint32_t row, Vec3 value) const {
     Memory::store(at, row * row_bytes, value.x);
@@ -73,16 +75,21 @@ struct Mass {
   __device__ float value(std::uint32_t row) const { return Memory::load(at, row * row_bytes); }
   __device__ void set_value(std::uint32_t row, float value) const { Memory::store(at, row * row_bytes, value); }
 
-  __device__ int sum(std::uint32_t axis) const { return __float_as_int(Memory::load(at, (row_sum + axis) * row_bytes)); }
+  __device__ int sum(std::uint32_t axis) const {
+    return __float_as_int(Memory::load(at, (row_sum + axis) * row_bytes));
+  }
   __device__ void set_sum(int value) const {
-    for (std::uint32_t axis = 0; axis < 3; ++axis) Memory::store(at, (row_sum + axis) * row_bytes, __int_as_float(value));
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      Memory::store(at, (row_sum + axis) * row_bytes, __int_as_float(value));
   }
   __device__ void add_to_sum(int x, int y, int z) const {
     Memory::add(at, row_sum * row_bytes, x);
     Memory::add(at, (row_sum + 1) * row_bytes, y);
     Memory::add(at, (row_sum + 2) * row_bytes, z);
   }
-  __device__ void add_to_sum(Vec3 units) const { add_to_sum(round_to_int(units.x), round_to_int(units.y), round_to_int(units.z)); }
+  __device__ void add_to_sum(Vec3 units) const {
+    add_to_sum(round_to_int(units.x), round_to_int(units.y), round_to_int(units.z));
+  }
 };
 
 }  // namespace mercury::cuda

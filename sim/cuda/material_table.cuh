@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The material table of a block: what every material's springs are at the present step.
 #pragma once
 

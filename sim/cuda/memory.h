@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owners of device memory, and errors.
 #pragma once
 
@@ -67,11 +68,13 @@ class DeviceArray {
 
   void write(std::size_t first, std::span<const T> values) {
     if (!values.empty())
-      check(cudaMemcpy(data_ + first, values.data(), values.size_bytes(), cudaMemcpyHostToDevice), "writing to the device");
+      check(cudaMemcpy(data_ + first, values.data(), values.size_bytes(), cudaMemcpyHostToDevice),
+            "writing to the device");
   }
   void read(std::size_t first, std::span<T> values) const {
     if (!values.empty())
-      check(cudaMemcpy(values.data(), data_ + first, values.size_bytes(), cudaMemcpyDeviceToHost), "reading from the device");
+      check(cudaMemcpy(values.data(), data_ + first, values.size_bytes(), cudaMemcpyDeviceToHost),
+            "reading from the device");
   }
   void clear() {
     if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "clearing device memory");
@@ -89,7 +92,8 @@ class MappedArray {
   MappedArray() = default;
   explicit MappedArray(std::size_t size) : size_(size) {
     if (size > 0)
-      check(cudaHostAlloc(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaHostAllocMapped), "allocating mapped memory");
+      check(cudaHostAlloc(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaHostAllocMapped),
+            "allocating mapped memory");
   }
   ~MappedArray() { cudaFreeHost(data_); }
   MappedArray(MappedArray&& other) noexcept

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for the CUDA backend in a build without nvcc.
 #include "sim/backend.h"
 #include "sim/chip.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Telemetry of a robot from the masses on the chip, where its last step left it.
 #pragma once
 
@@ -13,20 +14,24 @@ namespace mercury::cuda {
 template <Solver solver, class Memory, int record_words>
 class RobotReporter : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
-  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::warps, Robot::thread, Robot::own,
-      Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of, Robot::for_each_rows;
+  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::warps, Robot::thread,
+      Robot::own, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of,
+      Robot::for_each_rows;
 
  public:
   __device__ explicit RobotReporter(const Robot& robot) : Robot(robot) {}
 
   // Measures the springs of this warp's masses. What each mass owns stands behind its state from then on.
   __device__ void measure_springs() const {
-    for_each_rows([](std::uint32_t, const Mass<Memory>& mass, std::uint32_t) { return Owned{mass.vector(row_x), 0, 0}; },
-                  [&](auto count, const Record* records, Owned& owned) { measure<decltype(count)::value>(records, owned); },
-                  [](const Mass<Memory>& mass, const Owned& owned) {
-                    mass.set_value(row_energy, owned.energy);
-                    mass.set_value(row_strain, owned.strain);
-                  });
+    for_each_rows(
+        [](std::uint32_t, const Mass<Memory>& mass, std::uint32_t) {
+          return Owned{mass.vector(row_x), 0, 0};
+        },
+        [&](auto count, const Record* records, Owned& owned) { measure<decltype(count)::value>(records, owned); },
+        [](const Mass<Memory>& mass, const Owned& owned) {
+          mass.set_value(row_energy, owned.energy);
+          mass.set_value(row_strain, owned.strain);
+        });
   }
 
   // Behind a barrier: the sums over all masses, each by one warp, which lays it ready at the robot's first group.
@@ -45,7 +50,8 @@ class RobotReporter : public BlockRobot<solver, Memory, record_words> {
       else if (which == elastic_energy)
         lay(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(energy_of_unit() * sum(which)));
       else  // the components of two vectors, as they stand at a mass
-        lay(offsetof(DeviceTelemetry, center_of_mass) + 4 * which, __float_as_int(static_cast<float>(share * sum(which))));
+        lay(offsetof(DeviceTelemetry, center_of_mass) + 4 * which,
+            __float_as_int(static_cast<float>(share * sum(which))));
     }
   }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/schedule.h"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ struct Edge {
 class Ownership {
  public:
   Ownership(std::size_t masses, std::span<const Spring> springs)
-      : springs_(springs), lane_load_(masses), bank_load_((masses + lanes - 1) / lanes * lanes), owned_by_b_(springs.size()) {
+      : springs_(springs), lane_load_(masses), bank_load_((masses + lanes - 1) / lanes * lanes),
+        owned_by_b_(springs.size()) {
     for (std::size_t s = 0; s < springs_.size(); ++s) {
       owned_by_b_[s] = load(springs_[s].b, springs_[s].a) < load(springs_[s].a, springs_[s].b);
       change(s, 1);
@@ -279,7 +281,8 @@ Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs) {
   schedule.places.reserve(springs.size() * 5 / 4);
   const Neighbours neighbours = find_neighbours(masses, springs);
   for (std::size_t g = 0; g + 1 < grouped.start.size(); ++g)
-    append_group(schedule, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]), neighbours);
+    append_group(schedule, std::span(grouped.edges).subspan(grouped.start[g], grouped.start[g + 1] - grouped.start[g]),
+                 neighbours);
   return schedule;
 }
 

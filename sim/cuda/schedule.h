@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which a warp meets its springs, so that its 32 lanes never want the same bank of shared memory.
 //
 // Masses stand in groups of 32, one a lane. Each spring is owned by one of its two masses, whose lane computes it; the
 // other mass is its partner. In one row every lane of a group has at most one spring, and no two partners share a bank
 // (mass index mod 32). Rows are found by colouring the edges of the bipartite graph of lanes and banks, which takes
-// exactly as many rows as the busiest lane or bank has springs (Koenig's theorem); owners are chosen to keep that small.
+// exactly as many rows as the busiest lane or bank has springs (Koenig's theorem); owners are chosen to keep that
+// small.
 #pragma once
 
 #include <cstdint>
@@ -41,9 +43,9 @@ inline constexpr FacePair no_faces{0, 0, 0, 0};
 // Accesses that pairs need at least in a column, for what they want of the bank that they want most.
 std::uint32_t busiest_bank(std::span<const FacePair> pairs);
 
-// The same pairs in another order, each perhaps told from another corner, in as few bundles of 32 as there can be, the last
-// filled up with empty places. Few of a bundle have masses of the same bank in the same column: those wait for each other,
-// which costs less than another bundle would.
+// The same pairs in another order, each perhaps told from another corner, in as few bundles of 32 as there can be, the
+// last filled up with empty places. Few of a bundle have masses of the same bank in the same column: those wait for
+// each other, which costs less than another bundle would.
 std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs);
 
 }  // namespace mercury::cuda

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 
@@ -60,7 +61,8 @@ template <Solver solver, class Hooks, int record_words>
 auto kernel_for(const Shape& shape) {
   if constexpr (solver == Solver::xpbd)
     if (shape.on_chip && !shape.splits_on_chip) return step_kernel<solver, Hooks, OnChipWithoutSplits, record_words>;
-  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, record_words> : step_kernel<solver, Hooks, OffChip, record_words>;
+  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, record_words>
+                       : step_kernel<solver, Hooks, OffChip, record_words>;
 }
 
 template <Solver solver, class Hooks>
@@ -103,8 +105,8 @@ Limits device_limits() {
           attribute(cudaDevAttrReservedSharedMemoryPerBlock), attribute(cudaDevAttrMultiProcessorCount)};
 }
 
-// What the kernel's registers allow: so many warps on a multiprocessor, at best in two blocks, so that one computes while
-// the other waits at a barrier.
+// What the kernel's registers allow: so many warps on a multiprocessor, at best in two blocks, so that one computes
+// while the other waits at a barrier.
 constexpr std::uint32_t resident_warps = 28;
 // Groups that a warp takes in turn: enough to hide a barrier's cost, few enough to share the work evenly.
 constexpr std::uint32_t fewest_turns = 3;
@@ -175,11 +177,13 @@ std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape
   return std::visit(
       [&](const auto& kind) {
         using Hooks = std::decay_t<decltype(kind)>;
-        const auto kernel = solver == Solver::force ? kernel_for<Solver::force, Hooks>(shape) : kernel_for<Solver::xpbd, Hooks>(shape);
+        const auto kernel =
+            solver == Solver::force ? kernel_for<Solver::force, Hooks>(shape) : kernel_for<Solver::xpbd, Hooks>(shape);
         prepare(kernel, shape);
         int blocks = 0;
         const auto threads = static_cast<int>(shape.robots_per_block * shape.warps_per_robot * lanes);
-        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, shape.shared_bytes), "asking for occupancy");
+        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, shape.shared_bytes),
+              "asking for occupancy");
         return static_cast<std::uint32_t>(blocks) * shape.robots_per_block * device_limits().multiprocessors;
       },
       hooks);

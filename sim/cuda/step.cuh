@@ -1,6 +1,7 @@
-// The step kernel's work: every robot of a block is carried through many steps with its masses on the chip. All sums are
-// integers (sim/fixed_point.h), so neither the number of warps nor the other robots of the batch can change a bit of the
-// result.
+// SPDX-License-Identifier: Apache-2.0
+// The step kernel's work: every robot of a block is carried through many steps with its masses on the chip. All sums
+// are integers (sim/fixed_point.h), so neither the number of warps nor the other robots of the batch can change a bit
+// of the result.
 #pragma once
 
 #include "sim/cuda/block_robot.cuh"
@@ -14,14 +15,14 @@ namespace mercury::cuda {
 template <Solver solver, class Hooks, class Memory, int record_words>
 class RobotStepper : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
-  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_, Robot::last_group_,
-      Robot::warps, Robot::thread, Robot::own, Robot::is_mass, Robot::offset_of, Robot::at, Robot::state, Robot::row_start,
-      Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of,
-      Robot::for_each_rows;
+  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_,
+      Robot::last_group_, Robot::warps, Robot::thread, Robot::own, Robot::is_mass, Robot::offset_of, Robot::at,
+      Robot::state, Robot::row_start, Robot::springs, Robot::partner_of, Robot::rest_length_of, Robot::material_of,
+      Robot::unit, Robot::law_of, Robot::for_each_rows;
 
  public:
-  __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat, Failure* failure,
-                          char* contacts)
+  __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat,
+                          Failure* failure, char* contacts)
       : Robot(arguments, seat), hooks_(hooks), failure_(failure), contacts_(contacts) {}
 
   __device__ bool alive() const { return arguments_.batch.statuses[seat_.robot].exploded_step < 0; }
@@ -38,7 +39,8 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       const float* from = state(g);
       for (std::uint32_t row = 0; row < state_rows; ++row) mass.set_value(row, from[row * lanes]);
       mass.set_sum(solver == Solver::force ? springs_bias(g) : 0);
-      if constexpr (solver == Solver::xpbd && Memory::keeps_splits) mass.set_value(row_splits, splits_of(g * lanes + seat_.lane));
+      if constexpr (solver == Solver::xpbd && Memory::keeps_splits)
+        mass.set_value(row_splits, splits_of(g * lanes + seat_.lane));
     }
   }
 
@@ -256,7 +258,9 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
           const int bias = static_cast<int>(rows_owned) * rounding_magic_bits;
           return Owner{mass.vector(row_x), own_splits(group, mass), bias, bias, bias};
         },
-        [&](auto count, const Record* records, Owner& owner) { add_rows<decltype(count)::value>(records, owner, longest); },
+        [&](auto count, const Record* records, Owner& owner) {
+          add_rows<decltype(count)::value>(records, owner, longest);
+        },
         [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
     return longest;
   }
@@ -296,8 +300,9 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       const Vec3 second = scale * hooks_.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(row_v)));
       if (!fits(first) || !fits(second)) {
         const SlotOrder order = slot_order(record_);
-        fail(step, phase_environment, min(min(order.mass_of(corner.x), order.mass_of(corner.y)),
-                                          min(order.mass_of(corner.z), order.mass_of(corner.w))));
+        fail(step, phase_environment,
+             min(min(order.mass_of(corner.x), order.mass_of(corner.y)),
+                 min(order.mass_of(corner.z), order.mass_of(corner.w))));
         continue;
       }
       const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
@@ -344,10 +349,13 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       return;
     }
     const std::uint32_t count = *memory.count;
-    for (std::uint32_t p = thread(); p < count; p += warps() * lanes) add_contact(memory.pairs[p] >> 16, memory.pairs[p] & 0xffff);
+    for (std::uint32_t p = thread(); p < count; p += warps() * lanes)
+      add_contact(memory.pairs[p] >> 16, memory.pairs[p] & 0xffff);
   }
 
-  __device__ bool touches(Vec3 d) const { return squared_length(d) < record_.contact_distance * record_.contact_distance; }
+  __device__ bool touches(Vec3 d) const {
+    return squared_length(d) < record_.contact_distance * record_.contact_distance;
+  }
 
   __device__ void add_contact(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = at(j).vector(row_x) - at(i).vector(row_x);

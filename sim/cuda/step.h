@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Launching the step kernels.
 #pragma once
 
@@ -13,7 +14,7 @@ namespace mercury::cuda {
 
 struct StepArguments {
   BatchView batch;
-  Clock clock;              // of the first step
+  Clock clock;  // of the first step
   StepConstants constants;
   float stiffness_scale = 1;
   float contact_stiffness = 0;  // [N/m], times the stiffness scale
@@ -34,7 +35,8 @@ std::size_t most_shared_bytes();
 std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape);
 
 // Springs a second if only the shared memory pipe counted: a row of 32 springs takes ten passes through it (four of the
-// record, the position and the rest length, two of the material, three additions, and one more where XPBD reads splits).
+// record, the position and the rest length, two of the material, three additions, and one more where XPBD reads
+// splits).
 double spring_limit(Solver solver);
 
 // Asynchronous; errors through cudaGetLastError.

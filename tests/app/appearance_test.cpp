@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colours and shapes that are made from a robot.
 #include "app/appearance.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The search that mercury new --best-of does.
 #include "app/best_of.h"
 
@@ -17,7 +18,8 @@ Robot make(std::uint64_t seed, std::uint64_t index) {
 
 TEST(BestOf, DistanceCountsFromWhereTheRobotSettled) {
   const Configuration configuration{.environment = Land{}, .device = {.kind = DeviceKind::cpu}};
-  const auto winners = best_of({.candidates = 1, .configuration = configuration, .steps = 900, .settling = 500}, make, 3, 1);
+  const auto winners =
+      best_of({.candidates = 1, .configuration = configuration, .steps = 900, .settling = 500}, make, 3, 1);
   ASSERT_EQ(winners.size(), 1u);
   Simulation simulation(configuration, std::vector<Robot>{make(3, 0)});
   simulation.step(500);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/camera_plan.h"
 
 #include <gmock/gmock.h>
@@ -11,8 +12,15 @@ namespace {
 class CameraFile : public FolderTest {};
 
 TEST_F(CameraFile, ComesBackAsItWasSaved) {
-  const CameraPlan plan{.mode = CameraMode::still, .robot = "eel", .azimuth = 0.1f, .elevation = -0.25f, .zoom = 2,
-                        .field_of_view = 0.4f, .period = 8, .target = Eigen::Vector3f(1, -2, 0.3f), .distance = 7};
+  const CameraPlan plan{.mode = CameraMode::still,
+                        .robot = "eel",
+                        .azimuth = 0.1f,
+                        .elevation = -0.25f,
+                        .zoom = 2,
+                        .field_of_view = 0.4f,
+                        .period = 8,
+                        .target = Eigen::Vector3f(1, -2, 0.3f),
+                        .distance = 7};
   save_camera(path("a.json"), plan);
   const CameraPlan loaded = load_camera(path("a.json"));
   EXPECT_EQ(loaded.mode, plan.mode);
@@ -47,7 +55,8 @@ TEST_F(CameraFile, ErrorsSayWhere) {
   EXPECT_EQ(message("no json"), file + ": is not a camera file; its \"format\" must be \"mercury-camera\"");
   EXPECT_EQ(message("[1, 2]"), file + ": is not a camera file; its \"format\" must be \"mercury-camera\"");
   EXPECT_EQ(message(R"({"format": "mercury-camera", "version": 2})"), file + ": /version must be 1");
-  EXPECT_EQ(message(start + R"("mode": "drone"})"), file + ": /mode must be one of group, follow, turntable, top, still");
+  EXPECT_EQ(message(start + R"("mode": "drone"})"),
+            file + ": /mode must be one of group, follow, turntable, top, still");
   EXPECT_EQ(message(start + R"("zoom": 0})"), file + ": /zoom must be above 0");
   EXPECT_EQ(message(start + R"("azimuth": "west"})"), file + ": /azimuth is not a number");
   EXPECT_EQ(message(start + R"("target": [1, 2]})"), file + ": /target is not a list of three numbers");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera sees what its plan says, as large as fits.
 #include "app/cameraman.h"
 
@@ -37,7 +38,8 @@ float fill_of(const render::Camera& camera, const std::vector<Bounds>& boxes) {
   float fill = 0;
   for (const Bounds& b : boxes)
     for (int i = 0; i < 8 && !b.empty(); ++i) {
-      const Eigen::Vector3f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(), i & 4 ? b.high.z() : b.low.z());
+      const Eigen::Vector3f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(),
+                                   i & 4 ? b.high.z() : b.low.z());
       const Eigen::Vector3f pixel = camera.project(corner, width, height);
       EXPECT_GT(pixel.z(), 0) << "behind the eye";
       fill = std::max({fill, std::abs(pixel.x() / width * 2 - 1), std::abs(1 - pixel.y() / height * 2)});
@@ -136,8 +138,9 @@ TEST(Cameraman, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
 }
 
 TEST(Cameraman, StillStaysWhereItWasTold) {
-  Cameraman camera({.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5},
-                   {}, {});
+  Cameraman camera(
+      {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5}, {},
+      {});
   std::vector<Bounds> boxes = scattered(6, 1);
   for (int frame = 0; frame < 3; ++frame) {
     EXPECT_LT((camera.at(boxes, tick).eye - Eigen::Vector3f(6, 2, 3)).norm(), 1e-5);

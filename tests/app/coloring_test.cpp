@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbers that robots are coloured by.
 #include "app/coloring.h"
 
@@ -15,13 +16,17 @@ namespace {
 
 // Two masses 1 m apart on a muscle of 50 N/m that is 10 % longer at t = 0 (phase pi/2), and a triangle of three.
 Robot pair() {
-  return {.name = "pair", .materials = {{}, {50, 0.1f, 1, static_cast<float>(M_PI / 2)}}, .masses = {{0, 0, 0}, {1, 0, 0}},
+  return {.name = "pair",
+          .materials = {{}, {50, 0.1f, 1, static_cast<float>(M_PI / 2)}},
+          .masses = {{0, 0, 0}, {1, 0, 0}},
           .springs = {{0, 1, 1, 1}}};
 }
 
 // An equilateral triangle would do; this one has an area of 2 m2 and faces +z.
 Robot plate() {
-  return {.name = "plate", .masses = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, .springs = {{0, 1, 21, 2}, {1, 2, 21, 2.828427f}, {2, 0, 21, 2}},
+  return {.name = "plate",
+          .masses = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}},
+          .springs = {{0, 1, 21, 2}, {1, 2, 21, 2.828427f}, {2, 0, 21, 2}},
           .faces = {{0, 1, 2}}};
 }
 
@@ -55,7 +60,8 @@ TEST(Coloring, EnergyIsThatOfHookesLaw) {
 }
 
 TEST(Coloring, StiffnessIsTheMaterialsTimesThatOfTheEnvironment) {
-  const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device}, std::vector<Robot>{pair()});
+  const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device},
+                              std::vector<Robot>{pair()});
   EXPECT_NEAR(Coloring(simulation, ColorBy::stiffness).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], 150, 1e-4);
 }
 

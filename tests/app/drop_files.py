@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drops files on a window as a file manager does: the source's side of the X drag-and-drop protocol (XDND, version 5).
 
 drop_files.py WINDOW X Y PATH... with the window's number and a place in it; needs nothing but libX11.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Videos and folders of pictures: what is in the files, and what happens when something fails.
 #include <gmock/gmock.h>
 
@@ -105,8 +106,8 @@ TEST_F(VideoTest, ColoursComeOutAsTheyWentIn) {
   const Rgb color{0.9, 0.3, 0.1};
   for (const char* name : {"a.mp4", "a.webm", "a.gif"}) {
     film(name, {.size = small, .frames_per_second = 25}, 3, color);
-    const std::string pixels = output_of(
-        "ffmpeg", {"-v", "error", "-i", path(name), "-frames:v", "1", "-vf", "crop=2:2:80:40", "-pix_fmt", "rgb24", "-f", "rawvideo", "-"});
+    const std::string pixels = output_of("ffmpeg", {"-v", "error", "-i", path(name), "-frames:v", "1", "-vf",
+                                                    "crop=2:2:80:40", "-pix_fmt", "rgb24", "-f", "rawvideo", "-"});
     ASSERT_EQ(pixels.size(), 12u) << name;
     EXPECT_NEAR(static_cast<std::uint8_t>(pixels[0]), 255 * color.r, 4) << name;
     EXPECT_NEAR(static_cast<std::uint8_t>(pixels[1]), 255 * color.g, 4) << name;
@@ -217,7 +218,10 @@ TEST_F(FailingVideo, EncoderThatWritesNothingIsAFailure) {
 }
 
 TEST_F(FailingVideo, FullDiskIsTold) {
-  write("full", "#!/bin/sh\necho 'av_interleaved_write_frame(): No space left on device' >&2\necho 'Conversion failed!' >&2\nexit 1\n", true);
+  write("full",
+        "#!/bin/sh\necho 'av_interleaved_write_frame(): No space left on device' >&2\necho 'Conversion failed!' "
+        ">&2\nexit 1\n",
+        true);
   expect_failure<VideoError>({.size = small, .ffmpeg = path("full")}, "a.mp4: the disk is full; nothing was kept");
 }
 

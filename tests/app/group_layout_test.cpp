@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots in a grid: none hides another.
 #include "app/group_layout.h"
 
@@ -40,7 +41,8 @@ Rectangle seen(const Bounds& b, const render::Orbit& view) {
   const Eigen::Matrix4f eye = camera.view();
   Rectangle r{1e9f, -1e9f, 1e9f, -1e9f};
   for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector4f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(), i & 4 ? b.high.z() : b.low.z(), 1);
+    const Eigen::Vector4f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(),
+                                 i & 4 ? b.high.z() : b.low.z(), 1);
     const Eigen::Vector4f p = eye * corner;
     r = {std::min(r.left, p.x()), std::max(r.right, p.x()), std::min(r.bottom, p.y()), std::max(r.top, p.y())};
   }
@@ -78,7 +80,8 @@ INSTANTIATE_TEST_SUITE_P(Grid, Layout, testing::Values(false, true),
                          [](const auto& tested) { return tested.param ? "OnTheGround" : "InWater"; });
 
 TEST(GridLayout, OnTheGroundHeightsStay) {
-  for (const auto& offset : grid_layout(robots(8), {.view = {.elevation = 0.5f}, .on_ground = true})) EXPECT_EQ(offset.z(), 0);
+  for (const auto& offset : grid_layout(robots(8), {.view = {.elevation = 0.5f}, .on_ground = true}))
+    EXPECT_EQ(offset.z(), 0);
 }
 
 TEST(GridLayout, GridThatIsTooSmallIsRefused) {
@@ -88,7 +91,8 @@ TEST(GridLayout, GridThatIsTooSmallIsRefused) {
 
 TEST(RaceLayout, HasOneLaneARobotFromOneStartLine) {
   const auto boxes = robots(5);
-  const auto offsets = grid_layout(boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});
+  const auto offsets = grid_layout(
+      boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});
   for (std::size_t i = 1; i < boxes.size(); ++i) {
     EXPECT_NEAR(boxes[i].moved(offsets[i]).center().x(), boxes[0].moved(offsets[0]).center().x(), 1e-4);
     EXPECT_LT(boxes[i].moved(offsets[i]).high.y(), boxes[i - 1].moved(offsets[i - 1]).low.y());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury info: about files, and about the machine.
 #include <gmock/gmock.h>
 
@@ -12,7 +13,9 @@ class InfoCommand : public FolderTest {};
 
 TEST_F(InfoCommand, TellsWhatAFileHolds) {
   // One voxel: 8 masses, 28 pairs of them, 6 sides of two triangles.
-  ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("cube.json")}).status, 0);
+  ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("cube.json")})
+                .status,
+            0);
   const Outcome outcome = mercury({"info", path("cube.json")});
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_THAT(outcome.output, testing::ContainsRegex("masses +8\n"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window's scene on every backend; on a machine without a CUDA device its cases are skipped.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +38,8 @@ TEST_P(LiveOn, StepsAndEditsGiveWhatTheSimulationGives) {
     Simulation simulation(options(environment).configuration, random_voxel_robots({}, 5, 3));
     simulation.step(130);
     const auto table = scene.materials(ids[2]);
-    for (std::size_t id = 1; id < table.size(); ++id) simulation.set_material(2, static_cast<MaterialId>(id), table[id]);
+    for (std::size_t id = 1; id < table.size(); ++id)
+      simulation.set_material(2, static_cast<MaterialId>(id), table[id]);
     simulation.step(70);
     for (const std::size_t robot : {1u, 2u}) {
       const State state = simulation.state(robot);
@@ -118,7 +120,10 @@ TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
   Robot robot = random_voxel_robot({}, 5, 0);
   Simulation simulation({.device = device()}, std::span(&robot, 1));
   simulation.step(120);
-  Repro repro{.robot = robot, .configuration = simulation.configuration(), .clock = simulation.clock(), .state = simulation.state(0)};
+  Repro repro{.robot = robot,
+              .configuration = simulation.configuration(),
+              .clock = simulation.clock(),
+              .state = simulation.state(0)};
   Material material = default_materials()[3];
   material.stiffness *= 2;
   std::vector<Material> table(default_materials().begin(), default_materials().end());
@@ -126,7 +131,9 @@ TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
   Configuration changed = simulation.configuration();
   changed.dt = 6e-4;
   repro.pulls = {{.mass = 1, .target = {0, 1, 0}, .stiffness = 25}};
-  repro.changes = {{.step = 150, .materials = table}, {.step = 170, .configuration = changed}, {.step = 200, .pulls = std::vector<Pull>{}}};
+  repro.changes = {{.step = 150, .materials = table},
+                   {.step = 170, .configuration = changed},
+                   {.step = 200, .pulls = std::vector<Pull>{}}};
   repro.last_step = 400;
   simulation.set_pulls(repro.pulls);
   simulation.step(30);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Explosions in the window's scene: which spring is shown, where, and that it stays true when edits are taken back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,8 +29,8 @@ LiveSceneOptions in_space() {
 }
 
 // Springs of material 1, which is sound, but one of material 2, whose k dt^2 is far beyond what the force solver bears.
-Robot with_bad_spring(const std::string& name, std::vector<Vec3> masses, const std::vector<std::array<std::uint16_t, 2>>& ends,
-                      std::size_t bad, float stiffness = 4e6f) {
+Robot with_bad_spring(const std::string& name, std::vector<Vec3> masses,
+                      const std::vector<std::array<std::uint16_t, 2>>& ends, std::size_t bad, float stiffness = 4e6f) {
   Robot robot{.name = name, .masses = std::move(masses)};
   robot.materials = {{}, {.stiffness = 50}, {.stiffness = stiffness}};
   robot.material_names = {"air", "sound", "brittle"};
@@ -58,7 +59,8 @@ TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
   LiveScene scene(in_space());
   std::vector<Vec3> masses;
   for (int pair = 0; pair < 3; ++pair)
-    for (int end = 0; end < 2; ++end) masses.push_back({1.02f * length * static_cast<float>(end), static_cast<float>(pair), 0});
+    for (int end = 0; end < 2; ++end)
+      masses.push_back({1.02f * length * static_cast<float>(end), static_cast<float>(pair), 0});
   scene.add({with_bad_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
   explode(scene);
   const auto exploded = scene.exploded();

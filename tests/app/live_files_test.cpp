@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of the window: robots opened and saved, commands that make the scene again, repro files, what is remembered.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -83,7 +84,8 @@ TEST_F(LiveFiles, OpensWhatCanBeReadAndTellsOfTheRest) {
 }
 
 TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
-  const test::Outcome run = test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
+  const test::Outcome run = test::mercury(
+      {"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
   ASSERT_EQ(run.status, 0) << run.messages;
   LiveScene scene(test::on_cpu());
   scene.open({path("swim.h5")});
@@ -108,8 +110,8 @@ TEST_F(LiveFiles, WhatIsDroppedInOneGoLoadsWhereItCanAndTheRestIsTold) {
   write("scene.toml", "dt = 0.01\n");
   write("cut.cbor", read("many/two.cbor").substr(0, 100));
   LiveScene scene(test::on_cpu());
-  scene.open({path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"), path("scene.toml"),
-              path("cut.cbor")});
+  scene.open({path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"),
+              path("scene.toml"), path("cut.cbor")});
   scene.wait_until_done();
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-0", "voxel-1-1", "voxel-1-2"));
   const auto messages = scene.take_messages();
@@ -193,12 +195,14 @@ TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
   EXPECT_THAT(command.notes, IsEmpty());
   const Parsed same = parsed(command.text);
   ASSERT_EQ(same.robots.size(), scene.document().robots.size()) << command.text;
-  for (std::size_t i = 0; i < same.robots.size(); ++i) EXPECT_EQ(same.robots[i], *scene.document().robots[i].body.robot) << i;
+  for (std::size_t i = 0; i < same.robots.size(); ++i)
+    EXPECT_EQ(same.robots[i], *scene.document().robots[i].body.robot) << i;
   EXPECT_EQ(same.configuration, scene.configuration());
   EXPECT_EQ(same.view.color, options.view.color);
   EXPECT_EQ(same.view.scale, options.view.scale);
   EXPECT_EQ(same.view.theme, options.view.theme);
-  EXPECT_TRUE(same.view.shown.springs && same.view.shown.arrows.drag && same.view.shown.labels && same.view.shown.clock);
+  EXPECT_TRUE(same.view.shown.springs && same.view.shown.arrows.drag && same.view.shown.labels &&
+              same.view.shown.clock);
   EXPECT_FALSE(same.view.shown.legend);
   ASSERT_TRUE(same.view.cut);
   EXPECT_EQ(same.view.cut->normal, options.view.cut->normal);
@@ -227,7 +231,8 @@ TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
   test::make_robots(scene, 2);
   scene.step(700);
   scene.wait_until_done();
-  const test::Outcome run = test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.7", "--device", "cpu", "--json", "--quiet"});
+  const test::Outcome run =
+      test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.7", "--device", "cpu", "--json", "--quiet"});
   const auto report = nlohmann::json::parse(run.output);
   Simulation same(test::on_cpu().configuration, random_voxel_robots({}, 5, 2));
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films made beside the window.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -79,7 +80,10 @@ TEST_F(LiveFilm, AGroupFilmIsMadeWhileTheSceneGoesOn) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   scene.step(10);
-  const auto film = scene.film({.output = path("group.mp4"), .size = {160, 90}, .frames_per_second = 10, .seconds = 0.5,
+  const auto film = scene.film({.output = path("group.mp4"),
+                                .size = {160, 90},
+                                .frames_per_second = 10,
+                                .seconds = 0.5,
                                 .quality = render::Quality::low});
   scene.play();
   while (!film->status().over()) scene.frame();
@@ -94,7 +98,8 @@ TEST_F(LiveFilm, ACancelledGroupFilmLeavesNothingAndAnEmptyOneSaysWhy) {
   LiveScene scene(test::on_cpu());
   EXPECT_EQ(over(*scene.film({.output = path("none.mp4")})).state, FilmStatus::State::failed);
   test::make_robots(scene, 1);
-  const auto film = scene.film({.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
+  const auto film =
+      scene.film({.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
   film->cancel();
   film->wait();
   EXPECT_EQ(film->status().state, FilmStatus::State::cancelled);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pace, series, ranking and tables.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window's physics: on its own thread, and yet step by step what the simulation alone gives.
 #include <gtest/gtest.h>
 
@@ -19,7 +20,8 @@ std::vector<LiveRobot> some_robots(std::size_t count) {
   std::vector<LiveRobot> live;
   for (Robot& robot : random_voxel_robots({}, 5, count)) {
     std::string name = robot.name;
-    live.push_back({.id = live.size() + 1, .name = std::move(name), .robot = std::make_shared<const Robot>(std::move(robot))});
+    live.push_back(
+        {.id = live.size() + 1, .name = std::move(name), .robot = std::make_shared<const Robot>(std::move(robot))});
   }
   return live;
 }

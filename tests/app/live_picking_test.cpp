@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray meets, against independent calculations.
 #include <gtest/gtest.h>
 
@@ -42,16 +43,21 @@ TEST(LivePicking, MeetsTheFaceThatBruteForceFinds) {
   int met = 0;
   for (int shot = 0; shot < 400; ++shot) {
     const std::size_t aim = random.below(moment.robots->size());
-    const Vector3f target = eigen(moment.positions_of(aim)[random.below(moment.positions_of(aim).size())]) + scene.picture().offsets()[aim];
-    render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5))}};
-    const Vector3f jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)));
+    const Vector3f target =
+        eigen(moment.positions_of(aim)[random.below(moment.positions_of(aim).size())]) + scene.picture().offsets()[aim];
+    render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)),
+                               static_cast<float>(random.uniform(-5, 5))}};
+    const Vector3f jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
+                          static_cast<float>(random.uniform(-0.2, 0.2)));
     ray.direction = (target + jitter - ray.origin).normalized();
     double nearest = INFINITY, second = INFINITY;
     std::size_t robot = 0;
     std::uint32_t face = 0;
     for (std::size_t i = 0; i < moment.robots->size(); ++i) {
       const auto& faces = moment.robots->robots[i].robot->faces;
-      const auto place = [&](std::uint16_t mass) -> Vector3d { return (eigen(moment.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>(); };
+      const auto place = [&](std::uint16_t mass) -> Vector3d {
+        return (eigen(moment.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>();
+      };
       for (std::uint32_t f = 0; f < faces.size(); ++f) {
         const auto t = crossing(ray, place(faces[f].a), place(faces[f].b), place(faces[f].c));
         if (!t) continue;
@@ -92,7 +98,9 @@ TEST(LivePicking, MeetsSpringsWithinTheRadiusAndTellsTheirForce) {
   scene.add({two_springs()});
   scene.wait_until_done();
   const Vector3f offset = scene.picture().offsets()[0];
-  const auto from_above = [&](float x, float y) { return render::Ray{.origin = offset + Vector3f(x, y, 2), .direction = {0, 0, -1}}; };
+  const auto from_above = [&](float x, float y) {
+    return render::Ray{.origin = offset + Vector3f(x, y, 2), .direction = {0, 0, -1}};
+  };
   const auto hit = pick(scene.moment(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->spring, 0u);

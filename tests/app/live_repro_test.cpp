@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An explosion seen in the window happens again from its repro: by the program, and in the window.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -59,7 +60,8 @@ class LiveRepro : public test::FolderTest {
   }
   static std::string hash_of(const LiveScene& scene, RobotId robot) {
     const std::size_t index = *scene.moment().robots->index_of(robot);
-    Simulation same({.device = {.kind = DeviceKind::cpu}}, std::span(scene.moment().robots->robots[index].robot.get(), 1));
+    Simulation same({.device = {.kind = DeviceKind::cpu}},
+                    std::span(scene.moment().robots->robots[index].robot.get(), 1));
     same.set_state(0, scene.moment().positions_of(index), scene.moment().velocities_of(index));
     std::ostringstream text;
     text << std::hex << std::setw(16) << std::setfill('0') << same.hash(0);
@@ -154,7 +156,8 @@ TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
   histories.follow(simulation, robots, {});
   for (int i = 0; i < 5; ++i) {
     simulation.step(100);
-    const std::vector<LivePull> pulls{{.robot = 4, .mass = 1, .target = {0.1f * static_cast<float>(i), 0, 1}, .stiffness = 20}};
+    const std::vector<LivePull> pulls{
+        {.robot = 4, .mass = 1, .target = {0.1f * static_cast<float>(i), 0, 1}, .stiffness = 20}};
     simulation.set_pulls(std::vector<Pull>{{.mass = 1, .target = pulls[0].target, .stiffness = 20}});
     histories.follow(simulation, robots, pulls);
     simulation.step(100);
@@ -188,15 +191,17 @@ TEST_F(LiveRepro, WhatIsNoReproIsToldInOneLine) {
     }
     return false;
   };
-  for (std::size_t size = 0; size + 2 < whole.size(); size += whole.size() / 40) EXPECT_TRUE(refused(whole.substr(0, size))) << size;
+  for (std::size_t size = 0; size + 2 < whole.size(); size += whole.size() / 40)
+    EXPECT_TRUE(refused(whole.substr(0, size))) << size;
   const auto document = nlohmann::json::parse(whole);
   for (const auto& [name, member] : document.items()) {
     if (name == "device_name") continue;
     auto changed = document;
     changed.erase(name);
     EXPECT_TRUE(refused(changed.dump())) << name;
-    for (const auto& odd : {nlohmann::json(), nlohmann::json(-1), nlohmann::json("x"), nlohmann::json::array({1}), nlohmann::json{{"step", -5}}}) {
-      if (name == "changes" && odd.is_null()) continue;           // none
+    for (const auto& odd : {nlohmann::json(), nlohmann::json(-1), nlohmann::json("x"), nlohmann::json::array({1}),
+                            nlohmann::json{{"step", -5}}}) {
+      if (name == "changes" && odd.is_null()) continue;          // none
       if (name == "configuration" && odd.is_object()) continue;  // what is missing has its default
       changed[name] = odd;
       EXPECT_TRUE(refused(changed.dump())) << name << " " << odd;

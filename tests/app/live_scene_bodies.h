@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene for the tests of the window's model, on one thread of the CPU.
 #pragma once
 

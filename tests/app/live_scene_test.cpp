@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window's scene: robots, edits and taking them back, selection, tuning.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -276,25 +277,30 @@ TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
     return drawn.looks[drawn.placements[robot].first_look + id].activation;
   };
   const auto expected = [&](const Material& material) {
-    return -std::sin(static_cast<double>(material.frequency) * scene.moment().time + static_cast<double>(material.phase));
+    return -std::sin(static_cast<double>(material.frequency) * scene.moment().time +
+                     static_cast<double>(material.phase));
   };
   scene.scale_materials({ids[7], ids[110]}, {.frequency = 3});
   scene.scale_materials({ids[60]}, {.phase = 1});
   scene.wait_until_done();
   for (const std::size_t robot : {0u, 7u, 60u, 110u, 119u})
     for (const MaterialId id : {MaterialId{1}, MaterialId{6}, MaterialId{20}})
-      EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5) << robot << ", material " << int{id};
-  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look) << "those that are the same are kept once";
+      EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5)
+          << robot << ", material " << int{id};
+  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look)
+      << "those that are the same are kept once";
   EXPECT_EQ(drawn.placements[0].first_look, drawn.placements[119].first_look);
   const auto looks = drawn.looks.size();
   for (int i = 0; i < 50; ++i) {
-    scene.scale_materials({ids[7]}, {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
+    scene.scale_materials({ids[7]},
+                          {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
     scene.wait_until_done();
   }
   EXPECT_LE(drawn.looks.size(), looks + 2 * 254) << "a slider leaves nothing behind";
   scene.reset_materials(ids);
   scene.wait_until_done();
-  for (const std::size_t robot : {7u, 60u, 110u}) EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
+  for (const std::size_t robot : {7u, 60u, 110u})
+    EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
   EXPECT_EQ(scene.picture().bodies_revision(), revision) << "no body was given anew";
 }
 
@@ -317,7 +323,8 @@ TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
   EditHistory history(10);
   SceneDocument document;
   const auto robot = [](std::size_t springs) {
-    return DocumentRobot{.body = {.robot = std::make_shared<const Robot>(Robot{.springs = std::vector<Spring>(springs)})}};
+    return DocumentRobot{
+        .body = {.robot = std::make_shared<const Robot>(Robot{.springs = std::vector<Spring>(springs)})}};
   };
   for (int i = 0; i < 20; ++i) {
     history.before_change(document, "make");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury new: robot files.
 #include <gmock/gmock.h>
 
@@ -15,13 +16,16 @@ TEST_F(NewCommand, WritesTheRobotsOfASeed) {
   const Outcome outcome = mercury({"new", "voxel", "-o", path("r"), "--count", "3", "--seed", "7"});
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(listing("r"), (std::vector<std::string>{"voxel-7-0.json", "voxel-7-1.json", "voxel-7-2.json"}));
-  EXPECT_EQ(outcome.output, path("r/voxel-7-0.json") + "\n" + path("r/voxel-7-1.json") + "\n" + path("r/voxel-7-2.json") + "\n");
+  EXPECT_EQ(outcome.output,
+            path("r/voxel-7-0.json") + "\n" + path("r/voxel-7-1.json") + "\n" + path("r/voxel-7-2.json") + "\n");
   EXPECT_EQ(load_robot(path("r/voxel-7-2.json")), random_voxel_robot({}, 7, 2));
 }
 
 TEST_F(NewCommand, OptionsShapeTheRobots) {
   ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.cbor"), "--voxels", "3x4x5", "--air", "0", "--edge", "0.2",
-                     "--symmetry", "x", "--patch", "1"}).status, 0);
+                     "--symmetry", "x", "--patch", "1"})
+                .status,
+            0);
   const RandomVoxelOptions options{
       .smallest = {3, 4, 5}, .largest = {3, 4, 5}, .edge = 0.2f, .air = 0, .mirror = Mirror::x, .patch = 1};
   EXPECT_EQ(load_robot(path("a.cbor")), random_voxel_robot(options, 1));
@@ -38,7 +42,8 @@ TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
   const std::vector<std::string> command{"new", "voxel", "-o", path("a.json")};
   const Outcome refused = mercury(command);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(refused.messages, "mercury: " + path("a.json") + ": exists already; use --force to replace it, or another name\n");
+  EXPECT_EQ(refused.messages,
+            "mercury: " + path("a.json") + ": exists already; use --force to replace it, or another name\n");
   EXPECT_EQ(read("a.json"), "mine");
   std::vector<std::string> forced = command;
   forced.push_back("--force");
@@ -48,9 +53,11 @@ TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
 
 // The winners are those that `run` says got farthest.
 TEST_F(NewCommand, BestOfKeepsTheFarthest) {
-  const Outcome outcome = mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
+  const Outcome outcome =
+      mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
-  const auto report = nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
+  const auto report =
+      nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
   std::vector<std::pair<double, std::string>> ranking;
   for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["displacement"].get<double>(), robot["name"]);
   std::sort(ranking.begin(), ranking.end());
@@ -60,7 +67,9 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
 }
 
 TEST_F(NewCommand, RobotsSayWhereTheyWereTried) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"}).status, 0);
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"})
+                .status,
+            0);
   EXPECT_EQ(environment_of(load_robot(path("a.json"))), "land");
   ASSERT_EQ(mercury({"new", "voxel", "-o", path("b.json"), "--best-of", "2", "--seconds", "0"}).status, 0);
   EXPECT_EQ(environment_of(load_robot(path("b.json"))), "ocean");

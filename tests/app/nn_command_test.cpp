@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Network robots on the command line.
 #include <gmock/gmock.h>
 
@@ -14,8 +15,8 @@ class NnCommand : public FolderTest {};
 
 TEST_F(NnCommand, NewWritesTheRobotsOfASeed) {
   for (const std::string format : {"json", "cbor"}) {
-    const Outcome outcome = mercury({"new", "nn", "-o", path(format), "--count", "2", "--seed", "7", "--points", "100",
-                                     "--format", format});
+    const Outcome outcome = mercury(
+        {"new", "nn", "-o", path(format), "--count", "2", "--seed", "7", "--points", "100", "--format", format});
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
     EXPECT_EQ(listing(format), (std::vector<std::string>{"nn-7-0." + format, "nn-7-1." + format}));
     const Robot robot = load_robot(path(format + "/nn-7-1." + format));
@@ -26,7 +27,9 @@ TEST_F(NnCommand, NewWritesTheRobotsOfASeed) {
 
 TEST_F(NnCommand, OptionsShapeTheRobots) {
   ASSERT_EQ(mercury({"new", "nn", "-o", path("a.json"), "--points", "200", "--hidden", "20,30", "--alpha", "0.5",
-                     "--mirrored", "1"}).status, 0);
+                     "--mirrored", "1"})
+                .status,
+            0);
   const NnOptions options{.hidden = {20, 30}, .points = 200, .alpha = 0.5f, .mirrored = 1};
   EXPECT_EQ(load_robot(path("a.json")), random_nn_robot(options, 1));
 }
@@ -60,8 +63,9 @@ TEST_F(NnCommand, WhatCannotBeUsedIsTold) {
   EXPECT_EQ(message({"--points", "10"}), "mercury: --points: 10 is not accepted; give 64 to 65535\n");
   EXPECT_EQ(message({"--hidden", "64,x"}), "mercury: --hidden: \"x\" is not accepted; give a whole number\n");
   EXPECT_EQ(message({"--hidden", "64,2"}), "mercury: --hidden: 2 is not accepted; give 6 to 4096 neurons a layer\n");
-  EXPECT_EQ(message({"--alpha", "1e-6"}),
-            "mercury: --random: none could be grown: alpha: no tetrahedron of the cloud is as small as the given radius\n");
+  EXPECT_EQ(
+      message({"--alpha", "1e-6"}),
+      "mercury: --random: none could be grown: alpha: no tetrahedron of the cloud is as small as the given radius\n");
 }
 
 }  // namespace

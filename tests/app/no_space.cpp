@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // To be preloaded into a program: files can be written up to NO_SPACE_AFTER bytes from their beginning; there the disk
 // is full.
 #include <dlfcn.h>

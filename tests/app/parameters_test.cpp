@@ -1,5 +1,6 @@
-// Every parameter of a simulation, from the command line and from a TOML file: the value arrives, and one that cannot be
-// used is answered in one line that names the option.
+// SPDX-License-Identifier: Apache-2.0
+// Every parameter of a simulation, from the command line and from a TOML file: the value arrives, and one that cannot
+// be used is answered in one line that names the option.
 #include <gmock/gmock.h>
 
 #include "app/commands.h"
@@ -22,7 +23,7 @@ struct Parameter {
   std::string toml;         // the same in TOML
   json expected;            // in the report of `run --json`
   std::vector<std::string> bad;
-  std::string accepted;     // part of the answer to them
+  std::string accepted;  // part of the answer to them
 };
 
 void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.option; }
@@ -31,18 +32,48 @@ const std::string number = "give a number", at_least_zero = "give a finite numbe
 
 // design.md's list, but for --seconds, which is not in the report.
 const std::vector<Parameter> parameters{
-    {"device", "ocean", "cpu", "\"cpu\"", "cpu", {"gpu", "cuda:-1", "cuda:x"}, "give auto, cpu, cuda, cuda:N or cuda:all"},
-    {"environment", "ocean", "ocean-simple", "\"ocean-simple\"", "ocean-simple", {"sea"}, "give ocean, ocean-simple or land"},
+    {"device",
+     "ocean",
+     "cpu",
+     "\"cpu\"",
+     "cpu",
+     {"gpu", "cuda:-1", "cuda:x"},
+     "give auto, cpu, cuda, cuda:N or cuda:all"},
+    {"environment",
+     "ocean",
+     "ocean-simple",
+     "\"ocean-simple\"",
+     "ocean-simple",
+     {"sea"},
+     "give ocean, ocean-simple or land"},
     {"solver", "ocean", "xpbd", "\"xpbd\"", "xpbd", {"euler"}, "give force or xpbd"},
     {"dt", "ocean", "0.002", "0.002", 0.002, {"0", "-1", "nan", "inf"}, "give a finite number > 0 s"},
     {"damping", "ocean", "0.5", "0.5", 0.5, {"-1", "nan", "inf"}, at_least_zero + " 1/s"},
     {"density", "ocean", "900", "900", 900.0, {"-1", "nan", "inf"}, at_least_zero + " kg/m3"},
     {"drag-coefficient", "ocean", "1.5", "1.5", 1.5, {"-1", "nan"}, at_least_zero},
     {"lift-coefficient", "ocean", "0.4", "0.4", 0.4, {"-0.1", "nan"}, at_least_zero},
-    {"flow", "ocean", "0.5,0,-1", "[0.5, 0, -1]", {0.5, 0.0, -1.0}, {"nan,0,0", "0,inf,0"}, "give three finite numbers of m/s"},
-    {"flow", "ocean-simple", "0,2,0", "[0, 2, 0]", {0.0, 2.0, 0.0}, {"0,0", "1,2,3,4"}, "give three numbers, as in 0.1,0,-2"},
+    {"flow",
+     "ocean",
+     "0.5,0,-1",
+     "[0.5, 0, -1]",
+     {0.5, 0.0, -1.0},
+     {"nan,0,0", "0,inf,0"},
+     "give three finite numbers of m/s"},
+    {"flow",
+     "ocean-simple",
+     "0,2,0",
+     "[0, 2, 0]",
+     {0.0, 2.0, 0.0},
+     {"0,0", "1,2,3,4"},
+     "give three numbers, as in 0.1,0,-2"},
     {"point-drag", "ocean-simple", "2.5", "2.5", 2.5, {"-1", "nan"}, at_least_zero + " N s/m"},
-    {"gravity", "land", "0,0.5,-1.62", "[0, 0.5, -1.62]", {0.0, 0.5, -1.62}, {"nan", "inf,0,0"}, "give three finite numbers of m/s2"},
+    {"gravity",
+     "land",
+     "0,0.5,-1.62",
+     "[0, 0.5, -1.62]",
+     {0.0, 0.5, -1.62},
+     {"nan", "inf,0,0"},
+     "give three finite numbers of m/s2"},
     {"gravity", "ocean", "2", "2", {0.0, 0.0, -2.0}, {"down", "a,b,c"}, number},
     {"friction", "land", "0.3", "0.3", 0.3, {"-1", "nan"}, at_least_zero},
     {"contact-stiffness", "land", "50", "50", 50.0, {"-1", "nan"}, at_least_zero + " N/m"},
@@ -130,8 +161,9 @@ TEST_F(ConfigFileFuzz, DamagedFilesAreReadOrRefusedInOneLine) {
       "[run]\nstrict = true\ndensity = 1_000.5\ndevice = \"\"\"cpu\"\"\"\ngravity = 0x10\n[render]\nsize = \"64x64\"\n";
   write("a.toml", sound);
   ASSERT_NO_THROW(parse_run_with(path("a.toml")));
-  constexpr std::string_view pieces[] = {"[",    "]",  "[[", "{",   "}",    "=",   "\"", "\n",          "\0", "nan",
-                                         "1979-05-27", "'''", "\\u", "\xff", "run", ".",  "1e999", "0b2", "#",  "a.b.c = 1\n"};
+  constexpr std::string_view pieces[] = {"[",   "]",  "[[",    "{",          "}",   "=",          "\"",
+                                         "\n",  "\0", "nan",   "1979-05-27", "'''", "\\u",        "\xff",
+                                         "run", ".",  "1e999", "0b2",        "#",   "a.b.c = 1\n"};
   int read = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Random random(seed);
@@ -139,10 +171,18 @@ TEST_F(ConfigFileFuzz, DamagedFilesAreReadOrRefusedInOneLine) {
     for (std::uint64_t edits = 1 + random.below(4); edits > 0; --edits) {
       const auto at = static_cast<std::size_t>(random.below(text.size() + 1));
       switch (random.below(4)) {
-        case 0: text.insert(at, pieces[random.below(std::size(pieces))]); break;
-        case 1: text.erase(at, random.below(12)); break;
-        case 2: text.insert(at, text.substr(static_cast<std::size_t>(random.below(text.size() + 1)), random.below(30))); break;
-        default: text.insert(at, 1, static_cast<char>(random.below(256))); break;
+        case 0:
+          text.insert(at, pieces[random.below(std::size(pieces))]);
+          break;
+        case 1:
+          text.erase(at, random.below(12));
+          break;
+        case 2:
+          text.insert(at, text.substr(static_cast<std::size_t>(random.below(text.size() + 1)), random.below(30)));
+          break;
+        default:
+          text.insert(at, 1, static_cast<char>(random.below(256)));
+          break;
       }
     }
     write("a.toml", text);
@@ -161,8 +201,9 @@ TEST_F(ConfigFileFuzz, DamagedFilesAreReadOrRefusedInOneLine) {
 
 TEST_F(ConfigFileFuzz, HostileFilesAreRefusedInOneLine) {
   const std::string deep(200'000, '['), long_key(200'000, 'k');
-  for (const std::string& text : {"dt = " + deep, "a" + deep, long_key + " = 1\n", "dt = \"" + long_key + "\"\n",
-                                  "x = " + std::string(100'000, '{'), std::string("dt = 1\0\n", 8), std::string("\xef\xbb\xbf\xfe")}) {
+  for (const std::string& text :
+       {"dt = " + deep, "a" + deep, long_key + " = 1\n", "dt = \"" + long_key + "\"\n",
+        "x = " + std::string(100'000, '{'), std::string("dt = 1\0\n", 8), std::string("\xef\xbb\xbf\xfe")}) {
     write("a.toml", text);
     const Outcome outcome = mercury({"run", "--random", "voxel:1", "--seconds", "0", "--config", path("a.toml")});
     EXPECT_EQ(outcome.status, 2) << text.substr(0, 20);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the real program as a child process, and gives each test a folder of its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the program says to input that it cannot use: one line, and exit status 2.
 #include <gmock/gmock.h>
 
@@ -44,8 +45,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "--secnds: not an option of mercury run; did you mean --seconds?; see mercury run --help"},
         BadInput{"NoValue", with({"--dt"}), "--dt: needs a value; see mercury run --help"},
         BadInput{"NoRobots", {"run"}, "no robots given; name files or folders, or use --random voxel:12 or nn:12"},
-        BadInput{"UnknownKind", {"run", "--random", "fish:2"}, "--random: \"fish\" is not a kind of robot; give voxel:N or nn:N"},
-        BadInput{"NoCount", {"run", "--random", "voxel:0"},
+        BadInput{"UnknownKind",
+                 {"run", "--random", "fish:2"},
+                 "--random: \"fish\" is not a kind of robot; give voxel:N or nn:N"},
+        BadInput{"NoCount",
+                 {"run", "--random", "voxel:0"},
                  "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
         BadInput{"NoFile", {"run", "nothing.json"}, "nothing.json: No such file or directory"}),
     [](const auto& tested) { return tested.param.name; });
@@ -57,12 +61,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"StepNotANumber", with({"--dt", "nan"}), "--dt: nan is not accepted; give a finite number > 0 s"},
         BadInput{"StepIsText", with({"--dt", "fast"}), "--dt: \"fast\" is not accepted; give a number"},
         BadInput{"HalfANumber", with({"--dt", "1e-3s"}), "--dt: \"1e-3s\" is not accepted; give a number"},
-        BadInput{"NegativeTime", with({"--seconds", "-1"}), "--seconds: -1 is not accepted; give a finite number >= 0 s"},
-        BadInput{"EndlessTime", with({"--seconds", "inf"}), "--seconds: inf is not accepted; give a finite number >= 0 s"},
+        BadInput{"NegativeTime", with({"--seconds", "-1"}),
+                 "--seconds: -1 is not accepted; give a finite number >= 0 s"},
+        BadInput{"EndlessTime", with({"--seconds", "inf"}),
+                 "--seconds: inf is not accepted; give a finite number >= 0 s"},
         BadInput{"NegativeDensity", with({"--density", "-1"}),
                  "--density: -1 is not accepted; give a finite number >= 0 kg/m3"},
-        BadInput{"DensityBeyondFloat", with({"--density", "1e99"}), "--density: \"1e99\" is out of range; give a number"},
-        BadInput{"FlowOfTwo", with({"--flow", "1,2"}), "--flow: \"1,2\" is not accepted; give three numbers, as in 0.1,0,-2"},
+        BadInput{"DensityBeyondFloat", with({"--density", "1e99"}),
+                 "--density: \"1e99\" is out of range; give a number"},
+        BadInput{"FlowOfTwo", with({"--flow", "1,2"}),
+                 "--flow: \"1,2\" is not accepted; give three numbers, as in 0.1,0,-2"},
         BadInput{"DensityOnLand", with({"--environment", "land", "--density", "3"}),
                  "--density: land has no such parameter; it applies to ocean"},
         BadInput{"FlowOnLand", with({"--environment", "land", "--flow", "1,0,0"}),
@@ -71,54 +79,78 @@ INSTANTIATE_TEST_SUITE_P(
                  "--no-self-collision: ocean has no such parameter; it applies to land"},
         BadInput{"UnknownEnvironment", with({"--environment", "moon"}),
                  "--environment: \"moon\" is not an environment; give ocean, ocean-simple or land"},
-        BadInput{"UnknownSolver", with({"--solver", "euler"}), "--solver: \"euler\" is not a solver; give force or xpbd"},
-        BadInput{"UnknownDevice", with({"--device", "tpu"}), "--device: \"tpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all"},
+        BadInput{"UnknownSolver", with({"--solver", "euler"}),
+                 "--solver: \"euler\" is not a solver; give force or xpbd"},
+        BadInput{"UnknownDevice", with({"--device", "tpu"}),
+                 "--device: \"tpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all"},
         BadInput{"NegativeThreads", with({"--threads", "-1"}), "--threads: -1 is not accepted; give 0 or more"},
-        BadInput{"NegativeSeed", with({"--seed", "-1"}), "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
+        BadInput{"NegativeSeed", with({"--seed", "-1"}),
+                 "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
         BadInput{"AllAir", with({"--air", "1"}), "--air: give a share of at least 0 and below 1"},
         BadInput{"FlatVoxels", with({"--voxels", "3x3x0"}),
-                 "--voxels: \"3x3x0\" is not accepted; give XxYxZ, or a range as in 4x3x3..7x5x4, in whole numbers above 0"}),
+                 "--voxels: \"3x3x0\" is not accepted; give XxYxZ, or a range as in 4x3x3..7x5x4, in whole numbers "
+                 "above 0"}),
     [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Pictures, BadInputTest,
     testing::Values(
-        BadInput{"UnknownExtension", {"render", "--random", "voxel", "-o", "a.avi"},
-                 "-o: a.avi: \".avi\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures"},
-        BadInput{"SizeIsText", {"render", "--random", "voxel", "-o", "a.mp4", "--size", "big"},
+        BadInput{
+            "UnknownExtension",
+            {"render", "--random", "voxel", "-o", "a.avi"},
+            "-o: a.avi: \".avi\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures"},
+        BadInput{"SizeIsText",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--size", "big"},
                  "--size: \"big\" is not accepted; give WIDTHxHEIGHT, 720p, 1080p or 4k in whole numbers above 0"},
-        BadInput{"HugeSize", {"render", "--random", "voxel", "-o", "a.mp4", "--size", "100000x4"},
+        BadInput{"HugeSize",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--size", "100000x4"},
                  "--size: 100000x4 is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384"},
-        BadInput{"NoFrames", {"render", "--random", "voxel", "-o", "a.mp4", "--fps", "0"},
+        BadInput{"NoFrames",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--fps", "0"},
                  "--fps: 0 is not accepted; give a finite number > 0 frames/s"},
-        BadInput{"FastGif", {"render", "--random", "voxel", "-o", "a.gif", "--fps", "60"},
+        BadInput{"FastGif",
+                 {"render", "--random", "voxel", "-o", "a.gif", "--fps", "60"},
                  "--fps: a GIF shows at most 50 frames/s; give 50 or less, or another format"},
-        BadInput{"NoSpeed", {"render", "--random", "voxel", "-o", "a.mp4", "--speed", "-2"},
+        BadInput{"NoSpeed",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--speed", "-2"},
                  "--speed: -2 is not accepted; give a finite number > 0"},
-        BadInput{"PictureOfNoMoment", {"render", "--random", "voxel", "-o", "a.png"},
+        BadInput{"PictureOfNoMoment",
+                 {"render", "--random", "voxel", "-o", "a.png"},
                  "-o: a.png is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder"},
-        BadInput{"StillIntoAVideo", {"render", "--random", "voxel", "-o", "a.mp4", "--still", "1"},
+        BadInput{"StillIntoAVideo",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--still", "1"},
                  "-o: a.mp4: a picture is written as .png; give such a name"},
-        BadInput{"TinyMoments", {"render", "--random", "voxel", "-o", "a.png", "--contact-sheet", "500x2"},
+        BadInput{"TinyMoments",
+                 {"render", "--random", "voxel", "-o", "a.png", "--contact-sheet", "500x2"},
                  "--contact-sheet: so many moments leave no room for each; give a larger --size or fewer"},
-        BadInput{"GridTooSmall", {"render", "--random", "voxel:5", "-o", "a.png", "--still", "0", "--grid", "2x2"},
+        BadInput{"GridTooSmall",
+                 {"render", "--random", "voxel:5", "-o", "a.png", "--still", "0", "--grid", "2x2"},
                  "--grid: 5 robots do not fit into 2x2; give more columns or rows"},
-        BadInput{"UnknownColor", {"render", "--random", "voxel", "-o", "a.mp4", "--color", "mood"},
-                 "--color: \"mood\" is not accepted; give material, activation, strain, force, speed, pressure, energy, stiffness"},
+        BadInput{"UnknownColor",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--color", "mood"},
+                 "--color: \"mood\" is not accepted; give material, activation, strain, force, speed, pressure, "
+                 "energy, stiffness"},
         BadInput{"PressureOnLand",
-                 {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--color", "pressure", "--environment", "land"},
+                 {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--color", "pressure", "--environment",
+                  "land"},
                  "--color: pressure: land has no drag on faces; it applies to ocean"},
-        BadInput{"ScaleUpsideDown", {"render", "--random", "voxel", "-o", "a.mp4", "--scale", "2,1"},
+        BadInput{"ScaleUpsideDown",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--scale", "2,1"},
                  "--scale: \"2,1\" is not accepted; give the lower end first"},
-        BadInput{"UnknownThing", {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
+        BadInput{"UnknownThing",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
                  "--show: \"bones\" is not accepted; give some of "
                  "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,legend,clock,scale"},
-        BadInput{"UnknownCamera", {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "drone"},
-                 "--camera: \"drone\" is not accepted; give group, follow, turntable, top, still, follow:ROBOT or a camera "
-                 "file (.json)"},
-        BadInput{"NobodyToFollow", {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--camera", "follow:eel"},
+        BadInput{
+            "UnknownCamera",
+            {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "drone"},
+            "--camera: \"drone\" is not accepted; give group, follow, turntable, top, still, follow:ROBOT or a camera "
+            "file (.json)"},
+        BadInput{"NobodyToFollow",
+                 {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--camera", "follow:eel"},
                  "--camera: no robot is named \"eel\"; give a name, or a number from 0 to 0"},
-        BadInput{"UnknownGl", {"render", "--random", "voxel", "-o", "a.mp4", "--gl", "vulkan"},
+        BadInput{"UnknownGl",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--gl", "vulkan"},
                  "--gl: \"vulkan\" is not accepted; give auto, egl, mesa, osmesa"}),
     [](const auto& tested) { return tested.param.name; });
 
@@ -151,7 +183,8 @@ class ConfigFileTest : public FolderTest {
  protected:
   Outcome run_with(const std::string& toml, std::vector<std::string> more = {}) {
     write("a.toml", toml);
-    std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01", "--json", "--config", path("a.toml")};
+    std::vector<std::string> arguments{"run",  "--random", "voxel",    "--seconds",
+                                       "0.01", "--json",   "--config", path("a.toml")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return mercury(arguments);
   }
@@ -161,8 +194,8 @@ class ConfigFileTest : public FolderTest {
 };
 
 TEST_F(ConfigFileTest, SetsOptions) {
-  const auto configuration =
-      configuration_with("dt = 0.002\nsolver = \"xpbd\"\nflow = [0.5, 0, -1]\n[run]\ndensity = 900\n[render]\nfps = 3\n");
+  const auto configuration = configuration_with(
+      "dt = 0.002\nsolver = \"xpbd\"\nflow = [0.5, 0, -1]\n[run]\ndensity = 900\n[render]\nfps = 3\n");
   EXPECT_EQ(configuration["dt"], 0.002);
   EXPECT_EQ(configuration["solver"], "xpbd");
   EXPECT_EQ(configuration["flow"], nlohmann::json({0.5, 0.0, -1.0}));
@@ -194,7 +227,8 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
   expect_error("[walk]\nspeed = 3\n", ":1: [walk] is not a command");
   expect_error("strict = 3\n", ":1: --strict is a switch; give true or false");
   expect_error("dt = true\n", ":1: --dt is not a switch; give a value");
-  expect_error("environment = \"land\"\ndensity = 3\n", ":2: --density: land has no such parameter; it applies to ocean");
+  expect_error("environment = \"land\"\ndensity = 3\n",
+               ":2: --density: land has no such parameter; it applies to ocean");
 }
 
 TEST_F(ConfigFileTest, WhatIsNoTomlIsToldWithItsLine) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "app/progress.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,8 @@ namespace {
 
 TEST(Progress, LineTellsRateAndTimeLeft) {
   // 150 in 3 s are 50 a second; the other 150 take 3 s more.
-  EXPECT_EQ(progress_line("rendering", "frames", 150, 300, 3), "rendering: 150/300 frames (50 %)  50 frames/s  0:03 left");
+  EXPECT_EQ(progress_line("rendering", "frames", 150, 300, 3),
+            "rendering: 150/300 frames (50 %)  50 frames/s  0:03 left");
   EXPECT_EQ(progress_line("rendering", "frames", 0, 300, 1), "rendering: 0/300 frames (0 %)");
 }
 

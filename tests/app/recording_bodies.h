@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the tests of recordings record: small bodies, and a file of them.
 #pragma once
 

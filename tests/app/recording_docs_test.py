@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The snippets of docs/formats.md work: its ```sh and ```python blocks, run in their order in one empty folder.
 
     recording_docs_test.py MERCURY docs/formats.md

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Damaged recordings: a trajectory whose robots are valid, or an InputError of one line; never a crash, never memory
 // taken for what a file merely announces.
 #include <gmock/gmock.h>
@@ -68,12 +69,24 @@ std::string mutated(std::string bytes, Random& random) {
     const auto at = static_cast<std::size_t>(random.below(bytes.size()));
     const auto length = static_cast<std::size_t>(random.below(16)) + 1;
     switch (random.below(6)) {
-      case 0: bytes[at] = static_cast<char>(random.below(256)); break;
-      case 1: bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8))); break;
-      case 2: std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\xff'); break;
-      case 3: std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\0'); break;
-      case 4: bytes.erase(at, length); break;
-      default: bytes.resize(at); break;
+      case 0:
+        bytes[at] = static_cast<char>(random.below(256));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
+        break;
+      case 2:
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\xff');
+        break;
+      case 3:
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\0');
+        break;
+      case 4:
+        bytes.erase(at, length);
+        break;
+      default:
+        bytes.resize(at);
+        break;
     }
   }
   return bytes;
@@ -202,7 +215,8 @@ TEST_F(RecordingChanged, AnnouncedExtentsTakeNoMemory) {
   for (const std::string& name : contents_.datasets) {
     SCOPED_TRACE(name);
     for (const hdf5::Extent& extent : {hdf5::Extent{huge}, {huge, 2}, {huge, 3}, {9, huge, 3}, {huge, 2, 3}}) {
-      const std::string refused = refusal_after([&](hid_t file) { put_announced(file, name, H5T_NATIVE_FLOAT, extent); });
+      const std::string refused =
+          refusal_after([&](hid_t file) { put_announced(file, name, H5T_NATIVE_FLOAT, extent); });
       EXPECT_EQ(!refused.empty(), is_read(name)) << refused;
     }
   }
@@ -238,7 +252,8 @@ TEST_F(RecordingChanged, TextsOfVariableLengthAsPythonWritesThemAreRead) {
               const Handle parameters = hdf5::open_group(file, "parameters");
               checked(H5Adelete(parameters, "solver"));
               hdf5::write_unit(parameters, "xpbd", "solver");
-            }), "");
+            }),
+            "");
   EXPECT_EQ(TrajectoryReader(path("changed.h5")).configuration().solver, Solver::xpbd);
 }
 

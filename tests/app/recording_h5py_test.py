@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recording as others see it, through h5py alone: H5MD 1.1, its units and time axis; the numbers are those of a second
 run bit for bit; and the file holds enough to run it again.
 

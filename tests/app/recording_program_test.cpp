@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury run --record: the file, and what becomes of it when the run ends early or the disk is full.
 #include <gmock/gmock.h>
 
@@ -38,7 +39,8 @@ TEST_F(RunRecord, RecordingDoesNotChangeTheRun) {
   const std::vector<std::string> arguments{"run", "--random", "voxel:2", "--seconds", "0.25", "--json"};
   std::vector<std::string> recorded = arguments;
   recorded.insert(recorded.end(), {"--record", file(), "--every", "3"});
-  auto without = nlohmann::json::parse(mercury(arguments).output), with = nlohmann::json::parse(mercury(recorded).output);
+  auto without = nlohmann::json::parse(mercury(arguments).output),
+       with = nlohmann::json::parse(mercury(recorded).output);
   EXPECT_EQ(with["robots"], without["robots"]);
 }
 
@@ -48,7 +50,8 @@ TEST_F(RunRecord, WithoutEveryItIsThirtyFramesASecond) {
 }
 
 TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
-  ChildProcess child(MERCURY_PROGRAM, {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
+  ChildProcess child(MERCURY_PROGRAM,
+                     {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
   while (child.messages().empty()) std::this_thread::yield();  // progress shows that it simulates
   child.signal(SIGINT);
   const Outcome outcome = outcome_of(child);
@@ -64,7 +67,8 @@ TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
 
 TEST_F(RunRecord, KilledRunLeavesNoFileOfThatName) {
   write("a.h5", "as it was");
-  ChildProcess child(MERCURY_PROGRAM, {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
+  ChildProcess child(MERCURY_PROGRAM,
+                     {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
   while (child.messages().empty()) std::this_thread::yield();
   child.kill();
   EXPECT_EQ(read("a.h5"), "as it was");
@@ -78,9 +82,10 @@ TEST_P(FullDisk, IsToldInOneLine) {
   GTEST_SKIP() << "the sanitizer wants to be loaded first";
 #endif
   write("a.h5", "as it was");
-  const Outcome outcome = run_program(
-      "env", {"NO_SPACE_AFTER=" + std::to_string(GetParam()), std::string("LD_PRELOAD=") + MERCURY_NO_SPACE, MERCURY_PROGRAM,
-              "run", "--random", "voxel:4", "--seconds", "0.2", "--record", file(), "--every", "1", "--quiet"});
+  const Outcome outcome =
+      run_program("env", {"NO_SPACE_AFTER=" + std::to_string(GetParam()), std::string("LD_PRELOAD=") + MERCURY_NO_SPACE,
+                          MERCURY_PROGRAM, "run", "--random", "voxel:4", "--seconds", "0.2", "--record", file(),
+                          "--every", "1", "--quiet"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.messages, "mercury: " + file() + ": the disk is full; nothing was kept\n");
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
@@ -98,8 +103,9 @@ TEST_F(RunRecord, BadOptionsAreToldInOneLine) {
     EXPECT_EQ(outcome.output, "");
     return outcome.messages;
   };
-  EXPECT_EQ(messages({"--record", path("a.txt")}),
-            "mercury: --record: \"" + path("a.txt") + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md\n");
+  EXPECT_EQ(
+      messages({"--record", path("a.txt")}),
+      "mercury: --record: \"" + path("a.txt") + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md\n");
   EXPECT_EQ(messages({"--record", path("no/a.h5")}),
             "mercury: --record: " + path("no/a.h5") + " cannot be written: No such file or directory\n");
   std::filesystem::create_directory(path("folder.h5"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is recorded is what was simulated, bit for bit, and enough to simulate it again.
 #include <gmock/gmock.h>
 
@@ -83,11 +84,11 @@ TEST_P(RecordedConfiguration, IsReadBackWhole) {
 }
 
 // No value is a default, so that none is read back by chance.
-INSTANTIATE_TEST_SUITE_P(
-    EveryEnvironment, RecordedConfiguration,
-    testing::Values(Environment(Ocean{998.2f, 1.1f, 0.3f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
-                    Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
-                    Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150})));
+INSTANTIATE_TEST_SUITE_P(EveryEnvironment, RecordedConfiguration,
+                         testing::Values(Environment(Ocean{
+                                             998.2f, 1.1f, 0.3f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                                         Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                                         Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150})));
 
 TEST_F(Recording, SimulatesAgainFromTheFileAlone) {
   Configuration configuration = on_cpu();
@@ -175,8 +176,18 @@ TEST_F(Recording, ExplodedRobotsAreNotedAndWhatIsNotFiniteIsKept) {
 }
 
 TEST_F(Recording, RobotsOfAnyNameHaveGroupsOfTheirOwn) {
-  const std::vector<std::string> names{"eel", "eel", "eel-2", "a/b", "", ".", "..", "tab\there", "\xff\xfe", "Größe \xe2\x82\xac",
-                                       std::string(100'000, 'x'), std::string("nul\0inside", 10)};
+  const std::vector<std::string> names{"eel",
+                                       "eel",
+                                       "eel-2",
+                                       "a/b",
+                                       "",
+                                       ".",
+                                       "..",
+                                       "tab\there",
+                                       "\xff\xfe",
+                                       "Größe \xe2\x82\xac",
+                                       std::string(100'000, 'x'),
+                                       std::string("nul\0inside", 10)};
   std::vector<Robot> robots;
   for (const std::string& name : names) robots.push_back(pair(name));
   Simulation simulation(on_cpu(), robots);
@@ -285,9 +296,7 @@ TEST_F(Recording, WhatIsNoTrajectoryIsToldSo) {
   write("empty.h5", "");
   EXPECT_EQ(refusal(path("empty.h5")), path("empty.h5") + ": is not an HDF5 file");
   hdf5::prepare();
-  {
-    const hdf5::Handle other(H5Fcreate(path("other.h5").c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT));
-  }
+  { const hdf5::Handle other(H5Fcreate(path("other.h5").c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT)); }
   EXPECT_EQ(refusal(path("other.h5")), path("other.h5") + ": is not a trajectory that mercury recorded");
 }
 

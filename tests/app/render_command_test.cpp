@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury render: short real videos, from the command line to the file.
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -65,7 +66,8 @@ TEST_F(RenderCommand, FramesOfAFolderShowMovingRobots) {
 
 TEST_F(RenderCommand, SameCommandGivesTheSamePictures) {
   ASSERT_EQ(mercury(command("a", {"--fps", "2", "--seconds", "1", "--environment", "land"})).status, 0);
-  ASSERT_EQ(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})).status, 0);
+  ASSERT_EQ(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})).status,
+            0);
   for (const std::string& frame : listing("a")) EXPECT_EQ(read("a/" + frame), read("b/" + frame)) << frame;
 }
 
@@ -90,7 +92,8 @@ TEST_F(RenderCommand, ContactSheetIsAsWideAsAsked) {
 }
 
 TEST_F(RenderCommand, RecordingShowsWhatTheSimulationShowed) {
-  const std::vector<std::string> simulate{"--random", "voxel:2", "--seconds", "1", "--environment", "land", "--dt", "0.002"};
+  const std::vector<std::string> simulate{"--random",      "voxel:2", "--seconds", "1",
+                                          "--environment", "land",    "--dt",      "0.002"};
   std::vector<std::string> record{"run", "--record", path("a.h5"), "--every", "1"};
   record.insert(record.end(), simulate.begin(), simulate.end());
   ASSERT_EQ(mercury(record).status, 0);
@@ -99,14 +102,16 @@ TEST_F(RenderCommand, RecordingShowsWhatTheSimulationShowed) {
   direct.insert(direct.end(), simulate.begin(), simulate.end());
   ASSERT_EQ(mercury(direct).status, 0);
   EXPECT_EQ(listing("played"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
-  for (const std::string& frame : listing("direct")) EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
+  for (const std::string& frame : listing("direct"))
+    EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
 }
 
 TEST_F(RenderCommand, RecordingIsPlayedAlone) {
   write("a.h5", "");
   const Outcome outcome = mercury(command("a.mp4", {path("a.h5")}));
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages, "mercury: " + path("a.h5") + ": a recording is played alone; give it without other robots\n");
+  EXPECT_EQ(outcome.messages,
+            "mercury: " + path("a.h5") + ": a recording is played alone; give it without other robots\n");
 }
 
 TEST_F(RenderCommand, EachRobotGetsAVideo) {
@@ -142,8 +147,8 @@ TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {
   write("dying", "#!/bin/sh\necho 'out of ink' >&2\nexit 4\n", true);
   const Outcome outcome = mercury(command("a.mp4", {"--quiet", "--seconds", "1", "--ffmpeg", path("dying")}));
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: " + path("a.mp4") + ": the encoder " + path("dying") +
-                                  " ended with status 4: out of ink\n");
+  EXPECT_EQ(outcome.messages,
+            "mercury: " + path("a.mp4") + ": the encoder " + path("dying") + " ended with status 4: out of ink\n");
   EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
 }
 
@@ -162,8 +167,8 @@ TEST_F(RenderCommand, FileThatGrowsBeyondTheLimitIsTold) {
       "sh", {"-c", "ulimit -f 1; exec \"$0\" render --random voxel:2 --size 320x180 --seconds 1 --quiet -o \"$1\"",
              MERCURY_PROGRAM, path("a.mp4")});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages,
-            "mercury: " + path("a.mp4") + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept\n");
+  EXPECT_EQ(outcome.messages, "mercury: " + path("a.mp4") +
+                                  ": the file grew beyond the size allowed here (ulimit -f); nothing was kept\n");
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury run: its tables, and that the numbers do not depend on how they were computed.
 #include <gmock/gmock.h>
 
@@ -49,7 +50,8 @@ TEST_F(RunCommand, JsonHoldsConfigurationAndEachRobot) {
 }
 
 TEST_F(RunCommand, HashesAreTheSameTwiceAndWithAnyNumberOfThreads) {
-  const std::vector<std::string> arguments{"--random", "voxel:16", "--seed", "1", "--seconds", "0.3", "--device", "cpu"};
+  const std::vector<std::string> arguments{"--random",  "voxel:16", "--seed",   "1",
+                                           "--seconds", "0.3",      "--device", "cpu"};
   std::vector<std::string> one_thread = arguments;
   one_thread.insert(one_thread.end(), {"--threads", "1"});
   const auto first = hashes(run_json(arguments));
@@ -100,7 +102,8 @@ TEST_F(RunCommand, CsvHasALineARobot) {
   std::istringstream csv(read("a.csv"));
   std::string header, line;
   std::getline(csv, header);
-  EXPECT_EQ(header, "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash");
+  EXPECT_EQ(header,
+            "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash");
   for (const json& robot : report["robots"]) {
     std::getline(csv, line);
     EXPECT_EQ(line.substr(0, line.find(',')), robot["name"].get<std::string>());
@@ -112,14 +115,16 @@ TEST_F(RunCommand, CsvHasALineARobot) {
 TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
   const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("no/a.csv")});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages, "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
+  EXPECT_EQ(outcome.messages,
+            "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
 }
 
 // A robot file that says where it is meant to live.
 TEST_F(RunCommand, RobotsLiveWhereTheyAreMadeFor) {
   const auto robot = [](const std::string& environment) {
     return R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0],[1,0,0]], "springs": [[0,1,21]], "faces": [],
-               "origin": {"kind": "voxel", "environment": ")" + environment + "\"}}";
+               "origin": {"kind": "voxel", "environment": ")" +
+           environment + "\"}}";
   };
   write("crawler.json", robot("land"));
   write("fish.json", robot("ocean"));
@@ -132,7 +137,8 @@ TEST_F(RunCommand, RobotsLiveWhereTheyAreMadeFor) {
   EXPECT_EQ(environment({path("crawler.json"), "--environment", "ocean-simple"}), "ocean-simple");
   EXPECT_EQ(environment({path("crawler.json"), path("fish.json")}), "ocean");
   const Outcome both = mercury({"run", path("crawler.json"), path("fish.json"), "--seconds", "0.01"});
-  EXPECT_EQ(both.messages, "mercury: the robots are made for land and ocean; all are put into ocean, --environment chooses\n");
+  EXPECT_EQ(both.messages,
+            "mercury: the robots are made for land and ocean; all are put into ocean, --environment chooses\n");
 }
 
 TEST_F(RunCommand, ExplodedRobotsAreToldAndFailOnlyWhenStrict) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In slow motion the picture moves evenly, between the states of steps.
 #include <gtest/gtest.h>
 
@@ -9,7 +10,8 @@ namespace mercury {
 namespace {
 
 // One mass that moves at 2 m/s, after so many steps; due at its step's time on the wall.
-std::shared_ptr<const Moment> moment_at(std::int64_t steps, double speed, bool playing = true, std::uint64_t resets = 0) {
+std::shared_ptr<const Moment> moment_at(std::int64_t steps, double speed, bool playing = true,
+                                        std::uint64_t resets = 0) {
   static const auto robots = std::make_shared<const LiveRobots>(LiveRobots{.revision = 1, .mass_offsets = {0, 1}});
   auto moment = std::make_shared<Moment>();
   moment->robots = robots;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mercury view, as far as it goes without a window.
 #include <gmock/gmock.h>
 

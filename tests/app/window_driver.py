@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A window of `mercury view` on a display of its own, driven by real mouse and key events.
 
 What happened is read from the file that --report writes; nothing waits for a fixed time, everything for a deadline.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the window that need no display.
 #include <gmock/gmock.h>
 #define GLFW_INCLUDE_NONE
@@ -104,12 +105,15 @@ TEST(TypedPath, IsTakenAsAShellTakesIt) {
 
 InputEvent moved(double x) { return {.kind = Kind::move, .x = x}; }
 InputEvent button(int action) { return {.kind = Kind::button, .code = GLFW_MOUSE_BUTTON_LEFT, .action = action}; }
-InputEvent key(int code, int action, bool types) { return {.kind = Kind::key, .code = code, .action = action, .types = types}; }
+InputEvent key(int code, int action, bool types) {
+  return {.kind = Kind::key, .code = code, .action = action, .types = types};
+}
 InputEvent letter(char32_t c) { return {.kind = Kind::character, .code = static_cast<int>(c)}; }
 
 TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
   InputQueue queue;
-  for (const InputEvent& event : {moved(1), moved(2), button(GLFW_PRESS), moved(3), moved(4), button(GLFW_RELEASE), moved(5)})
+  for (const InputEvent& event :
+       {moved(1), moved(2), button(GLFW_PRESS), moved(3), moved(4), button(GLFW_RELEASE), moved(5)})
     queue.push(event);
   const std::vector<InputEvent> down = queue.take();
   ASSERT_EQ(down.size(), 2u);
@@ -127,7 +131,8 @@ TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
 
 TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
   InputQueue queue;
-  for (const InputEvent& event : {moved(1), InputEvent{.kind = Kind::scroll, .y = 1}, InputEvent{.kind = Kind::scroll, .y = 1}, moved(2)})
+  for (const InputEvent& event :
+       {moved(1), InputEvent{.kind = Kind::scroll, .y = 1}, InputEvent{.kind = Kind::scroll, .y = 1}, moved(2)})
     queue.push(event);
   const std::vector<InputEvent> turned = queue.take();
   ASSERT_EQ(turned.size(), 3u);
@@ -156,8 +161,9 @@ TEST(Presses, AreCharactersWhereKeysTypeThemAndKeysElsewhere) {
   InputEvent control = key(GLFW_KEY_S, GLFW_PRESS, false);
   control.mods = GLFW_MOD_CONTROL;
   control.name = U's';
-  const std::vector<Press> presses = presses_of({key(GLFW_KEY_D, GLFW_PRESS, true), letter(U'd'), key(GLFW_KEY_D, GLFW_RELEASE, true),
-                                                 key(GLFW_KEY_F1, GLFW_PRESS, false), key(GLFW_KEY_F1, GLFW_RELEASE, false), control});
+  const std::vector<Press> presses =
+      presses_of({key(GLFW_KEY_D, GLFW_PRESS, true), letter(U'd'), key(GLFW_KEY_D, GLFW_RELEASE, true),
+                  key(GLFW_KEY_F1, GLFW_PRESS, false), key(GLFW_KEY_F1, GLFW_RELEASE, false), control});
   ASSERT_EQ(presses.size(), 3u);
   EXPECT_EQ(presses[0].character, U'd');
   EXPECT_EQ(presses[1].key, GLFW_KEY_F1);

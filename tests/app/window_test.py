@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The interactive window, started for real and driven with mouse and keys: window_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import csv
 import importlib.util

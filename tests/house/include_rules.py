@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Holds the rules of who may include whom. Prints one line a violation; exit status 1 if there is one.
 
     include_rules.py [ROOT]

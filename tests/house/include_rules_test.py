@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The include rules hold in this repository, and a breach of each of them is seen."""
 
 import tempfile

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 
 #include "tests/render/triangle.h"
@@ -31,7 +32,8 @@ TEST_F(ColorTest, APlacementChoosesAmongLooksWithoutNewBodies) {
     const auto color = [&](std::uint32_t first_look) {
       const std::array placements{Placement{.selected = false, .first_look = first_look}};
       scene.placements = placements;
-      return springs ? pixel(drawn(renderer, scene), int(middle.x()), int(middle.y())) : pixel(drawn(renderer, scene), 80, 60);
+      return springs ? pixel(drawn(renderer, scene), int(middle.x()), int(middle.y()))
+                     : pixel(drawn(renderer, scene), 80, 60);
     };
     const Eigen::Vector3i red = color(0), blue = color(2);
     EXPECT_GT(red.x(), red.z() + 80) << springs;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures as a whole, against ones that were looked at and found good. After a wanted change of the look, write them
 // anew with MERCURY_WRITE_GOLDEN=1 and look at them before they are committed.
 #include <algorithm>

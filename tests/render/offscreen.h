@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tests that draw have in common: a context, shared because making one takes long, and ways to look at pictures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/render/offscreen.h"
 #include "tests/render/triangle.h"
 #include "tests/render/wobbling_bodies.h"

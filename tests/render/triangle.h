@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simplest scene: one triangle before a camera, and where the camera must show its points.
 #pragma once
 

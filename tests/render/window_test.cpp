@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A window's context adopted, and a picture presented in it: with a hidden window, on a display that the test starts
 // for itself where there is none.
 #include <epoxy/gl.h>
@@ -34,8 +35,8 @@ class Display {
     if (pipe(ends) != 0) return;
     const std::string end = std::to_string(ends[1]);
     // Without -noreset it starts over whenever a test ends, and refuses the next one meanwhile.
-    std::array<const char*, 9> arguments{"Xvfb", "-displayfd", end.c_str(), "-screen", "0", "640x480x24",
-                                         "-nolisten", "tcp", "-noreset"};
+    std::array<const char*, 9> arguments{"Xvfb",       "-displayfd", end.c_str(), "-screen", "0",
+                                         "640x480x24", "-nolisten",  "tcp",       "-noreset"};
     std::vector<char*> argv;
     for (const char* argument : arguments) argv.push_back(const_cast<char*>(argument));
     argv.push_back(nullptr);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies to draw without a simulator: blobs of voxels that swim in place.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robot documents that break a rule: one line each that says where and why.
 #include <gtest/gtest.h>
 
@@ -35,14 +36,16 @@ std::string refusal_of(const Parts& parts) {
 TEST(BadRobotFiles, TheSoundDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), "no error"); }
 
 TEST(BadRobotFiles, NotJson) {
-  const std::string sound = R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})" "\n";
+  const std::string sound = R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})"
+                            "\n";
   EXPECT_EQ(refusal_of_json(sound), "no error");
   EXPECT_EQ(refusal_of_json(""), "line 1, column 0: not valid JSON: unexpected end of input");
   EXPECT_EQ(refusal_of_json("hello"), "line 1, column 1: not valid JSON: invalid literal");
   EXPECT_EQ(refusal_of_json("{\"format\":\"mercury-robot\",\n\"masses\":[[0,0"),
             "line 2, column 14: not valid JSON: unexpected end of input");
   EXPECT_EQ(refusal_of_json("{} {}"), "line 1, column 4: not valid JSON: unexpected '{'");
-  EXPECT_EQ(refusal_of_json("{\"a\":\"\xff\"}"), "line 1, column 7: not valid JSON: invalid string: ill-formed UTF-8 byte");
+  EXPECT_EQ(refusal_of_json("{\"a\":\"\xff\"}"),
+            "line 1, column 7: not valid JSON: invalid string: ill-formed UTF-8 byte");
   EXPECT_EQ(refusal_of({.masses = "[[0,0,NaN]]"}), "line 1, column 54: not valid JSON: invalid literal");
   EXPECT_EQ(refusal_of_json(std::string(1000, '\0')), "line 1, column 1: not valid JSON: a NUL byte");
   EXPECT_EQ(refusal_of_json(sound + std::string(1, '\0')), "line 2, column 1: not valid JSON: a NUL byte");
@@ -110,7 +113,8 @@ TEST(BadRobotFiles, Springs) {
             "/springs/0: rest length 0.000500 m, at least 0.001 m is accepted");
   EXPECT_EQ(refusal_of({.springs = "[[0,1,1,null]]"}),
             "/springs/0: the rest length must be a number, not null; leave it out for the distance at rest");
-  EXPECT_EQ(refusal_of({.springs = "[[0,1]]"}), "/springs/0: a spring is [a, b, material] or [a, b, material, rest_length]");
+  EXPECT_EQ(refusal_of({.springs = "[[0,1]]"}),
+            "/springs/0: a spring is [a, b, material] or [a, b, material, rest_length]");
   EXPECT_EQ(refusal_of({.springs = "[[0,1,1,1,1]]"}),
             "/springs/0: a spring is [a, b, material] or [a, b, material, rest_length]");
   EXPECT_EQ(refusal_of({.springs = "[{\"a\":0}]"}), "/springs: holds an object at 0, not an array");
@@ -124,7 +128,8 @@ TEST(BadRobotFiles, Faces) {
 }
 
 TEST(BadRobotFiles, MaterialsNamesAndOrigin) {
-  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[])"}), "/materials: an empty table; leave it out for the 254 defaults");
+  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[])"}),
+            "/materials: an empty table; leave it out for the 254 defaults");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[1])"}), "/materials: holds a number at 0, not an object");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{}])"}), "/materials/0: stiffness is missing");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":"x"}])"}),
@@ -173,10 +178,14 @@ TEST(BadRobotFiles, Cbor) {
 
 TEST(BadRobotFiles, CborThatAnnouncesMoreThanItHolds) {
   using namespace std::string_literals;
-  EXPECT_EQ(refusal_of_cbor(cbor_masses("\x9a\x00\x0f\x42\x40"s)), "/masses: 1000000 masses, at most 65535 are accepted");
-  EXPECT_EQ(refusal_of_cbor(cbor_masses("\x9b\xff\xff\xff\xff\xff\xff\xff\xff"s)), "byte 8: the CBOR document breaks off");
-  EXPECT_EQ(refusal_of_cbor("\xa1\x67springs\x9b\x00\x00\x00\xff\xff\xff\xff\xff"s), "byte 9: the CBOR document breaks off");
-  EXPECT_EQ(refusal_of_cbor("\xa1\x64name\x7b\x00\x00\x00\xff\xff\xff\xff\xff"s), "byte 6: the CBOR document breaks off");
+  EXPECT_EQ(refusal_of_cbor(cbor_masses("\x9a\x00\x0f\x42\x40"s)),
+            "/masses: 1000000 masses, at most 65535 are accepted");
+  EXPECT_EQ(refusal_of_cbor(cbor_masses("\x9b\xff\xff\xff\xff\xff\xff\xff\xff"s)),
+            "byte 8: the CBOR document breaks off");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x67springs\x9b\x00\x00\x00\xff\xff\xff\xff\xff"s),
+            "byte 9: the CBOR document breaks off");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x64name\x7b\x00\x00\x00\xff\xff\xff\xff\xff"s),
+            "byte 6: the CBOR document breaks off");
   EXPECT_EQ(refusal_of_cbor("\xbb\x7f\xff\xff\xff\xff\xff\xff\xff"s), "byte 0: the CBOR document breaks off");
 }
 
@@ -184,7 +193,8 @@ TEST(BadRobotFiles, CborThatNestsDeeply) {
   for (const char opening : {'\x81', '\x9f'})
     EXPECT_EQ(refusal_of_cbor("\xa1\x61x" + std::string(10'000'000, opening)), "byte 66: nested deeper than 64 levels");
   EXPECT_EQ(refusal_of_cbor("\xa1\x61x" + std::string(10'000'000, '\x7f')), "byte 4: not valid CBOR");
-  EXPECT_EQ(refusal_of_cbor("\xa1\x61x" + std::string(10'000'000, '\xc1')), "byte 10000003: the CBOR document breaks off");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x61x" + std::string(10'000'000, '\xc1')),
+            "byte 10000003: the CBOR document breaks off");
 }
 
 }  // namespace

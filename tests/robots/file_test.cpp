@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/file.h"
 
 #include <gmock/gmock.h>
@@ -37,7 +38,8 @@ class RobotFiles : public testing::Test {
     } catch (const InputError& error) {
       std::string message = error.what();
       const std::string prefix = folder.string() + "/";
-      for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) message.erase(at, prefix.size());
+      for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix))
+        message.erase(at, prefix.size());
       return message;
     }
     return "no error";
@@ -60,7 +62,8 @@ Robot robot_with_hard_values() {
   robot.masses = {{0.1f, -0.f, 1e-45f}, {1.f / 3, 999999.94f, 16777216.f / 32}, {-1.17549435e-38f, 5, 3e-5f}};
   robot.springs = {{0, 1, 1, 0.001f}, {2, 1, 2, 1e6f}};
   robot.faces = {{0, 1, 2}, {2, 1, 0}};
-  robot.origin = R"({"kind":"test","seed":18446744073709551615,"a":[-9223372036854775808,0.1,1e+300,null,true,"x\u0000"],"b":{}})";
+  robot.origin =
+      R"({"kind":"test","seed":18446744073709551615,"a":[-9223372036854775808,0.1,1e+300,null,true,"x\u0000"],"b":{}})";
   return robot;
 }
 
@@ -101,7 +104,8 @@ TEST_F(RobotFiles, LinesOfAFileAreShort) {
 }
 
 TEST_F(RobotFiles, UnknownKeysAreIgnored) {
-  const std::string document = R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
+  const std::string document =
+      R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
     "materials": [{"stiffness": 1}, {"stiffness": 2, "colour": {"r": [1]}, "name": "m"}],
     "version": 1, "masses": [[0, 0, 0], [1, 0, 0]], "faces": [], "x": 1e99})";
   const Robot robot = parse_robot(document, RobotFormat::json);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every reader against damaged documents: a robot that validate() accepts or an InputError of one line, nothing else.
 #include <gtest/gtest.h>
 
@@ -23,18 +24,31 @@ Robot small_robot() {
 
 std::string mutated(std::string document, Random& random) {
   const auto place = [&] { return static_cast<std::size_t>(random.below(document.size())); };
-  constexpr std::string_view pieces[] = {"[", "]", "{", "}", ",", ":", "\"", "-", "1e9", "null", "0.0", "99999999999999999999",
-                                         "\x9f", "\xbf", "\xff", "\xfb", "\x1b", "\x7f", "\xf9", "\xc1"};
+  constexpr std::string_view pieces[] = {
+      "[",    "]",    "{",    "}",    ",",    ":",    "\"",   "-",   "1e9", "null", "0.0", "99999999999999999999",
+      "\x9f", "\xbf", "\xff", "\xfb", "\x1b", "\x7f", "\xf9", "\xc1"};
   const auto edits = 1 + random.below(4);
   for (std::uint64_t edit = 0; edit < edits && !document.empty(); ++edit) {
     const std::size_t at = place();
     switch (random.below(6)) {
-      case 0: document[at] = static_cast<char>(random.below(256)); break;
-      case 1: document[at] = static_cast<char>(document[at] ^ (1 << random.below(8))); break;
-      case 2: document.erase(at, random.below(20)); break;
-      case 3: document.insert(at, pieces[random.below(std::size(pieces))]); break;
-      case 4: document.insert(at, document.substr(place(), random.below(40))); break;
-      default: document.resize(at); break;
+      case 0:
+        document[at] = static_cast<char>(random.below(256));
+        break;
+      case 1:
+        document[at] = static_cast<char>(document[at] ^ (1 << random.below(8)));
+        break;
+      case 2:
+        document.erase(at, random.below(20));
+        break;
+      case 3:
+        document.insert(at, pieces[random.below(std::size(pieces))]);
+        break;
+      case 4:
+        document.insert(at, document.substr(place(), random.below(40)));
+        break;
+      default:
+        document.resize(at);
+        break;
     }
   }
   return document;
@@ -62,7 +76,8 @@ TEST_P(Fuzz, DamagedDocumentsGiveARobotOrALine) {
       const std::string message = error.what();
       ASSERT_FALSE(message.empty());
       ASSERT_LT(message.size(), 250u) << "seed " << seed;
-      ASSERT_TRUE(std::none_of(message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; })) << "seed " << seed;
+      ASSERT_TRUE(std::none_of(message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; }))
+          << "seed " << seed;
       ++refused;
     }
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample robots: each lives, and gets somewhere, where it says it lives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -167,8 +168,8 @@ TEST(AlphaBody, OfALatticeIsTheWholeLattice) {
   std::vector<Vec3> points;
   for (int x = 0; x < 4; ++x)
     for (int y = 0; y < 4; ++y)
-      for (int z = 0; z < 4; ++z) points.push_back({0.1f * static_cast<float>(x), 0.1f * static_cast<float>(y),
-                                                    0.1f * static_cast<float>(z)});
+      for (int z = 0; z < 4; ++z)
+        points.push_back({0.1f * static_cast<float>(x), 0.1f * static_cast<float>(y), 0.1f * static_cast<float>(z)});
   const AlphaBody body = alpha_body(points);
   Real sum = 0;
   for (const Tetrahedron& t : body.tetrahedra) sum += volume(points, t);

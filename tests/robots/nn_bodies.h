@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every robot grown by a network must be, and networks simple enough to know what they grow.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/nn_robot.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +23,7 @@ std::string reason_not_to_grow(const NnGenome& genome) {
 }
 
 TEST(NnCloud, CloudsThatSpanNoBodyAreRefusedWithTheReason) {
-  EXPECT_EQ(reason_not_to_grow(simple_genome(nothing, nothing)),
-            "cloud: the network puts all its points on one place");
+  EXPECT_EQ(reason_not_to_grow(simple_genome(nothing, nothing)), "cloud: the network puts all its points on one place");
   EXPECT_EQ(reason_not_to_grow(simple_genome({{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, {{-1, 0, 0}, {0, -1, 0}, {0, 0, 0}})),
             "cloud: its points lie in one plane, they span no body");
   EXPECT_EQ(reason_not_to_grow(simple_genome({{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, nothing)),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -124,7 +125,9 @@ TEST(Network, NamesWhatDoesNotFit) {
   wrong.layers[0].weights.pop_back();
   EXPECT_EQ(message_of([&] { validate(wrong); }),
             "network: a layer of 3 inputs and 8 outputs has 23 weights and 8 biases");
-  EXPECT_EQ(message_of([] { validate(random_network({3, 24}, 1), "/origin"); }),
+  EXPECT_EQ(message_of([] {
+              validate(random_network({3, 24}, 1), "/origin");
+            }),
             "/origin: the last layer gives 25 numbers (a place and 22 scores), not 24");
   EXPECT_THROW(evaluate(network, random_points(4, 1)), InputError);
 }
@@ -203,7 +206,9 @@ TEST(Crossover, InheritsEveryNeuronWholeFromOneOfItsParents) {
 }
 
 TEST(Crossover, NeedsEqualSizes) {
-  EXPECT_EQ(message_of([] { crossover(random_network({3, 8, 25}, 1), random_network({3, 9, 25}, 1), 1); }),
+  EXPECT_EQ(message_of([] {
+              crossover(random_network({3, 8, 25}, 1), random_network({3, 9, 25}, 1), 1);
+            }),
             "crossover: two networks of equal sizes are needed");
 }
 

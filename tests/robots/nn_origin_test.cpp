@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/nn_robot.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +44,8 @@ TEST(NnOrigin, EveryFloatComesBackFromTheOrigin) {
   ASSERT_TRUE(back);
   EXPECT_EQ(back->cloud_seed, genome.cloud_seed);
   for (std::size_t i = 0; i < weights.size(); ++i)
-    EXPECT_EQ(std::bit_cast<std::uint32_t>(back->network.layers[0].weights[i]), std::bit_cast<std::uint32_t>(weights[i]));
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(back->network.layers[0].weights[i]),
+              std::bit_cast<std::uint32_t>(weights[i]));
 }
 
 TEST(NnOrigin, OriginsThatCannotBeUsedAreRefusedWithTheirPlace) {
@@ -76,7 +78,8 @@ TEST(NnOrigin, OriginsThatCannotBeUsedAreRefusedWithTheirPlace) {
   EXPECT_EQ(replaced("\"points\":200", "\"points\":20"), "/origin: points: 20 is not accepted; give 64 to 65535");
   EXPECT_EQ(replaced("\"points\":200", "\"points\":-1"), "/origin/points: a whole number >= 0 is expected");
   EXPECT_EQ(replaced("\"mirrored\":false", "\"mirrored\":0"), "/origin/mirrored: true or false is expected");
-  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":-1"), "/origin: alpha: give a radius > 0 m, or 0 for the smallest that holds all points");
+  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":-1"),
+            "/origin: alpha: give a radius > 0 m, or 0 for the smallest that holds all points");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/nn_robot.h"
 
 #include <gtest/gtest.h>
@@ -35,8 +36,10 @@ TEST(NnRobot, SpringsCombineTheMaterialsThatTheNetworkGivesTheirMasses) {
   for (const auto& [mass, own] : of_mass) {
     ASSERT_EQ(own.size(), 1u);
     const float x = robot.masses[mass].x;
-    if (own.contains(7)) lowest_of_7 = std::min(lowest_of_7, x);
-    else highest_of_21 = std::max(highest_of_21, x);
+    if (own.contains(7))
+      lowest_of_7 = std::min(lowest_of_7, x);
+    else
+      highest_of_21 = std::max(highest_of_21, x);
   }
   EXPECT_GT(lowest_of_7, highest_of_21);
   for (const Spring& s : robot.springs) {
@@ -75,7 +78,8 @@ std::uint64_t hash_of(const Robot& robot) {
   };
   for (const Vec3& x : robot.masses)
     for (const float c : {x.x, x.y, x.z}) add(std::bit_cast<std::uint32_t>(c));
-  for (const Spring& s : robot.springs) add(s.a), add(s.b), add(s.material), add(std::bit_cast<std::uint32_t>(s.rest_length));
+  for (const Spring& s : robot.springs)
+    add(s.a), add(s.b), add(s.material), add(std::bit_cast<std::uint32_t>(s.rest_length));
   for (const Face& f : robot.faces) add(f.a), add(f.b), add(f.c);
   return hash;
 }
@@ -83,7 +87,8 @@ std::uint64_t hash_of(const Robot& robot) {
 // Not what is right but that it is the same: these hashes hold for every compiler, optimization and machine.
 TEST(NnRobot, ASeedGrowsTheSameBitsEverywhere) {
   EXPECT_EQ(hash_of(grow(random_nn_genome({}, 1))), 15080024903124239027u);
-  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .mirrored = 1}, 2))), 18007120144977833535u);
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .mirrored = 1}, 2))),
+            18007120144977833535u);
   EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {}, .points = 3000, .alpha = 0.15f}, 3))), 8435448039254982332u);
 }
 

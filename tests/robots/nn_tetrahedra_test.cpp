@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +13,8 @@ using testing::UnorderedElementsAre;
 // With the points (0,0,0), (1,0,0), (0,1,0), (0,0,1): outside is away from the point that a side lacks.
 TEST(Tetrahedra, SkinOfOneLooksOutward) {
   const std::vector<Tetrahedron> one = {{0, 1, 2, 3}};
-  EXPECT_THAT(skin_of(one), UnorderedElementsAre(Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2},
-                                                 Triangle{1, 2, 3}));
+  EXPECT_THAT(skin_of(one),
+              UnorderedElementsAre(Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}));
 }
 
 TEST(Tetrahedra, ASideBetweenTwoIsNoSkin) {

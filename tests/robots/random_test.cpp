@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/random.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,8 @@ namespace {
 TEST(Random, FollowsTheReferenceStreamOfSplitMix64) {
   // First outputs of the algorithm's published reference for seed 1234567.
   Random random(1234567);
-  for (const std::uint64_t expected : {6457827717110365317u, 3203168211198807973u, 9817491932198370423u,
-                                       4593380528125082431u, 16408922859458223821u})
+  for (const std::uint64_t expected :
+       {6457827717110365317u, 3203168211198807973u, 9817491932198370423u, 4593380528125082431u, 16408922859458223821u})
     EXPECT_EQ(random.bits(), expected);
 }
 
@@ -21,12 +22,13 @@ TEST(Random, LogarithmAgreesWithTheLibrarysToFourUlp) {
   Random random(3);
   const auto check = [](double x) {
     const long double exact = std::log(static_cast<long double>(x));
-    const double ulp = std::nextafter(std::abs(static_cast<double>(exact)), INFINITY) -
-                       std::abs(static_cast<double>(exact));
+    const double ulp =
+        std::nextafter(std::abs(static_cast<double>(exact)), INFINITY) - std::abs(static_cast<double>(exact));
     EXPECT_LE(std::abs(static_cast<double>(static_cast<long double>(portable_log(x)) - exact)), 4 * ulp) << x;
   };
   for (int i = 0; i < 20000; ++i) check(random.uniform() + 0x1p-60);
-  for (const double x : {1e-300, 1e-18, 0.5, 0.7071067811865475, 0.7071067811865476, 1 - 0x1p-53, 1 + 0x1p-52, 2., 1e300})
+  for (const double x :
+       {1e-300, 1e-18, 0.5, 0.7071067811865475, 0.7071067811865476, 1 - 0x1p-53, 1 + 0x1p-52, 2., 1e300})
     check(x);
   EXPECT_EQ(portable_log(1), 0);
 }

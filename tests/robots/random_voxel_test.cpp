@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/random_voxel.h"
 
 #include <gmock/gmock.h>
@@ -65,9 +66,9 @@ TEST(RandomVoxels, MirroredHalvesAreAlike) {
       for (int z = 0; z < grid.nz; ++z)
         for (int y = 0; y < grid.ny; ++y)
           for (int x = 0; x < grid.nx; ++x)
-            ASSERT_EQ(grid.at(x, y, z), grid.at(mirror == Mirror::x ? grid.nx - 1 - x : x,
-                                                mirror == Mirror::y ? grid.ny - 1 - y : y,
-                                                mirror == Mirror::z ? grid.nz - 1 - z : z));
+            ASSERT_EQ(grid.at(x, y, z),
+                      grid.at(mirror == Mirror::x ? grid.nx - 1 - x : x, mirror == Mirror::y ? grid.ny - 1 - y : y,
+                              mirror == Mirror::z ? grid.nz - 1 - z : z));
     }
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts about a robot's skin and springs, worked out by plain counting.
 #pragma once
 

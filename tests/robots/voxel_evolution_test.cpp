@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/voxel_evolution.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +13,9 @@
 namespace mercury {
 namespace {
 
-VoxelGrid parent_of(std::uint64_t seed) { return random_voxel_grid({.smallest = {6, 5, 4}, .largest = {6, 5, 4}}, seed); }
+VoxelGrid parent_of(std::uint64_t seed) {
+  return random_voxel_grid({.smallest = {6, 5, 4}, .largest = {6, 5, 4}}, seed);
+}
 
 std::size_t differences(const VoxelGrid& a, const VoxelGrid& b) {
   std::size_t count = 0;
@@ -120,7 +123,8 @@ TEST(VoxelEvolution, RobotsKeepWhatIsTheirs) {
   std::vector<Material> table(defaults.begin(), defaults.end());
   table[1].frequency = 9;
   std::vector<std::string> names(table.size(), "m");
-  const Robot a = make_voxel_robot(parent_of(1), {.name = "a", .environment = "land", .materials = table, .material_names = names});
+  const Robot a =
+      make_voxel_robot(parent_of(1), {.name = "a", .environment = "land", .materials = table, .material_names = names});
   const Robot b = random_voxel_robot({}, 2);
   for (const Robot& child : {mutate_voxel_robot(a, {}, 7, "child"), cross_voxel_robots(a, b, 7, "child")}) {
     EXPECT_NO_THROW(validate(child));
@@ -155,11 +159,15 @@ TEST(VoxelEvolution, RefusesWhatItCannotUse) {
     }
     return std::string();
   };
-  const auto mutation = [&](const VoxelMutation& options) { return message([&] { mutate(parent_of(1), options, 1); }); };
+  const auto mutation = [&](const VoxelMutation& options) {
+    return message([&] { mutate(parent_of(1), options, 1); });
+  };
   EXPECT_EQ(mutation({.flip = 1.5}), "--flip: give a chance between 0 and 1");
   EXPECT_EQ(mutation({.patch = 0}), "--patch: give at least 1 voxel");
   EXPECT_EQ(mutation({.materials = {0}}), "--materials: 0 is not a base material; give 1 to 22");
-  EXPECT_EQ(message([] { mutate_voxel_robot(Robot{.name = "blob", .masses = {{0, 0, 0}}}, {}, 1, "x"); }),
+  EXPECT_EQ(message([] {
+              mutate_voxel_robot(Robot{.name = "blob", .masses = {{0, 0, 0}}}, {}, 1, "x");
+            }),
             "robot blob: not a voxel robot, its origin holds no grid");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robots/voxel.h"
 
 #include <gmock/gmock.h>
@@ -214,8 +215,9 @@ TEST(VoxelRobot, RefusesGridsThatBreakARule) {
   EXPECT_EQ(make(grid), "voxel grid: size 2x2x2 needs 8 cells, not 7");
   grid = VoxelGrid(1, 1, 1, 1);
   grid.edge = 0.0005f;
-  EXPECT_EQ(make(grid), "voxel grid: a voxel edge of 0.000500 m is not accepted; give at least 0.001 m and a grid of at "
-                        "most 2e6 m");
+  EXPECT_EQ(make(grid),
+            "voxel grid: a voxel edge of 0.000500 m is not accepted; give at least 0.001 m and a grid of at "
+            "most 2e6 m");
   EXPECT_EQ(make(VoxelGrid(40, 40, 40, 1)), "voxel grid: the body has 68921 masses, at most 65535 are accepted");
   EXPECT_EQ(make_voxel_robot(VoxelGrid(39, 39, 39, 1)).masses.size(), 64000u);
 }
@@ -228,7 +230,8 @@ TEST(VoxelRobot, RefusesAnOriginThatHoldsNoGrid) {
             "/origin: cells must be 0 (air) or base materials (1 to 22)");
   EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,2],"edge":0.1,"cells":[1]})"),
             "/origin: voxel grid: size 1x1x2 needs 2 cells, not 1");
-  EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,1],"edge":1e300,"cells":[1]})"), "/origin: edge must be a number of metres");
+  EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,1],"edge":1e300,"cells":[1]})"),
+            "/origin: edge must be a number of metres");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every pair of solver and environment follows an independent calculation in double precision.
 #include <gtest/gtest.h>
 
@@ -47,8 +48,10 @@ TEST_P(Agreement, ShakenRobotFollowsTheReference) {
 
 TEST_P(Agreement, TiltedRobotInACurrentOrDroppedFollowsTheReference) {
   Configuration setting = configuration();
-  if (auto* ocean = std::get_if<Ocean>(&setting.environment)) *ocean = {.lift_coefficient = 0.5f, .flow = {0.3f, -0.2f, 0.1f}};
-  if (auto* simple = std::get_if<OceanSimple>(&setting.environment)) *simple = {.point_drag = 3, .flow = {0.3f, -0.2f, 0.1f}};
+  if (auto* ocean = std::get_if<Ocean>(&setting.environment))
+    *ocean = {.lift_coefficient = 0.5f, .flow = {0.3f, -0.2f, 0.1f}};
+  if (auto* simple = std::get_if<OceanSimple>(&setting.environment))
+    *simple = {.point_drag = 3, .flow = {0.3f, -0.2f, 0.1f}};
   setting.damping = 0.5;
   Robot robot = bodies::random_voxels({.x = 3, .y = 4, .z = 5}, 4);
   bodies::rotate(robot, bodies::random_rotation(5));

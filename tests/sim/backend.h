@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every physics test runs on every backend; some on every pair of solver and environment too.
 #pragma once
 
@@ -47,9 +48,8 @@ class EveryPair : public testing::TestWithParam<Pair> {
 };
 
 inline const auto every_device = testing::Values(DeviceKind::cpu, DeviceKind::cuda);
-inline const auto every_pair =
-    testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
-                     testing::Values(Ocean::name, OceanSimple::name, Land::name));
+inline const auto every_pair = testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
+                                                testing::Values(Ocean::name, OceanSimple::name, Land::name));
 
 // Empty space: no water, no weight. Nothing acts but springs.
 inline OceanSimple empty_space() { return {.point_drag = 0}; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
 
 #include <cmath>
@@ -21,7 +22,9 @@ Vec3 uniform_in_cube(Random& random, float half_edge) {
 // Two triangles on the voxel's side that looks along +axis or -axis.
 void add_side(Robot& robot, const std::array<std::uint16_t, 8>& corner, int axis, int side) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const auto at = [&](int along_u, int along_v) { return corner[static_cast<std::size_t>(side << axis | along_u << u | along_v << v)]; };
+  const auto at = [&](int along_u, int along_v) {
+    return corner[static_cast<std::size_t>(side << axis | along_u << u | along_v << v)];
+  };
   const std::uint16_t p = at(0, 0), q = at(1, 0), r = at(1, 1), s = at(0, 1);  // counter-clockwise about +axis
   if (side == 1) {
     robot.faces.push_back({p, q, r});
@@ -62,8 +65,8 @@ Robot voxels(const Grid& grid, const Material& material) {
   for (int z = 0; z <= grid.z; ++z)
     for (int y = 0; y <= grid.y; ++y)
       for (int x = 0; x <= grid.x; ++x)
-        robot.masses.push_back(
-            grid.corner + grid.edge * Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+        robot.masses.push_back(grid.corner +
+                               grid.edge * Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
 
   std::set<std::pair<std::uint16_t, std::uint16_t>> joined;
   const std::array<int, 3> last = {grid.x - 1, grid.y - 1, grid.z - 1};

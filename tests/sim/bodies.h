@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots made by the tests themselves, so that they depend on no builder.
 #pragma once
 

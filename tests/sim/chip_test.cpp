@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a robot needs of the chip, and what the CUDA device here says to it.
 #include "sim/chip.h"
 

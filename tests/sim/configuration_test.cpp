@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defaults, names and rules of a configuration.
 #include "sim/configuration.h"
 
@@ -94,16 +95,22 @@ TEST(Configuration, EveryParameterOfEveryEnvironmentIsChecked) {
   const auto in = [](const Environment& environment) { return message_of(Configuration{.environment = environment}); };
   EXPECT_EQ(in(Ocean{.density = -1}), "--density: -1 is not accepted; give a finite number >= 0 kg/m3");
   EXPECT_EQ(in(Ocean{.density = infinity}), "--density: inf is not accepted; give a finite number >= 0 kg/m3");
-  EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}), "--drag-coefficient: -0.5 is not accepted; give a finite number >= 0");
-  EXPECT_EQ(in(Ocean{.lift_coefficient = nan_value}), "--lift-coefficient: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}),
+            "--drag-coefficient: -0.5 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.lift_coefficient = nan_value}),
+            "--lift-coefficient: nan is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.flow = {0, nan_value, 1}}), "--flow: 0,nan,1 is not accepted; give three finite numbers of m/s");
-  EXPECT_EQ(in(Ocean{.gravity = {infinity, 0, 0}}), "--gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");
+  EXPECT_EQ(in(Ocean{.gravity = {infinity, 0, 0}}),
+            "--gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");
   EXPECT_EQ(in(Ocean{.stiffness_scale = -2}), "--stiffness-scale: -2 is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(OceanSimple{.point_drag = -1}), "--point-drag: -1 is not accepted; give a finite number >= 0 N s/m");
-  EXPECT_EQ(in(OceanSimple{.flow = {0, 0, infinity}}), "--flow: 0,0,inf is not accepted; give three finite numbers of m/s");
+  EXPECT_EQ(in(OceanSimple{.flow = {0, 0, infinity}}),
+            "--flow: 0,0,inf is not accepted; give three finite numbers of m/s");
   EXPECT_EQ(in(Land{.friction = -1}), "--friction: -1 is not accepted; give a finite number >= 0");
-  EXPECT_EQ(in(Land{.contact_stiffness = -1}), "--contact-stiffness: -1 is not accepted; give a finite number >= 0 N/m");
-  EXPECT_EQ(in(Land{.stiffness_scale = nan_value}), "--stiffness-scale: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Land{.contact_stiffness = -1}),
+            "--contact-stiffness: -1 is not accepted; give a finite number >= 0 N/m");
+  EXPECT_EQ(in(Land{.stiffness_scale = nan_value}),
+            "--stiffness-scale: nan is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.density = 0, .drag_coefficient = 0, .lift_coefficient = 5}), "");
   EXPECT_EQ(in(Land{.friction = 0, .contact_stiffness = 0, .stiffness_scale = 0}), "");
 }

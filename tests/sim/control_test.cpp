@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a program may change between calls of step: materials, state, configuration, pulls.
 #include <gtest/gtest.h>
 

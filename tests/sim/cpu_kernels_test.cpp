@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever the instruction set, the CPU computes the bits of the plain loop over one spring after the other.
 #include <gtest/gtest.h>
 
@@ -30,7 +31,8 @@ Robot entangled(const Robot& robot) {
   const auto masses = static_cast<std::uint16_t>(robot.masses.size());
   for (const Vec3 x : robot.masses) result.masses.push_back(x + Vec3{0.03f, 0.02f, 0.04f});
   for (const Spring& s : robot.springs)
-    result.springs.push_back({static_cast<std::uint16_t>(s.a + masses), static_cast<std::uint16_t>(s.b + masses), s.material, s.rest_length});
+    result.springs.push_back({static_cast<std::uint16_t>(s.a + masses), static_cast<std::uint16_t>(s.b + masses),
+                              s.material, s.rest_length});
   return result;
 }
 
@@ -98,7 +100,8 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
     EXPECT_EQ(got.bad_mass, wanted.bad_mass) << which;
     std::size_t different = 0;
     for (std::size_t i = 0; i < robot.masses.size(); ++i)
-      if (got.state.positions[i] != wanted.state.positions[i] || got.state.velocities[i] != wanted.state.velocities[i]) ++different;
+      if (got.state.positions[i] != wanted.state.positions[i] || got.state.velocities[i] != wanted.state.velocities[i])
+        ++different;
     EXPECT_EQ(different, 0u) << which << ", masses that differ, of " << robot.masses.size();
   }
 };
@@ -117,7 +120,8 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
 TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopInACurrent) {
   flow = {0.3f, -0.2f, 1.5f};
   const std::vector<Robot> robots = zoo();
-  for (const std::size_t i : {0u, 3u, 5u}) expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
+  for (const std::size_t i : {0u, 3u, 5u})
+    expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
 }
 
 // 30 m/s: the list of near masses is made anew again and again, and the robots go far.
@@ -133,8 +137,8 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopForFastRobots) {
 TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
   const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 1);
   const float infinity = std::numeric_limits<float>::infinity();
-  const std::vector<std::pair<Vec3, Vec3>> ways = {{{}, {1e10f, 0, 0}}, {{}, {0, 0, infinity}}, {{}, {2e4f, 0, 0}},
-                                                   {{0, 500, 1}, {}},   {{0, 0, 9e5f}, {0, 0, 1e9f}}};
+  const std::vector<std::pair<Vec3, Vec3>> ways = {
+      {{}, {1e10f, 0, 0}}, {{}, {0, 0, infinity}}, {{}, {2e4f, 0, 0}}, {{0, 500, 1}, {}}, {{0, 0, 9e5f}, {0, 0, 1e9f}}};
   for (std::size_t way = 0; way < ways.size(); ++way) {
     State start = bodies::shaken(robot, 0.01f, 0.3f, way);
     start.positions[20] += ways[way].first;
@@ -195,7 +199,8 @@ class CpuKernelTogether : public CpuKernel {
   std::vector<Robot> robots;
   std::vector<State> starts;
 };
-INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
+INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(test::every_kernel_case()),
+                         test::name_of_kernel_case);
 
 TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoop) { expect_all_same(); }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/arrangement.h"
 
 #include <gtest/gtest.h>
@@ -30,14 +31,16 @@ Robot tangle(int masses, int springs, unsigned seed) {
   robot.masses.resize(static_cast<std::size_t>(masses));
   for (int s = 0; s < springs; ++s) {
     const auto a = static_cast<std::uint16_t>(random() % static_cast<unsigned>(masses));
-    const auto b = static_cast<std::uint16_t>((a + 1 + random() % static_cast<unsigned>(masses - 1)) % static_cast<unsigned>(masses));
+    const auto b = static_cast<std::uint16_t>((a + 1 + random() % static_cast<unsigned>(masses - 1)) %
+                                              static_cast<unsigned>(masses));
     robot.springs.push_back({a, b, static_cast<MaterialId>(1 + random() % 253), 0.1f + 0.001f * static_cast<float>(s)});
   }
   return robot;
 }
 
 std::vector<Robot> robots() {
-  std::vector<Robot> all{bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1), bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2),
+  std::vector<Robot> all{bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1),
+                         bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2),
                          bodies::random_voxels({.x = 17, .y = 2, .z = 3}, 3), star(500)};
   for (unsigned seed = 0; seed < 20; ++seed) all.push_back(tangle(40 + 7 * static_cast<int>(seed), 900, seed));
   all.push_back(bodies::point());
@@ -46,7 +49,8 @@ std::vector<Robot> robots() {
 
 using Key = std::array<float, 4>;  // both masses, material, rest length
 Key key(std::uint32_t a, std::uint32_t b, MaterialId material, float rest_length) {
-  return {static_cast<float>(std::min(a, b)), static_cast<float>(std::max(a, b)), static_cast<float>(material), rest_length};
+  return {static_cast<float>(std::min(a, b)), static_cast<float>(std::max(a, b)), static_cast<float>(material),
+          rest_length};
 }
 
 TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
@@ -87,7 +91,8 @@ TEST(Schedule, NoEmptyPlaceOfAFullGroupWantsABankThatIsTaken) {
     for (std::uint32_t g = 0; g < robot.masses.size() / lanes; ++g)
       for (std::uint32_t row = schedule.row_start[g]; row < schedule.row_start[g + 1]; ++row) {
         std::set<int> banks;
-        for (std::uint32_t lane = 0; lane < lanes; ++lane) banks.insert(schedule.places[row * lanes + lane].partner % 32);
+        for (std::uint32_t lane = 0; lane < lanes; ++lane)
+          banks.insert(schedule.places[row * lanes + lane].partner % 32);
         EXPECT_EQ(banks.size(), lanes) << "row " << row;
       }
   }
@@ -157,7 +162,8 @@ TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
   }
 }
 
-// Lattices number their masses row by row, which gives corners of one kind few banks; their faces find room all the same.
+// Lattices number their masses row by row, which gives corners of one kind few banks; their faces find room all the
+// same.
 TEST(Arrangement, BundlesOfALatticesFacesAreWellFilled) {
   for (const int size : {10, 15}) {
     const Robot robot = bodies::random_voxels({.x = size, .y = size, .z = size}, 1);
@@ -166,7 +172,8 @@ TEST(Arrangement, BundlesOfALatticesFacesAreWellFilled) {
 }
 
 TEST(Arrangement, RobotsOfOneBuildShareTheFirst) {
-  const Robot small = bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 1), other = bodies::random_voxels({.x = 3, .y = 3, .z = 2}, 1);
+  const Robot small = bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 1),
+              other = bodies::random_voxels({.x = 3, .y = 3, .z = 2}, 1);
   Robot stronger = small;
   for (Spring& s : stronger.springs) s.material = 7;
   Robot joined = small;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot that leaves the finite is frozen and reported; the others go on untouched.
 #include <gtest/gtest.h>
 
@@ -185,14 +186,15 @@ TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndThatOfXpbdDoesNot) {
   };
   EXPECT_FALSE(explodes(Solver::force, 0.98 * limit));
   EXPECT_TRUE(explodes(Solver::force, 1.02 * limit));
-  for (const double factor : {0.98, 1.02, 2.0, 10.0, 1000.0}) EXPECT_FALSE(explodes(Solver::xpbd, factor * limit)) << factor;
+  for (const double factor : {0.98, 1.02, 2.0, 10.0, 1000.0})
+    EXPECT_FALSE(explodes(Solver::xpbd, factor * limit)) << factor;
 }
 
 TEST_P(Stability, XpbdStaysBoundedAtTimeStepsWhereTheForceSolverExplodes) {
   const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 4);
   const std::vector<std::pair<std::string_view, double>> beyond = {
-      {Ocean::name, 0.1}, {Ocean::name, 1}, {OceanSimple::name, 0.1}, {OceanSimple::name, 1},
-      {Land::name, 0.01}, {Land::name, 0.05}, {Land::name, 0.1}, {Land::name, 0.2}};
+      {Ocean::name, 0.1}, {Ocean::name, 1},   {OceanSimple::name, 0.1}, {OceanSimple::name, 1},
+      {Land::name, 0.01}, {Land::name, 0.05}, {Land::name, 0.1},        {Land::name, 0.2}};
   for (const auto& [environment, dt] : beyond) {
     Configuration configuration{.dt = dt, .environment = environment_named(environment), .device = device()};
     Simulation force(configuration, {&robot, 1});

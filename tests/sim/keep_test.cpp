@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots leave and change places; those that stay notice nothing.
 #include <gtest/gtest.h>
 

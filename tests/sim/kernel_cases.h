@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every kernel of the CPU with every pair of solver and environment, as parameters of tests.
 #pragma once
 
@@ -19,7 +20,8 @@ struct KernelCase {
   Vec3 flow{};  // of the water, if there is any
 
   Configuration configuration() const {
-    Configuration configuration{.solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
+    Configuration configuration{
+        .solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
     if (Ocean* const ocean = std::get_if<Ocean>(&configuration.environment)) ocean->flow = flow;
     if (OceanSimple* const simple = std::get_if<OceanSimple>(&configuration.environment)) simple->flow = flow;
     return configuration;

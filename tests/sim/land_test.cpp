@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Land: floor, friction and masses that repel.
 #include <gtest/gtest.h>
 
@@ -135,7 +136,8 @@ Robot two_sheets(Vec3 offset) {
 // Least height of the upper sheet's masses above the highest mass of the lower one [m].
 float gap(const std::vector<Vec3>& positions) {
   const auto upper = positions.begin() + lower_count;
-  return lowest({upper, positions.end()}) - std::ranges::max(std::vector<Vec3>(positions.begin(), upper), {}, &Vec3::z).z;
+  return lowest({upper, positions.end()}) -
+         std::ranges::max(std::vector<Vec3>(positions.begin(), upper), {}, &Vec3::z).z;
 }
 
 TEST_P(OnLand, TwoLayersPressedTogetherDoNotPassThroughEachOther) {

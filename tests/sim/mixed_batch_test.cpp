@@ -1,5 +1,6 @@
-// Small robots of different builds that are stepped side by side: each has the bits that it has alone, whatever becomes of
-// the others.
+// SPDX-License-Identifier: Apache-2.0
+// Small robots of different builds that are stepped side by side: each has the bits that it has alone, whatever becomes
+// of the others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +22,8 @@
 namespace mercury {
 namespace {
 
-// No two built alike: voxels left out here and there, other sizes, some numbered in another order, some with materials of
-// their own; one that is no lattice.
+// No two built alike: voxels left out here and there, other sizes, some numbered in another order, some with materials
+// of their own; one that is no lattice.
 std::vector<Robot> crowd(std::size_t lanes) {
   std::vector<Robot> robots;
   for (std::uint64_t seed = 1; seed <= 2 * lanes + 3; ++seed) {
@@ -50,7 +51,10 @@ using test::KernelCase;
 class Batch {
  public:
   Batch(const KernelCase& of, std::span<const Robot> robots, std::int64_t threads = 1)
-      : robots_(robots), backend_(cpu::make_backend({.threads = static_cast<int>(threads)}, of.kernel)), clock_{.dt = of.configuration().dt} {
+      : robots_(robots),
+        backend_(cpu::make_backend({.threads = static_cast<int>(threads)}, of.kernel)), clock_{
+                                                                                            .dt =
+                                                                                                of.configuration().dt} {
     std::vector<const Robot*> pointers;
     for (const Robot& robot : robots) pointers.push_back(&robot);
     backend_->load(pointers, of.configuration());
@@ -118,14 +122,18 @@ TEST_P(MixedBatch, GivesTheBitsOfThePlainLoop) { expect_the_plain_loop(); }
 
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopAtSpeed) {
   for (State& start : starts)
-    for (std::size_t i = 0; i < start.velocities.size(); ++i) start.velocities[i] += Vec3{20, 5 * static_cast<float>(i % 3), -10};
+    for (std::size_t i = 0; i < start.velocities.size(); ++i)
+      start.velocities[i] += Vec3{20, 5 * static_cast<float>(i % 3), -10};
   expect_the_plain_loop();
 }
 
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopInACurrent) { expect_the_plain_loop({}, {0.3f, -0.2f, 1.5f}); }
 
 TEST_P(MixedBatch, WhatPullsARobotPullsNoOther) {
-  const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}, {0, 5, {0.3f, 0.1f, 0.4f}, 2}, {7, 3, {-1, 0, 0.5f}, 50}, {9, 1, {1e6f, 0, 0}, 1e6f}};
+  const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20},
+                                   {0, 5, {0.3f, 0.1f, 0.4f}, 2},
+                                   {7, 3, {-1, 0, 0.5f}, 50},
+                                   {9, 1, {1e6f, 0, 0}, 1e6f}};
   expect_the_plain_loop(pulls);
 }
 
@@ -150,7 +158,8 @@ TEST_P(MixedBatch, AVelocityThatIsNoNumberExplodesItsRobotOnly) {
   Batch batch(GetParam(), robots);
   for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
   for (const std::int64_t call : {1, 40}) batch.step(call);
-  for (std::size_t i = 0; i < robots.size(); ++i) EXPECT_EQ(batch.backend().status(i).exploded_step, i == 2 ? 0 : -1) << i;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    EXPECT_EQ(batch.backend().status(i).exploded_step, i == 2 ? 0 : -1) << i;
 }
 
 // Everything that can be done to a robot, done to some of the batch, and to each of them alone.
@@ -202,10 +211,12 @@ TEST_P(MixedBatch, EditsReachTheirRobotOnly) {
     batch.step(6);
   };
   Batch all(GetParam(), robots);
-  script(all, [](std::size_t) { return true; }, 0);
+  script(
+      all, [](std::size_t) { return true; }, 0);
   for (std::size_t i = 0; i < robots.size(); ++i) {
     Batch alone(GetParam(), std::span(robots).subspan(i, 1));
-    script(alone, [&](std::size_t j) { return j == i; }, i);
+    script(
+        alone, [&](std::size_t j) { return j == i; }, i);
     expect_same(all.state(i), alone.state(0), i);
     EXPECT_EQ(all.backend().status(i).exploded_step, alone.backend().status(0).exploded_step) << i;
     EXPECT_EQ(all.backend().status(i).bad_mass, alone.backend().status(0).bad_mass) << i;
@@ -240,7 +251,8 @@ TEST_P(MixedBatch, IsReadAndReportedAsEachAlone) {
     EXPECT_EQ(reports[i].largest_strain, wanted.largest_strain) << i;
     const State state = alone.state(0);
     EXPECT_TRUE(std::ranges::equal(state.positions, std::span(positions).subspan(first, state.positions.size()))) << i;
-    EXPECT_TRUE(std::ranges::equal(state.velocities, std::span(velocities).subspan(first, state.velocities.size()))) << i;
+    EXPECT_TRUE(std::ranges::equal(state.velocities, std::span(velocities).subspan(first, state.velocities.size())))
+        << i;
     first += state.positions.size();
   }
 }
@@ -272,10 +284,12 @@ TEST(Parties, AreMadeOfRobotsOfDifferentBuilds) {
   }
 }
 
-// Long and flat robots by turns, 1,100 of them, which is more than are looked at at once: only what is left over at the end goes together.
+// Long and flat robots by turns, 1,100 of them, which is more than are looked at at once: only what is left over at the
+// end goes together.
 TEST(Parties, AreMadeOfRobotsOfOneKind) {
   constexpr std::size_t robots = 1100, group_size = 8;
-  const Robot kinds[] = {bodies::random_voxels({.x = 8, .y = 1, .z = 1}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 4}, 2)};
+  const Robot kinds[] = {bodies::random_voxels({.x = 8, .y = 1, .z = 1}, 1),
+                         bodies::random_voxels({.x = 3, .y = 1, .z = 4}, 2)};
   std::vector<cpu::Cell> cells[2];
   std::vector<FacePair> faces[2];
   for (int kind = 0; kind < 2; ++kind) {
@@ -304,7 +318,8 @@ TEST(Parties, SeatEveryMassSpringAndFaceOnce) {
   for (const cpu::Party& party : cpu::find_parties(bodies, 1, {})) {
     const cpu::Build& build = *party.assembly.build;
     std::vector<std::uint32_t> owners;
-    for (std::uint32_t seat = 0; seat < build.joints.size(); ++seat) owners.insert(owners.end(), build.joints[seat].owned, seat);
+    for (std::uint32_t seat = 0; seat < build.joints.size(); ++seat)
+      owners.insert(owners.end(), build.joints[seat].owned, seat);
     for (std::size_t lane = 0; lane < party.bodies.size(); ++lane) {
       const cpu::Body& body = bodies[party.bodies[lane]];
       const auto& [seats, slots, faces] = *party.assembly.seatings[lane];
@@ -314,17 +329,20 @@ TEST(Parties, SeatEveryMassSpringAndFaceOnce) {
       EXPECT_EQ(distinct(faces), body.face_pairs.size());
       for (std::size_t s = 0; s < slots.size(); ++s) {
         const Spring& spring = body.robot->springs[s];
-        EXPECT_EQ(std::minmax(owners[slots[s]], build.partners[slots[s]]), std::minmax(seats[spring.a], seats[spring.b]));
+        EXPECT_EQ(std::minmax(owners[slots[s]], build.partners[slots[s]]),
+                  std::minmax(seats[spring.a], seats[spring.b]));
       }
       for (std::size_t p = 0; p < faces.size(); ++p) {
         const FacePair &own = body.face_pairs[p], &seat = build.faces[faces[p]];
-        EXPECT_TRUE(seat.a == seats[own.a] && seat.b == seats[own.b] && seat.c == seats[own.c] && seat.d == seats[own.d]);
+        EXPECT_TRUE(seat.a == seats[own.a] && seat.b == seats[own.b] && seat.c == seats[own.c] &&
+                    seat.d == seats[own.d]);
       }
     }
   }
 }
 
-// The corners that a lane's half of a slot holds are those of its robot's pair of faces, also where two pairs share a slot.
+// The corners that a lane's half of a slot holds are those of its robot's pair of faces, also where two pairs share a
+// slot.
 TEST(Parties, PairsOfFacesThatShareASlotAreTheirRobotsOwn) {
   for (const std::size_t lanes : {4u, 8u, 16u}) {
     const std::vector<Robot> robots = crowd(lanes);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The muscle law L(t) = L0 (1 + dL0 sin(omega t + phi)), and its phase on long runs.
 #include "sim/muscle.h"
 
@@ -22,7 +23,9 @@ std::vector<Material> many_muscles() {
   for (const Material& material : default_materials())
     if (material.amplitude != 0) muscles.push_back(material);
   std::mt19937_64 random(1);
-  const auto uniform = [&](float low, float high) { return low + (high - low) * 0x1p-24f * static_cast<float>(random() >> 40); };
+  const auto uniform = [&](float low, float high) {
+    return low + (high - low) * 0x1p-24f * static_cast<float>(random() >> 40);
+  };
   for (int i = 0; i < 300; ++i)
     muscles.push_back({uniform(1, 1000), uniform(-0.99f, 0.99f), uniform(-50, 50), uniform(-100, 100)});
   return muscles;
@@ -46,14 +49,14 @@ TEST(Muscle, PhaseErrorStaysFarBelowATenThousandthOfARadianAtAMillionSecondsAndB
         for (int offset = 0; offset < 20; ++offset) {
           const std::int64_t step = std::llround(seconds / dt) + 977 * offset;
           const auto exact = exact_factor(muscle, static_cast<long double>(dt) * static_cast<long double>(step));
-          ASSERT_NEAR(muscle_factor(muscle, dt, step), static_cast<double>(exact), 5e-7 + 4e-16 * static_cast<double>(step))
+          ASSERT_NEAR(muscle_factor(muscle, dt, step), static_cast<double>(exact),
+                      5e-7 + 4e-16 * static_cast<double>(step))
               << "omega " << muscle.frequency << " phi " << muscle.phase << " step " << step << " dt " << dt;
         }
 }
 
 TEST(Muscle, APassiveMaterialNeverMoves) {
-  for (std::int64_t step = 0; step < 1000; ++step)
-    EXPECT_EQ(muscle_factor(Material{40, 0, 3, 1}, 1e-3, step), 1.0f);
+  for (std::int64_t step = 0; step < 1000; ++step) EXPECT_EQ(muscle_factor(Material{40, 0, 3, 1}, 1e-3, step), 1.0f);
 }
 
 // At a time step of many minutes an XPBD spring of two masses is as long as the law says after every step, and damping

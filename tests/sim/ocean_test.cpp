@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Water: surface drag (paper, equation 1) and drag on points.
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace {
 using reference::Vector;
 using reference::vector_of;
 
-constexpr float edge = 0.1f;                 // [m]
+constexpr float edge = 0.1f;  // [m]
 constexpr Material stiff{5000, 0, 0, 0}, soft{50, 0, 0, 0};
 
 class Water : public BackendTest {
@@ -107,7 +108,8 @@ TEST_P(Water, APlateFeelsDragAcrossAndLiftAlongTheFlow) {
   const auto force_at = [&](Vec3 flow, bool reversed) {
     Robot robot = plate;
     if (reversed) std::swap(robot.faces[0].b, robot.faces[0].c);
-    Simulation simulation(water({.density = 800, .drag_coefficient = 1.2f, .lift_coefficient = 0.3f, .flow = flow}), {&robot, 1});
+    Simulation simulation(water({.density = 800, .drag_coefficient = 1.2f, .lift_coefficient = 0.3f, .flow = flow}),
+                          {&robot, 1});
     simulation.step();
     return Vector(3 * mean_velocity(simulation, 0) / 1e-3);
   };
@@ -139,15 +141,16 @@ TEST_P(Water, AFlowCarriesACubeUpToItsOwnVelocity) {
   }
 }
 
-// At a steady fall gravity's power is that of drag: M g v = rho C_D |v|^3 times the shadow, of a flat cube rho C_D v^3 A.
-// (A flat fall does not last: turned a little, the shadow grows. It is read off before the cube has turned.)
+// At a steady fall gravity's power is that of drag: M g v = rho C_D |v|^3 times the shadow, of a flat cube rho C_D v^3
+// A. (A flat fall does not last: turned a little, the shadow grows. It is read off before the cube has turned.)
 TEST_P(Water, TerminalSpeedOfAFallingCubeIsThatOfEquationOne) {
   const double g = 2, density = 1000, drag = 1.1, mass = 8;
   const Robot flat = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, stiff);
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const float lift : {0.0f, 0.2f}) {
-      Simulation simulation(water({.drag_coefficient = 1.1f, .lift_coefficient = lift, .gravity = {0, 0, -2}}, 1e-3, solver),
-                            std::vector<Robot>{flat, cube(1), cube(2), cube(3)});
+      Simulation simulation(
+          water({.drag_coefficient = 1.1f, .lift_coefficient = lift, .gravity = {0, 0, -2}}, 1e-3, solver),
+          std::vector<Robot>{flat, cube(1), cube(2), cube(3)});
       simulation.step(2500);
       const double expected = std::sqrt(mass * g / (density * double{edge} * double{edge} * drag));
       EXPECT_NEAR(-mean_velocity(simulation, 0).z(), expected, 0.01 * expected) << name_of(solver) << " lift " << lift;
@@ -165,7 +168,11 @@ TEST_P(Water, TerminalSpeedOfAFallingCubeIsThatOfEquationOne) {
 TEST_P(Water, PointDragSlowsExponentially) {
   const Robot robot = bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {
-    Simulation simulation({.damping = 0.1, .solver = solver, .environment = OceanSimple{.point_drag = 0.8f, .flow = {0, 0, 0.5f}}, .device = device()}, {&robot, 1});
+    Simulation simulation({.damping = 0.1,
+                           .solver = solver,
+                           .environment = OceanSimple{.point_drag = 0.8f, .flow = {0, 0, 0.5f}},
+                           .device = device()},
+                          {&robot, 1});
     const State start = bodies::moving(robot, {1, -2, 0.5f});
     simulation.set_state(0, start.positions, start.velocities);
     for (int second = 1; second <= 2; ++second) {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second opinion on the physics: one robot in double precision, written from the paper and the design for reading,
 // not for speed. It shares no equation with sim/; only the plain data that says what to simulate.
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

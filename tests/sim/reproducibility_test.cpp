@@ -1,5 +1,6 @@
-// On one backend a robot's trajectory is bit for bit the same from run to run, alone or in any batch, in any order, with
-// any number of threads, and however the steps are split into calls.
+// SPDX-License-Identifier: Apache-2.0
+// On one backend a robot's trajectory is bit for bit the same from run to run, alone or in any batch, in any order,
+// with any number of threads, and however the steps are split into calls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,8 @@ class Reproducibility : public EveryPair {
   static std::vector<Robot> crowd() {
     std::vector<Robot> robots;
     std::uint64_t seed = 1;
-    for (const auto& [x, y, z] : {std::array{1, 1, 1}, {5, 5, 5}, {2, 3, 1}, {4, 4, 4}, {9, 8, 7}, {3, 3, 3}, {1, 2, 6}}) {
+    for (const auto& [x, y, z] :
+         {std::array{1, 1, 1}, {5, 5, 5}, {2, 3, 1}, {4, 4, 4}, {9, 8, 7}, {3, 3, 3}, {1, 2, 6}}) {
       robots.push_back(bodies::random_voxels({.x = x, .y = y, .z = z}, seed));
       bodies::rotate(robots.back(), bodies::random_rotation(seed++));
     }
@@ -215,13 +217,15 @@ class Story {
 // Most robots are built alike, which a backend may make use of.
 TEST_P(Reproducibility, WhateverChangesWhileRunningARobotAloneMovesAsInTheBatch) {
   std::vector<Robot> robots;
-  for (std::uint64_t i = 0; i < 44; ++i) robots.push_back(bodies::random_voxels({.x = 2, .y = i % 11 == 10 ? 3 : 2, .z = 1}, i));
+  for (std::uint64_t i = 0; i < 44; ++i)
+    robots.push_back(bodies::random_voxels({.x = 2, .y = i % 11 == 10 ? 3 : 2, .z = 1}, i));
   std::vector<std::size_t> which(robots.size());
   std::iota(which.begin(), which.end(), std::size_t{0});
   Configuration setting = configuration();
   setting.device.threads = 1;
   const auto told = Story(setting, robots, which).tell();
-  EXPECT_TRUE(std::ranges::count(told.at(4), 1u) == 2 && std::ranges::count(told.at(21), 1u) == 2) << "two chapters exploded";
+  EXPECT_TRUE(std::ranges::count(told.at(4), 1u) == 2 && std::ranges::count(told.at(21), 1u) == 2)
+      << "two chapters exploded";
   EXPECT_EQ(std::ranges::count(told.at(5), 1u), 0);
   setting.device.threads = 3;
   std::ranges::reverse(which);

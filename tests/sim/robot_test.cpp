@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of a robot, each with the line that a user reads when it is broken.
 #include "sim/robot.h"
 
@@ -77,15 +78,26 @@ TEST(RobotRules, SpringsAreAtLeastAMillimetreLong) {
   EXPECT_EQ(message_after([](Robot& robot) { robot.springs[5].rest_length = -1; }),
             "/springs/5: rest length -1.000000 m, at least 0.001 m is accepted");
   for (const float bad : {nan_value, infinity})
-    EXPECT_TRUE(message_after([&](Robot& robot) { robot.springs[5].rest_length = bad; }).starts_with("/springs/5: rest length "));
+    EXPECT_TRUE(message_after([&](Robot& robot) {
+                  robot.springs[5].rest_length = bad;
+                }).starts_with("/springs/5: rest length "));
 }
 
 TEST(RobotRules, FacesHaveThreeDifferentMassesOfTheRobot) {
   EXPECT_EQ(message_after([](Robot& robot) { robot.faces[3].c = 65535; }),
             "/faces/3: mass 65535 is out of range, the robot has 12");
-  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {1, 2, 1}; }), "/faces/0: a face needs three different masses");
-  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {1, 1, 2}; }), "/faces/0: a face needs three different masses");
-  EXPECT_EQ(message_after([](Robot& robot) { robot.faces[0] = {2, 1, 1}; }), "/faces/0: a face needs three different masses");
+  EXPECT_EQ(message_after([](Robot& robot) {
+              robot.faces[0] = {1, 2, 1};
+            }),
+            "/faces/0: a face needs three different masses");
+  EXPECT_EQ(message_after([](Robot& robot) {
+              robot.faces[0] = {1, 1, 2};
+            }),
+            "/faces/0: a face needs three different masses");
+  EXPECT_EQ(message_after([](Robot& robot) {
+              robot.faces[0] = {2, 1, 1};
+            }),
+            "/faces/0: a face needs three different masses");
 }
 
 TEST(RobotRules, MaterialsAreFewNamedAllOrNoneAndValid) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Springs alone: what theory says of the two solvers in empty space.
 #include <gtest/gtest.h>
 

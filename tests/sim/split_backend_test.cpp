@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/split_backend.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,8 @@ namespace {
 
 TEST(SplitBackend, GivesWhatOnePartGivesForEveryRobot) {
   std::vector<Robot> robots;
-  for (unsigned seed = 0; seed < 5; ++seed) robots.push_back(bodies::random_voxels({.x = 2, .y = 2, .z = 1 + static_cast<int>(seed)}, seed));
+  for (unsigned seed = 0; seed < 5; ++seed)
+    robots.push_back(bodies::random_voxels({.x = 2, .y = 2, .z = 1 + static_cast<int>(seed)}, seed));
   std::vector<const Robot*> pointers;
   for (const Robot& robot : robots) pointers.push_back(&robot);
 

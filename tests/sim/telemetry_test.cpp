@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Telemetry against an independent calculation, and the other ways to read a batch.
 #include "sim/telemetry.h"
 
@@ -84,8 +85,8 @@ TEST_P(TelemetryOf, ARobotIsTheSameHoweverItIsAskedFor) {
     return last;
   };
   const Telemetry once = told({robot}, 1);
-  const std::vector<Robot> several = {robot, bodies::random_voxels({.x = 9, .y = 8, .z = 7}, 2), bodies::point({1, 2, 3}),
-                                      bodies::pair({50, 0.3f, 4, 1})};
+  const std::vector<Robot> several = {robot, bodies::random_voxels({.x = 9, .y = 8, .z = 7}, 2),
+                                      bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
   for (const Telemetry& other : {told({robot}, 3), told(several, 1), told(several, 4)}) {
     EXPECT_EQ(other.center_of_mass, once.center_of_mass);
     EXPECT_EQ(other.velocity, once.velocity);
@@ -99,7 +100,8 @@ class Reading : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, Reading, every_device, BackendTest::name);
 
 TEST_P(Reading, AllMassesAtOnceAgreesWithRobotByRobot) {
-  const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::point(), bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2)};
+  const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::point(),
+                                     bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2)};
   Simulation simulation({.device = {.kind = GetParam()}}, robots);
   simulation.step(200);
   ASSERT_EQ(simulation.mass_count(), 216u + 1 + 8);
