@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 namespace mercury::bench {
 

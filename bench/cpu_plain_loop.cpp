@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "sim/contact.h"
-#include "sim/fixed_point.h"
+#include "sim/physics/contact.h"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::bench {
 

@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "sim/environments.h"
-#include "sim/face_pairs.h"
-#include "sim/integration.h"
-#include "sim/measures.h"
-#include "sim/muscle.h"
-#include "sim/robot.h"
-#include "sim/simulation.h"
+#include "mercury/robot.h"
+#include "mercury/simulation.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/face_pairs.h"
+#include "sim/physics/integration.h"
+#include "sim/physics/measures.h"
+#include "sim/physics/muscle.h"
 
 namespace mercury::bench {
 

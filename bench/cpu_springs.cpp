@@ -19,7 +19,7 @@
 
 #include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
-#include "robots/random_voxel.h"
+#include "mercury/random_voxel.h"
 #include "sim/cpu/backend.h"
 
 namespace mercury::bench {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "robots/random_voxel.h"
-#include "sim/simulation.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
 
 namespace {
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "app/studio.h"
-#include "robots/random_voxel.h"
-#include "sim/simulation.h"
+#include "app/video/studio.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
 
 namespace {
 

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "bench/cpu_lattice.h"
-#include "robots/file.h"
-#include "robots/nn_robot.h"
-#include "robots/random_voxel.h"
+#include "mercury/error.h"
+#include "mercury/nn_robot.h"
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
 #include "sim/cpu/kernel.h"
-#include "sim/error.h"
-#include "sim/face_pairs.h"
+#include "sim/physics/face_pairs.h"
 
 namespace mercury::bench {
 namespace {

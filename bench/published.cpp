@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "bench/published_kernel.cuh"
-#include "robots/random_voxel.h"
-#include "sim/simulation.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 namespace mercury::published {
 

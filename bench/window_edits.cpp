@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "app/live/live_scene.h"
+#include "mercury/random_voxel.h"
 #include "render/context.h"
 #include "render/renderer.h"
-#include "robots/random_voxel.h"
 
 namespace {
 

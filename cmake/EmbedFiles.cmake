@@ -15,7 +15,7 @@ foreach(file IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "// Made at build time.
-#include \"app/window/embedded.h\"
+#include \"app/window/toolkit/embedded.h\"
 
 __asm__(\".pushsection .rodata\\n\"
 ${blobs}    \".popsection\\n\");

@@ -15,31 +15,10 @@ if(EXISTS ${PROJECT_SOURCE_DIR}/robots/library)
 endif()
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
-# The headers that a program outside this repository may include. They include no others of ours.
-target_sources(mercury_sim PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
-  sim/configuration.h
-  sim/error.h
-  sim/host_device.h
-  sim/material.h
-  sim/robot.h
-  sim/simulation.h
-  sim/telemetry.h
-  sim/vec3.h)
-target_sources(mercury_robots PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES
-  robots/file.h
-  robots/inspect.h
-  robots/network.h
-  robots/nn_robot.h
-  robots/origin.h
-  robots/random.h
-  robots/random_voxel.h
-  robots/voxel.h
-  robots/voxel_evolution.h)
-
 set(mercury_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mercury)
 install(TARGETS mercury_sim mercury_robots EXPORT mercury
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mercury)
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT mercury NAMESPACE mercury:: FILE mercury-targets.cmake DESTINATION ${mercury_package_dir})
 configure_package_config_file(cmake/mercury-config.cmake.in ${PROJECT_BINARY_DIR}/mercury-config.cmake
   INSTALL_DESTINATION ${mercury_package_dir})

@@ -31,7 +31,7 @@ function(mercury_add_library name)
   add_library(mercury::${name} ALIAS mercury_${name})
   set_target_properties(mercury_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(mercury_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mercury>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_compile_features(mercury_${name} PUBLIC cxx_std_20)
   target_link_libraries(mercury_${name} PRIVATE $<BUILD_INTERFACE:mercury_build_flags>)
 endfunction()

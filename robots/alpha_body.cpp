@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "mercury/vec3.h"
 #include "robots/tetrahedra.h"
-#include "sim/vec3.h"
 
 namespace mercury {
 

@@ -2,7 +2,7 @@
 // Stands in for alpha_body.cpp in a build without CGAL (-DMERCURY_NN=OFF).
 #include "robots/alpha_body.h"
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 

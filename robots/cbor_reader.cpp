@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "mercury/error.h"
 #include "robots/document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

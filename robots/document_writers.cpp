@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "mercury/error.h"
 #include "robots/document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

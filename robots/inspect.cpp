@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/inspect.h"
+#include "mercury/inspect.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "mercury/error.h"
 #include "robots/document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

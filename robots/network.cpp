@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/network.h"
+#include "mercury/network.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/random.h"
 
 namespace mercury {
 namespace {

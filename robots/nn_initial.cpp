@@ -11,9 +11,9 @@
 #include <tuple>
 #include <utility>
 
-#include "robots/nn_robot.h"
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/nn_robot.h"
+#include "mercury/random.h"
 
 namespace mercury {
 namespace {

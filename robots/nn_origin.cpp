@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "mercury/error.h"
+#include "mercury/nn_robot.h"
+#include "mercury/origin.h"
 #include "robots/document.h"
-#include "robots/nn_robot.h"
-#include "robots/origin.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "robots/nn_robot.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/nn_robot.h"
 
 namespace mercury {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/nn_robot.h"
+#include "mercury/nn_robot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <tuple>
 
+#include "mercury/error.h"
+#include "mercury/random.h"
 #include "robots/alpha_body.h"
-#include "robots/random.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

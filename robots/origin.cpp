@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/origin.h"
+#include "mercury/origin.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/random_voxel.h"
+#include "mercury/random_voxel.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/random.h"
 
 namespace mercury {
 namespace {

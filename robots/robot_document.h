@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "mercury/robot.h"
 #include "robots/document.h"
-#include "sim/robot.h"
 
 namespace mercury {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mercury/error.h"
 #include "robots/robot_document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

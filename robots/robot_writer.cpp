@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
+#include "mercury/error.h"
 #include "robots/robot_document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

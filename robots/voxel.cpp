@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/voxel.h"
+#include "mercury/voxel.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "mercury/error.h"
 #include "robots/voxel_origin.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/voxel_evolution.h"
+#include "mercury/voxel_evolution.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "robots/origin.h"
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "mercury/random.h"
 
 namespace mercury {
 namespace {

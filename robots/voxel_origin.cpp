@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "mercury/error.h"
 #include "robots/document.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

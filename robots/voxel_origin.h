@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "robots/voxel.h"
+#include "mercury/voxel.h"
 
 namespace mercury {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <system_error>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/configuration.h"
-#include "sim/muscle.h"
-#include "sim/robot.h"
-#include "sim/simulation.h"
-#include "sim/telemetry.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+#include "mercury/simulation.h"
+#include "mercury/telemetry.h"
+#include "sim/physics/muscle.h"
 
 namespace mercury {
 

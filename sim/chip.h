@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "sim/configuration.h"
-#include "sim/robot.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
 
 namespace mercury {
 

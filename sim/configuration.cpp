@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/configuration.h"
+#include "mercury/configuration.h"
 
 #include <charconv>
 #include <cmath>
 #include <type_traits>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

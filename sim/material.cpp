@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/material.h"
+#include "mercury/material.h"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

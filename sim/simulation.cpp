@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/simulation.h"
+#include "mercury/simulation.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <stdexcept>
 
+#include "mercury/error.h"
 #include "sim/backend.h"
-#include "sim/error.h"
-#include "sim/measures.h"
+#include "sim/physics/measures.h"
 #include "sim/split_backend.h"
 
 namespace mercury {

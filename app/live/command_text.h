@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/live/scene_document.h"
-#include "app/view_settings.h"
+#include "app/scene/view_settings.h"
 
 namespace mercury {
 

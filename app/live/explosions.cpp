@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "app/eigen_vec3.h"
-#include "app/group_layout.h"
+#include "app/scene/eigen_vec3.h"
+#include "app/scene/group_layout.h"
 
 namespace mercury {
 namespace {

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
-#include "app/studio.h"
-#include "sim/error.h"
+#include "app/video/studio.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/frame_writer.h"
 #include "app/live/film_status.h"
 #include "app/live/moment.h"
-#include "app/view_settings.h"
+#include "app/scene/view_settings.h"
+#include "app/video/frame_writer.h"
 #include "render/context.h"
 #include "render/renderer.h"
 

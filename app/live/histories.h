@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/live/moment.h"
-#include "app/repro.h"
+#include "app/recording/repro.h"
 
 namespace mercury {
 

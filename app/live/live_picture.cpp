@@ -6,8 +6,8 @@
 #include <utility>
 #include <variant>
 
-#include "app/cameraman.h"
 #include "app/live/slow_motion.h"
+#include "app/scene/cameraman.h"
 
 namespace mercury {
 namespace {

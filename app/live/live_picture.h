@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "app/group_scene.h"
 #include "app/live/moment.h"
+#include "app/scene/group_scene.h"
 
 namespace mercury {
 

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "app/eigen_vec3.h"
 #include "app/live/live_scene_parts.h"
 #include "app/live/pace.h"
-#include "app/report.h"
+#include "app/recording/report.h"
+#include "app/scene/eigen_vec3.h"
 
 namespace mercury {
 namespace {

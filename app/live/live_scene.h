@@ -19,7 +19,7 @@
 #include "app/live/picking.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
-#include "robots/file.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/live/live_scene_parts.h"
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "app/live/live_scene_parts.h"
-#include "app/report.h"
-#include "robots/file.h"
+#include "app/recording/report.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {

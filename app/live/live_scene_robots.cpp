@@ -7,13 +7,13 @@
 #include <system_error>
 
 #include "app/live/live_scene_parts.h"
-#include "app/robot_output.h"
-#include "app/trajectory_layout.h"
-#include "app/trajectory_reader.h"
-#include "robots/file.h"
-#include "robots/origin.h"
-#include "robots/random.h"
-#include "sim/error.h"
+#include "app/options/robot_output.h"
+#include "app/recording/trajectory_layout.h"
+#include "app/recording/trajectory_reader.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "mercury/random.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {

@@ -11,9 +11,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "app/robot_shape.h"
-#include "app/scene_details.h"
-#include "sim/simulation.h"
+#include "app/scene/robot_shape.h"
+#include "app/scene/scene_details.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 

@@ -9,8 +9,8 @@
 #include "app/live/measurements.h"
 #include "app/live/messages.h"
 #include "app/live/moment.h"
-#include "app/repro.h"
-#include "app/view_settings.h"
+#include "app/recording/repro.h"
+#include "app/scene/view_settings.h"
 
 namespace mercury {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <exception>
 
-#include "app/face_forces.h"
 #include "app/live/physics_parts.h"
+#include "app/scene/face_forces.h"
 
 namespace mercury {
 

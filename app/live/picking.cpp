@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/eigen_vec3.h"
+#include "app/scene/eigen_vec3.h"
 
 namespace mercury {
 namespace {

@@ -9,13 +9,13 @@
 #include <exception>
 #include <system_error>
 
-#include "app/config_file.h"
 #include "app/live/command_text.h"
 #include "app/live/robot_saving.h"
-#include "app/nn_options.h"
-#include "app/option_values.h"
-#include "app/view_options.h"
-#include "app/voxel_options.h"
+#include "app/options/config_file.h"
+#include "app/options/nn_options.h"
+#include "app/options/option_values.h"
+#include "app/options/view_options.h"
+#include "app/options/voxel_options.h"
 
 namespace mercury {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/live/messages.h"
 #include "app/live/scene_document.h"
-#include "app/view_settings.h"
+#include "app/scene/view_settings.h"
 
 namespace mercury {
 

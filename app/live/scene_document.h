@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "app/live/moment.h"
-#include "robots/nn_robot.h"
-#include "robots/random_voxel.h"
-#include "robots/voxel_evolution.h"
+#include "mercury/nn_robot.h"
+#include "mercury/random_voxel.h"
+#include "mercury/voxel_evolution.h"
 
 namespace mercury {
 

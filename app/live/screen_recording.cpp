@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "app/bounded_queue.h"
+#include "app/base/bounded_queue.h"
 
 namespace mercury {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "app/frame_writer.h"
 #include "app/live/film_status.h"
+#include "app/video/frame_writer.h"
 #include "render/readback.h"
 
 namespace mercury {

@@ -4,10 +4,10 @@
 
 #include <chrono>
 
-#include "app/window/desk.h"
-#include "app/window/hands.h"
-#include "app/window/performance_panel.h"
-#include "app/window/window.h"
+#include "app/window/panels/performance_panel.h"
+#include "app/window/picture/desk.h"
+#include "app/window/picture/hands.h"
+#include "app/window/toolkit/window.h"
 
 namespace mercury::window {
 

@@ -9,16 +9,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/cameraman.h"
-#include "app/interrupt.h"
+#include "app/base/interrupt.h"
 #include "app/live/live_scene.h"
 #include "app/live/remembered.h"
+#include "app/scene/cameraman.h"
 #include "app/window/frame_report.h"
-#include "app/window/interface.h"
-#include "app/window/panels.h"
-#include "app/window/picture_text.h"
-#include "app/window/screenshot.h"
-#include "app/window/theme.h"
+#include "app/window/panels/panels.h"
+#include "app/window/picture/picture_text.h"
+#include "app/window/picture/screenshot.h"
+#include "app/window/toolkit/interface.h"
+#include "app/window/toolkit/theme.h"
 
 namespace mercury::window {
 namespace {

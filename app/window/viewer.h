@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "app/live/scene_document.h"
-#include "app/view_settings.h"
-#include "app/window/window.h"
+#include "app/scene/view_settings.h"
+#include "app/window/toolkit/window.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
 #include "render/renderer.h"
-#include "sim/configuration.h"
-#include "sim/robot.h"
 
 namespace mercury::window {
 

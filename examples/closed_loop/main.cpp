@@ -20,8 +20,8 @@
 #include <numbers>
 #include <vector>
 
-#include "robots/voxel.h"
-#include "sim/simulation.h"
+#include <mercury/simulation.h>
+#include <mercury/voxel.h>
 
 using namespace mercury;
 

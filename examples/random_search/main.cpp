@@ -15,9 +15,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "robots/random.h"
-#include "robots/voxel.h"
-#include "sim/simulation.h"
+#include <mercury/random.h>
+#include <mercury/simulation.h>
+#include <mercury/voxel.h>
 
 using namespace mercury;
 

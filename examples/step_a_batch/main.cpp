@@ -2,8 +2,8 @@
 // Steps 64 random voxel robots for five seconds and prints how far each has swum.
 #include <cstdio>
 
-#include "robots/random_voxel.h"
-#include "sim/simulation.h"
+#include <mercury/random_voxel.h>
+#include <mercury/simulation.h>
 
 int main() {
   const auto robots = mercury::random_voxel_robots({}, /*seed=*/1, /*count=*/64);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "robots/voxel.h"
+#include "mercury/voxel.h"
 
 namespace mercury::library {
 

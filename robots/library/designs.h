@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 namespace mercury::library {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random voxel robots that a search found: mercury new voxel --best-of (docs/library.md has the commands).
+#include "mercury/random_voxel.h"
 #include "robots/library/designs.h"
-#include "robots/random_voxel.h"
 
 namespace mercury::library {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random network robots that a search found: mercury new nn --best-of (docs/library.md has the commands).
+#include "mercury/nn_robot.h"
 #include "robots/library/designs.h"
-#include "robots/nn_robot.h"
 
 namespace mercury::library {
 namespace {

@@ -4,7 +4,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "robots/file.h"
+#include "mercury/robot_file.h"
 #include "robots/library/designs.h"
 
 int main(int argc, char** argv) {

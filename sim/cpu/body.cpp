@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "mercury/telemetry.h"
 #include "sim/cpu/build.h"
-#include "sim/springs.h"
-#include "sim/telemetry.h"
+#include "sim/physics/springs.h"
 
 namespace mercury::cpu {
 

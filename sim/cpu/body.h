@@ -13,7 +13,7 @@
 #include "sim/cpu/near_pairs.h"
 #include "sim/cpu/places.h"
 #include "sim/cpu/spring_plan.h"
-#include "sim/measures.h"
+#include "sim/physics/measures.h"
 
 namespace mercury::cpu {
 
@@ -58,7 +58,7 @@ struct Residence {
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  std::uint64_t build_key = 0;  // sim/robot.h
+  std::uint64_t build_key = 0;  // mercury/robot.h
   std::vector<FacePair> face_pairs;
   std::vector<Cell> cells;  // sim/cpu/cells.h
   Places places;

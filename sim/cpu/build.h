@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/face_pairs.h"
-#include "sim/robot.h"
+#include "mercury/robot.h"
+#include "sim/physics/face_pairs.h"
 
 namespace mercury::cpu {
 

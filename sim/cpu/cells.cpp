@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "sim/springs.h"
+#include "sim/physics/springs.h"
 
 namespace mercury::cpu {
 

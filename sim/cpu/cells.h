@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 namespace mercury::cpu {
 

@@ -19,17 +19,17 @@
 
 #include <hwy/highway.h>
 
-#include "sim/configuration.h"
-#include "sim/host_device.h"
-#include "sim/material.h"
-#include "sim/vec3.h"
+#include "mercury/configuration.h"
+#include "mercury/host_device.h"
+#include "mercury/material.h"
+#include "mercury/vec3.h"
 
 HWY_BEFORE_NAMESPACE();
-#include "sim/environments.h"
-#include "sim/fixed_point.h"
-#include "sim/integration.h"
-#include "sim/muscle.h"
-#include "sim/springs.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/fixed_point.h"
+#include "sim/physics/integration.h"
+#include "sim/physics/muscle.h"
+#include "sim/physics/springs.h"
 HWY_AFTER_NAMESPACE();
 
 #include "sim/cpu/lockstep_stepper.h"

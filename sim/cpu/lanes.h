@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A vector of floats that computes as a float does, for the instruction set that the including file is compiled for:
-// with the names of sim/host_device.h the equations of sim/ hold for several masses or springs at once.
+// with the names of mercury/host_device.h the equations of sim/ hold for several masses or springs at once.
 //
 // Products and sums are never fused, square roots and divisions are IEEE's: every lane holds the bits that a float
 // would.
@@ -10,9 +10,9 @@
 
 #include <cstdint>
 
+#include "mercury/host_device.h"
+#include "mercury/vec3.h"
 #include "sim/cpu/muscles.h"
-#include "sim/host_device.h"
-#include "sim/vec3.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/fixed_point.h"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::cpu {
 namespace {

@@ -26,7 +26,7 @@ struct Lockstep {
   std::vector<std::uint32_t> partners;
   struct Joint {
     std::uint32_t owned = 0;
-    std::int32_t bias = 0;  // takes out again what the integers of the springs carry (sim/fixed_point.h)
+    std::int32_t bias = 0;  // takes out again what the integers of the springs carry (sim/physics/fixed_point.h)
   };
   std::vector<Joint> joints;
   // Slots of pairs of faces. In those that are split, lanes of the lower half stand at other seats than those of the

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sim/cpu/aligned.h"
-#include "sim/muscle.h"
+#include "sim/physics/muscle.h"
 
 namespace mercury::cpu {
 

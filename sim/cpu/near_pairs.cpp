@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/springs.h"
+#include "sim/physics/springs.h"
 
 namespace mercury::cpu {
 

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "mercury/vec3.h"
 #include "sim/cpu/aligned.h"
 #include "sim/cpu/places.h"
-#include "sim/vec3.h"
 
 namespace mercury::cpu {
 

@@ -64,7 +64,7 @@ std::size_t index_of(Cell c) {
 // By body; those without take part in nothing.
 using Patterns = std::vector<std::vector<Cell>>;
 
-// Pairs of faces meet only where robots are as they are, since each is told by place (sim/face_pairs.h).
+// Pairs of faces meet only where robots are as they are, since each is told by place (sim/physics/face_pairs.h).
 Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> wanted, bool faces) {
   Patterns patterns(bodies.size());
   oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t w) {

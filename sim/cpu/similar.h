@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "mercury/robot.h"
 #include "sim/cpu/cells.h"
-#include "sim/face_pairs.h"
-#include "sim/robot.h"
+#include "sim/physics/face_pairs.h"
 
 namespace mercury::cpu {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/cpu/arrays.h"
-#include "sim/fixed_point.h"
+#include "sim/physics/fixed_point.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {

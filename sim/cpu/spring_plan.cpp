@@ -5,8 +5,8 @@
 #include <tuple>
 #include <utility>
 
-#include "sim/fixed_point.h"
-#include "sim/telemetry.h"
+#include "mercury/telemetry.h"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::cpu {
 namespace {

@@ -11,11 +11,11 @@
 #include <span>
 #include <vector>
 
+#include "mercury/robot.h"
 #include "sim/cpu/aligned.h"
 #include "sim/cpu/muscles.h"
 #include "sim/cpu/places.h"
-#include "sim/face_pairs.h"
-#include "sim/robot.h"
+#include "sim/physics/face_pairs.h"
 
 namespace mercury::cpu {
 
@@ -44,8 +44,8 @@ struct SpringPlan {
   // The place of its factor among those of the muscles that it is stepped with.
   Aligned<FactorId> factor;
 
-  // The integers of the sums carry rounding_magic_bits (sim/fixed_point.h) once for every lane that was added; these,
-  // one a place, take them out again.
+  // The integers of the sums carry rounding_magic_bits (sim/physics/fixed_point.h) once for every lane that was added;
+  // these, one a place, take them out again.
   Aligned<std::uint32_t> bias;
 
   bool has_rows() const { return !partners.empty(); }

@@ -4,8 +4,8 @@
 
 #include <variant>
 
-#include "sim/environments.h"
-#include "sim/integration.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/integration.h"
 
 #include "sim/cpu/body.h"
 

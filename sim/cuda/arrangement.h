@@ -19,7 +19,7 @@ struct Arrangement {
 
 Arrangement arrange(const Robot& robot);
 
-// For each robot the first one of the same build (sim/robot.h), itself if there is none before. Uses all cores.
+// For each robot the first one of the same build (mercury/robot.h), itself if there is none before. Uses all cores.
 std::vector<std::uint32_t> first_of_build(std::span<const Robot* const> robots);
 
 }  // namespace mercury::cuda

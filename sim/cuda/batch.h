@@ -5,7 +5,7 @@
 #include "sim/backend.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/memory.h"
-#include "sim/measures.h"
+#include "sim/physics/measures.h"
 
 namespace mercury::cuda {
 

@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-#include "sim/configuration.h"
+#include "mercury/configuration.h"
+#include "mercury/host_device.h"
+#include "mercury/robot.h"
 #include "sim/cuda/layout.h"
-#include "sim/host_device.h"
-#include "sim/robot.h"
 
 namespace mercury::cuda {
 

@@ -6,9 +6,9 @@
 // the pairs that touch, and their forces are summed as integers, so when the list was made changes no bit.
 #pragma once
 
-#include "sim/contact.h"
 #include "sim/cuda/block.cuh"
 #include "sim/cuda/mass_memory.cuh"
+#include "sim/physics/contact.h"
 
 namespace mercury::cuda {
 

@@ -8,12 +8,12 @@
 
 #include <cstdint>
 
-#include "sim/configuration.h"
+#include "mercury/configuration.h"
+#include "mercury/host_device.h"
+#include "mercury/material.h"
+#include "mercury/vec3.h"
 #include "sim/cuda/schedule.h"
-#include "sim/host_device.h"
-#include "sim/material.h"
-#include "sim/muscle.h"
-#include "sim/vec3.h"
+#include "sim/physics/muscle.h"
 
 namespace mercury::cuda {
 

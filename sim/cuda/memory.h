@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury::cuda {
 

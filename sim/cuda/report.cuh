@@ -6,7 +6,7 @@
 
 #include "sim/cuda/block_robot.cuh"
 #include "sim/cuda/telemetry.h"
-#include "sim/springs.h"
+#include "sim/physics/springs.h"
 
 namespace mercury::cuda {
 

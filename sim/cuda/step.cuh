@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step kernel's work: every robot of a block is carried through many steps with its masses on the chip. All sums
-// are integers (sim/fixed_point.h), so neither the number of warps nor the other robots of the batch can change a bit
-// of the result.
+// are integers (sim/physics/fixed_point.h), so neither the number of warps nor the other robots of the batch can change
+// a bit of the result.
 #pragma once
 
 #include "sim/cuda/block_robot.cuh"
 #include "sim/cuda/contacts.cuh"
-#include "sim/fixed_point.h"
-#include "sim/springs.h"
+#include "sim/physics/fixed_point.h"
+#include "sim/physics/springs.h"
 
 namespace mercury::cuda {
 

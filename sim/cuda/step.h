@@ -7,8 +7,8 @@
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/telemetry.h"
-#include "sim/environments.h"
-#include "sim/integration.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/integration.h"
 
 namespace mercury::cuda {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sim/vec3.h"
+#include "mercury/vec3.h"
 
 namespace mercury::cuda {
 

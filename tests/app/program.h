@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "app/child_process.h"
+#include "app/base/child_process.h"
 
 namespace mercury::test {
 

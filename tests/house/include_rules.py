@@ -9,15 +9,34 @@ import re
 import sys
 from pathlib import Path
 
-# Folders of ours that each folder may include.
-OURS = {
-    "sim": {"sim"},
-    "robots": {"sim", "robots"},
-    "render": {"render"},
-    "app": {"sim", "robots", "render", "app"},
-    "bench": {"sim", "robots", "render", "app", "bench"},
-    "tests": {"sim", "robots", "render", "app", "bench", "tests"},
-    "examples": {"sim", "robots"},
+# The folders of ours that each folder may include, besides itself. "sim/api" and "robots/api" are the public headers,
+# which users include as <mercury/...>. A folder that is not listed goes with the nearest listed folder above it.
+API = {"sim/api": "sim/include", "robots/api": "robots/include"}
+ALLOWED = {
+    "sim/api": "",
+    "sim/physics": "sim/api",
+    "sim": "sim/api sim/physics",
+    "sim/cpu": "sim/api sim/physics sim",
+    "sim/cuda": "sim/api sim/physics sim",
+    "robots/api": "sim/api",
+    "robots": "sim/api robots/api",
+    "robots/library": "sim/api robots/api",
+    "render": "",
+    "app/base": "sim/api",
+    "app/recording": "sim/api robots/api robots app/base",
+    "app/scene": "sim/api robots/api robots render app/base",
+    "app/video": "sim/api render app/base app/scene",
+    "app/options": "sim/api robots/api render app/base app/recording app/scene app/video",
+    "app/live": "sim/api robots/api robots render app/base app/recording app/scene app/video app/options",
+    "app/window/toolkit": "sim/api robots/api render",
+    "app/window/dialogs": "sim/api robots/api app/window/toolkit",
+    "app/window/picture": "sim/api robots/api render app/scene app/live app/window/toolkit app/window/dialogs",
+    "app/window/panels": "sim/api robots/api app/scene app/live app/window/toolkit app/window/dialogs app/window/picture",
+    "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/picture app/window/panels",
+    "app/commands": "sim/api robots/api robots render app/base app/recording app/video app/options app/window/toolkit app/window",
+    "bench": "*",
+    "tests": "*",
+    "examples": "sim/api robots/api",
 }
 
 # What robots/ may know of sim/: plain data, no stepping. These headers include only one another.
@@ -34,7 +53,7 @@ SUBJECTS = {
 FREE = {"tests", "examples"}  # folders that may include any library
 
 # Who may ask whether nvcc is compiling.
-CUDACC_HOME = "sim/host_device.h"
+CUDACC_HOME = "mercury/host_device.h"
 
 SOURCES = {".h", ".hpp", ".cuh", ".inl", ".cpp", ".cc", ".cu"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -26,15 +26,15 @@ class IncludeRules(unittest.TestCase):
 
     def test_what_is_allowed_is_not_reported(self):
         self.assertEqual(problems({
-            "sim/simulation.h": '#pragma once\n#include <vector>\n#include "sim/robot.h"\n',
-            "sim/host_device.h": "#ifdef __CUDACC__\n#endif\n",
-            "sim/cuda/step.cu": '#include <cuda_runtime.h>\n#include "sim/simulation.h"\n',
-            "robots/voxel.cpp": '#include <nlohmann/json.hpp>\n#include "robots/voxel.h"\n#include "sim/robot.h"\n',
+            "mercury/simulation.h": '#pragma once\n#include <vector>\n#include "mercury/robot.h"\n',
+            "mercury/host_device.h": "#ifdef __CUDACC__\n#endif\n",
+            "sim/cuda/step.cu": '#include <cuda_runtime.h>\n#include "mercury/simulation.h"\n',
+            "robots/voxel.cpp": '#include <nlohmann/json.hpp>\n#include "mercury/voxel.h"\n#include "mercury/robot.h"\n',
             "robots/alpha.cpp": "#include <CGAL/Alpha_shape_3.h>\n",
             "render/context.cpp": '#include <epoxy/egl.h>\n#include "render/context.h"\n',
             "render/png.h": "",
             "render/png.cpp": '#include <png.h>\n#include "render/png.h"\n',
-            "app/bridge.cpp": '#include <cuda_gl_interop.h>\n#include "sim/simulation.h"\n#include "render/scene.h"\n',
+            "app/bridge.cpp": '#include <cuda_gl_interop.h>\n#include "mercury/simulation.h"\n#include "render/scene.h"\n',
             "tests/sim/step_test.cpp": '#include <fstream>\n#include "sim/cpu/step.h"\n',
         }), [])
 
@@ -45,7 +45,7 @@ class IncludeRules(unittest.TestCase):
 
     def test_every_rule_sees_a_breach(self):
         breaches = {
-            "sim includes nothing of ours": ("sim/a.cpp", '#include "robots/voxel.h"'),
+            "sim includes nothing of ours": ("sim/a.cpp", '#include "mercury/voxel.h"'),
             "sim knows no OpenGL": ("sim/a.cpp", "#include <epoxy/gl.h>"),
             "sim knows no OpenGL, quoted": ("sim/a.cpp", '#include "GL/gl.h"'),
             "sim opens no files": ("sim/a.h", "#include <fstream>"),
@@ -53,12 +53,12 @@ class IncludeRules(unittest.TestCase):
             "sim writes no HDF5": ("sim/a.cpp", "#include <hdf5.h>"),
             "sim knows no CGAL": ("sim/cpu/a.h", "#include <CGAL/Point_3.h>"),
             "sim knows no interop": ("sim/cuda/a.cu", "#include <cuda_gl_interop.h>"),
-            "robots take only plain data of sim": ("robots/a.cpp", '#include "sim/simulation.h"'),
+            "robots take only plain data of sim": ("robots/a.cpp", '#include "mercury/simulation.h"'),
             "robots draw nothing": ("robots/a.cpp", '#include "render/scene.h"'),
             "robots know no CUDA": ("robots/a.cpp", "#include <cuda_runtime.h>"),
-            "plain data stays plain": ("sim/robot.h", '#include "sim/simulation.h"'),
-            "render includes no simulator": ("render/a.cpp", '#include "sim/vec3.h"'),
-            "render includes no robots": ("render/a.cpp", '#include "robots/voxel.h"'),
+            "plain data stays plain": ("mercury/robot.h", '#include "mercury/simulation.h"'),
+            "render includes no simulator": ("render/a.cpp", '#include "mercury/vec3.h"'),
+            "render includes no robots": ("render/a.cpp", '#include "mercury/voxel.h"'),
             "render knows no CUDA": ("render/a.cpp", "#include <cuda_runtime.h>"),
             "render knows no interop": ("render/a.cpp", "#include <cuda_gl_interop.h>"),
             "nothing includes bench": ("app/a.cpp", '#include "bench/plot.h"'),

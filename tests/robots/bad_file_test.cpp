@@ -2,8 +2,8 @@
 // Robot documents that break a rule: one line each that says where and why.
 #include <gtest/gtest.h>
 
-#include "robots/file.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {

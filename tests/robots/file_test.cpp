@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/file.h"
+#include "mercury/robot_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "robots/random_voxel.h"
+#include "mercury/error.h"
+#include "mercury/random_voxel.h"
 #include "robots/whole_file.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

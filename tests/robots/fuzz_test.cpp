@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <functional>
 
-#include "robots/file.h"
-#include "robots/random.h"
-#include "robots/random_voxel.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/random.h"
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {

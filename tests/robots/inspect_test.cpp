@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/inspect.h"
+#include "mercury/inspect.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "robots/random_voxel.h"
-#include "robots/voxel.h"
+#include "mercury/random_voxel.h"
+#include "mercury/voxel.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {

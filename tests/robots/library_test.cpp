@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <map>
 
-#include "robots/file.h"
-#include "robots/inspect.h"
+#include "mercury/inspect.h"
+#include "mercury/origin.h"
+#include "mercury/robot_file.h"
+#include "mercury/simulation.h"
+#include "mercury/voxel.h"
 #include "robots/library/designs.h"
-#include "robots/origin.h"
-#include "robots/voxel.h"
-#include "sim/simulation.h"
 
 namespace mercury {
 namespace {

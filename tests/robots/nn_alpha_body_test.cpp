@@ -7,9 +7,9 @@
 #include <optional>
 #include <set>
 
+#include "mercury/error.h"
+#include "mercury/random.h"
 #include "robots/alpha_body.h"
-#include "robots/random.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "robots/nn_robot.h"
+#include "mercury/nn_robot.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numeric>
 
-#include "robots/network.h"
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/network.h"
+#include "mercury/random.h"
 
 namespace mercury {
 namespace {

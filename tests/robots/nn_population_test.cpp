@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/nn_robot.h"
+#include "mercury/nn_robot.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 #include "tests/robots/nn_bodies.h"
 
 namespace mercury {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/random.h"
+#include "mercury/random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/random_voxel.h"
+#include "mercury/random_voxel.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 namespace mercury {
 

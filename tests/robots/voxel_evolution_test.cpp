@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/voxel_evolution.h"
+#include "mercury/voxel_evolution.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "robots/origin.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {

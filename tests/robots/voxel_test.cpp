@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/voxel.h"
+#include "mercury/voxel.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <set>
 #include <tuple>
 
-#include "robots/random.h"
-#include "sim/error.h"
+#include "mercury/error.h"
+#include "mercury/random.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {

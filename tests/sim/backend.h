@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-#include "sim/simulation.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/robot.h"
-#include "sim/simulation.h"
+#include "mercury/robot.h"
+#include "mercury/simulation.h"
 
 namespace mercury::bodies {
 

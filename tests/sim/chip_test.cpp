@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/error.h"
-#include "sim/simulation.h"
+#include "mercury/error.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 namespace {

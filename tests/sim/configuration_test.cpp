@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Defaults, names and rules of a configuration.
-#include "sim/configuration.h"
+#include "mercury/configuration.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "backend.h"
 #include "bodies.h"
+#include "mercury/error.h"
 #include "reference.h"
-#include "sim/error.h"
 
 namespace mercury {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "backend.h"
 #include "bodies.h"
-#include "sim/muscle.h"
+#include "sim/physics/muscle.h"
 
 namespace mercury {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/material.h"
+#include "mercury/material.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

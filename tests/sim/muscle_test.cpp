@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The muscle law L(t) = L0 (1 + dL0 sin(omega t + phi)), and its phase on long runs.
-#include "sim/muscle.h"
+#include "sim/physics/muscle.h"
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "sim/configuration.h"
-#include "sim/robot.h"
-#include "sim/simulation.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+#include "mercury/simulation.h"
 
 namespace mercury::reference {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of a robot, each with the line that a user reads when it is broken.
-#include "sim/robot.h"
+#include "mercury/robot.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "bodies.h"
-#include "sim/error.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Telemetry against an independent calculation, and the other ways to read a batch.
-#include "sim/telemetry.h"
+#include "mercury/telemetry.h"
 
 #include <gtest/gtest.h>
 

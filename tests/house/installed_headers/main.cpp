@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/voxel.h"
-#include "sim/simulation.h"
+#include <mercury/simulation.h>
+#include <mercury/voxel.h>
 
 // Links both libraries: 0 if they do what their headers say.
 int main() {

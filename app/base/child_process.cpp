@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/base/child_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+extern char** environ;
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t kept_text = 65536;  // bytes of output that text_of returns, the last ones
+
+[[noreturn]] void throw_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+
+int memory_file(const char* name) {
+  const int descriptor = memfd_create(name, MFD_CLOEXEC);
+  if (descriptor < 0) throw_errno("memfd_create");
+  return descriptor;
+}
+
+std::string text_of(int descriptor) {
+  const off_t size = lseek(descriptor, 0, SEEK_END);
+  if (size <= 0) return {};
+  const off_t start = std::max<off_t>(0, size - static_cast<off_t>(kept_text));
+  std::string text(static_cast<std::size_t>(size - start), '\0');
+  const ssize_t got = pread(descriptor, text.data(), text.size(), start);
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  return text;
+}
+
+// While it lives, a write of this thread to a pipe that nobody reads is an error (EPIPE), not a signal.
+class NoBrokenPipeSignal {
+ public:
+  NoBrokenPipeSignal() {
+    sigemptyset(&broken_pipe_);
+    sigaddset(&broken_pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &broken_pipe_, &before_);
+  }
+  ~NoBrokenPipeSignal() {
+    // One that has come in meanwhile would be delivered as soon as it is let through again.
+    const timespec at_once{};
+    if (!sigismember(&before_, SIGPIPE)) sigtimedwait(&broken_pipe_, nullptr, &at_once);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoBrokenPipeSignal(const NoBrokenPipeSignal&) = delete;
+  NoBrokenPipeSignal& operator=(const NoBrokenPipeSignal&) = delete;
+
+ private:
+  sigset_t broken_pipe_, before_;
+};
+
+// What posix_spawn is told besides the program: where its standard streams go, its group and its signals.
+class SpawnSettings {
+ public:
+  SpawnSettings() {
+    posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
+    sigset_t broken_pipe, none;
+    sigemptyset(&none);
+    sigemptyset(&broken_pipe);
+    sigaddset(&broken_pipe, SIGPIPE);
+    posix_spawnattr_setsigdefault(&attributes, &broken_pipe);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+  }
+  ~SpawnSettings() {
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+};
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments) {
+  int pipe_ends[2];
+  if (pipe2(pipe_ends, O_CLOEXEC) != 0) throw_errno("pipe");
+  input_ = pipe_ends[1];
+  // A larger pipe means fewer switches between us and the child; a refusal costs only speed.
+  fcntl(input_, F_SETPIPE_SZ, 1 << 20);
+  output_ = memory_file("child output");
+  messages_ = memory_file("child messages");
+
+  SpawnSettings settings;
+  posix_spawn_file_actions_adddup2(&settings.actions, pipe_ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&settings.actions, output_, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&settings.actions, messages_, STDERR_FILENO);
+
+  std::vector<char*> argv;
+  argv.push_back(const_cast<char*>(program.c_str()));
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const int error = posix_spawnp(&pid_, program.c_str(), &settings.actions, &settings.attributes, argv.data(), environ);
+  ::close(pipe_ends[0]);
+  if (error == 0) return;
+  pid_ = -1;
+  for (const int descriptor : {input_, output_, messages_}) ::close(descriptor);
+  throw CannotStart(std::strerror(error));
+}
+
+ChildProcess::~ChildProcess() {
+  kill();
+  ::close(output_);
+  ::close(messages_);
+}
+
+void ChildProcess::close_input() {
+  if (input_ >= 0) ::close(input_);
+  input_ = -1;
+}
+
+bool ChildProcess::write(std::span<const std::uint8_t> bytes) {
+  const NoBrokenPipeSignal quiet;
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(input_, bytes.data(), bytes.size());
+    if (count >= 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    } else if (errno == EPIPE) {
+      return false;
+    } else if (errno != EINTR) {
+      throw_errno("write to a child process");
+    }
+  }
+  return true;
+}
+
+int ChildProcess::finish() {
+  close_input();
+  while (pid_ > 0) {
+    if (waitpid(pid_, &status_, 0) == pid_) {
+      pid_ = -1;
+    } else if (errno != EINTR) {
+      pid_ = -1;
+      throw_errno("wait for a child process");
+    }
+  }
+  return status_;
+}
+
+void ChildProcess::kill() {
+  if (pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    while (waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = -1;
+  }
+  close_input();
+}
+
+void ChildProcess::signal(int number) {
+  if (pid_ > 0) ::kill(pid_, number);
+}
+
+std::string ChildProcess::output() const { return text_of(output_); }
+std::string ChildProcess::messages() const { return text_of(messages_); }
+
+std::string describe_exit(int status) {
+  if (WIFSIGNALED(status)) {
+    const int number = WTERMSIG(status);
+    return "was killed by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0) return "ended with status " + std::to_string(WEXITSTATUS(status));
+  return {};
+}
+
+std::string output_of(const std::string& program, const std::vector<std::string>& arguments) {
+  try {
+    ChildProcess child(program, arguments);
+    return child.finish() == 0 ? child.output() : std::string{};
+  } catch (const CannotStart&) {
+    return {};
+  }
+}
+
+}  // namespace mercury

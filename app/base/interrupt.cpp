@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/base/interrupt.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+
+namespace mercury {
+namespace {
+
+constexpr int slots = 64;
+
+std::atomic<bool> stop_asked = false;
+// Read by the signal handler, which may touch nothing but lock-free atomics and unlink.
+std::array<std::atomic<const char*>, slots> unfinished{};
+std::atomic<unsigned> files_named = 0;
+
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int number) {
+  if (!stop_asked.exchange(true)) return;
+  for (auto& slot : unfinished)
+    if (const char* path = slot.load()) unlink(path);
+  _exit(128 + number);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
+  }
+}
+
+bool interrupted() { return stop_asked.load(std::memory_order_relaxed); }
+
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(target), path_(target) {
+  path_ += fmt::format(".{}-{}.part", getpid(), files_named.fetch_add(1));
+  for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
+    const char* empty = nullptr;
+    if (unfinished[static_cast<std::size_t>(slot)].compare_exchange_strong(empty, path_.c_str())) slot_ = slot;
+  }
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (!path_.empty()) unlink(path_.c_str());
+  if (slot_ >= 0) unfinished[static_cast<std::size_t>(slot_)] = nullptr;
+}
+
+void UnfinishedFile::keep() {
+  std::filesystem::rename(path_, target_);
+  if (slot_ >= 0) unfinished[static_cast<std::size_t>(slot_)] = nullptr;
+  slot_ = -1;
+  path_.clear();
+}
+
+}  // namespace mercury

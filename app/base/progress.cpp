@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/base/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace mercury {
+namespace {
+
+constexpr std::chrono::milliseconds bar_period{100};
+constexpr std::chrono::seconds line_period{5};
+
+bool draws_on(int descriptor) {
+  const char* terminal = std::getenv("TERM");
+  return isatty(descriptor) && terminal && std::string(terminal) != "dumb";
+}
+
+int columns_of(int descriptor) {
+  winsize size{};
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string rate_and_rest(const std::string& unit, std::int64_t done, std::int64_t total, double elapsed) {
+  if (done <= 0 || elapsed <= 0) return {};
+  const double rate = static_cast<double>(done) / elapsed;
+  const double rest = static_cast<double>(total - done) / rate;
+  return fmt::format("  {} {}/s  {} left", with_magnitude(rate), unit, clock_text(rest));
+}
+
+double share_of(std::int64_t done, std::int64_t total) {
+  return total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0;
+}
+
+}  // namespace
+
+std::string with_magnitude(double value) {
+  if (!std::isfinite(value)) return "-";
+  const char* suffixes[] = {"", " k", " M", " G", " T", " P"};
+  std::size_t step = 0;
+  while (std::abs(value) >= 999.5 && step + 1 < std::size(suffixes)) {
+    value /= 1000;
+    ++step;
+  }
+  const double size = std::abs(value);
+  const int decimals = size >= 99.95 || (step == 0 && value == std::floor(value)) ? 0 : size >= 9.995 ? 1 : 2;
+  return fmt::format("{:.{}f}{}", value, decimals, suffixes[step]);
+}
+
+std::string clock_text(double seconds) {
+  if (!std::isfinite(seconds) || seconds > 1e7) return "?";
+  const auto whole = static_cast<std::int64_t>(std::lround(std::max(0.0, seconds)));
+  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+std::string progress_bar(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+                         double elapsed, int columns) {
+  constexpr int width = 24;
+  const int filled = static_cast<int>(share_of(done, total) * width);
+  std::string text =
+      fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
+                  100 * share_of(done, total), done, total, unit, rate_and_rest(unit, done, total, elapsed));
+  // A line as wide as the terminal would wrap, and then could not be drawn over.
+  if (const auto room = static_cast<std::size_t>(std::max(1, columns - 1)); text.size() > room) text.resize(room);
+  return text;
+}
+
+std::string progress_line(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+                          double elapsed) {
+  return fmt::format("{}: {}/{} {} ({:.0f} %){}", what, done, total, unit, 100 * share_of(done, total),
+                     rate_and_rest(unit, done, total, elapsed));
+}
+
+Progress::Progress(std::string what, std::string unit, std::int64_t total, bool quiet)
+    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(draws_on(STDERR_FILENO)),
+      start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(std::int64_t done) {
+  if (quiet_) return;
+  const Clock::time_point now = Clock::now();
+  // Lines stay, so they come at growing intervals.
+  const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);
+  if (now - last_ < period) return;
+  last_ = now;
+  shown_ = true;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (terminal_)
+    fmt::print(stderr, "\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, columns_of(STDERR_FILENO)));
+  else
+    fmt::print(stderr, "{}\n", progress_line(what_, unit_, done, total_, elapsed));
+}
+
+}  // namespace mercury

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury bench: springs evaluated per second, the paper's figure of merit.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/commands.h"
+#include "app/options/option_values.h"
+#include "app/options/simulation_options.h"
+#include "app/recording/configuration_json.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+struct BenchOptions {
+  SimulationOptions simulation;
+  std::vector<int> size{10, 10, 10};
+  std::size_t count = 0;  // 0 = chosen
+  std::uint64_t seed = 1;
+  double least_seconds = 1;
+  bool json = false, sweep = false;
+  std::string csv, config;
+};
+
+struct Measurement {
+  std::size_t robots = 0, masses = 0, springs = 0;  // of the whole batch
+  std::int64_t steps = 0;
+  double seconds = 0;              // on the device
+  double making = 0, loading = 0;  // of the robots, and of the batch up to its first step [s]
+  double limit = 0;
+  std::uint64_t hash = 0;  // of the first robot, after `steps_hashed` steps
+  std::string device;
+  Configuration configuration;
+
+  std::int64_t longest_call = 0;  // steps
+
+  double evaluated() const { return static_cast<double>(springs) * static_cast<double>(steps); }
+  double springs_a_second() const { return evaluated() / seconds; }
+};
+
+constexpr std::int64_t steps_hashed = 100;
+constexpr std::int64_t sweep_steps = 1000;  // of one call of a sweep
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Full boxes in which every voxel has a random material.
+std::vector<Robot> make_robots(const BenchOptions& options, std::size_t count) {
+  RandomVoxelOptions voxel;
+  voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
+  voxel.air = 0;
+  voxel.patch = 1;
+  voxel.mirror = Mirror::none;
+  voxel.frequencies = 5;
+  return random_voxel_robots(voxel, options.seed, count);
+}
+
+// Enough robots to keep the device busy for several rounds of as many as it steps at once.
+std::size_t choose_count(const BenchOptions& options, const Configuration& configuration) {
+  if (options.count > 0) return options.count;
+  const std::vector<Robot> one = make_robots(options, 1);
+  constexpr double springs_wanted = 7.5e6;
+  const Simulation probe(configuration, std::vector<Robot>(512, one.front()));
+  const std::size_t at_once = std::max<std::size_t>(1, probe.robots_at_once());
+  if (configuration.device.kind == DeviceKind::cpu || probe.spring_limit() == 0) return 4 * at_once;
+  const double rounds = springs_wanted / static_cast<double>(one.front().springs.size() * at_once);
+  return at_once * static_cast<std::size_t>(std::max(2.0, std::round(rounds)));
+}
+
+// Steps until at least `least_seconds` of device time are measured, after a first call that warms up.
+Measurement measure(const BenchOptions& options, const Configuration& configuration, std::size_t count) {
+  Measurement result;
+  double start = now();
+  const std::vector<Robot> robots = make_robots(options, count);
+  result.making = now() - start;
+  start = now();
+  Simulation simulation(configuration, robots);
+  simulation.step(1);
+  result.loading = now() - start;
+  simulation.step(steps_hashed - 1);
+  result.hash = simulation.hash(0);
+  result.robots = count;
+  result.masses = simulation.mass_count();
+  for (const Robot& robot : robots) result.springs += robot.springs.size();
+  result.limit = simulation.spring_limit();
+  result.device = simulation.device_name();
+  result.configuration = configuration;
+
+  std::int64_t steps = options.sweep ? sweep_steps : 10;
+  double before = simulation.busy_seconds();
+  while (result.seconds < options.least_seconds) {
+    simulation.step(steps);
+    const double after = simulation.busy_seconds();
+    result.seconds += after - before;
+    result.steps += steps;
+    result.longest_call = std::max(result.longest_call, steps);
+    before = after;
+    if (options.sweep) continue;
+    const double a_step = result.seconds / static_cast<double>(result.steps);
+    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / a_step), std::int64_t{1},
+                       std::int64_t{1000000});
+  }
+  return result;
+}
+
+std::string share_of_limit(const Measurement& m) {
+  return m.limit > 0 ? fmt::format("{:.0f} %", 100 * m.springs_a_second() / m.limit) : "unknown";
+}
+
+std::string table_of(const Measurement& m) {
+  std::string text;
+  const auto row = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
+  row("device", m.device);
+  row("solver, environment",
+      fmt::format("{}, {}", name_of(m.configuration.solver), name_of(m.configuration.environment)));
+  row("robots", fmt::format("{} of {} masses, {} springs", m.robots, m.masses / m.robots, m.springs / m.robots));
+  row("steps", fmt::format("{} in {:.3f} s on the device", m.steps, m.seconds));
+  row("springs per second", fmt::format("{:.3e}", m.springs_a_second()));
+  row("share of the limit", share_of_limit(m));
+  row("robots made, loaded", fmt::format("{:.2f} s, {:.2f} s", m.making, m.loading));
+  row("state hash", fmt::format("{:016x} (robot 0 after {} steps)", m.hash, steps_hashed));
+  return text;
+}
+
+nlohmann::ordered_json json_of(const Measurement& m) {
+  nlohmann::ordered_json json{{"device", m.device},
+                              {"configuration", json_of(m.configuration)},
+                              {"robots", m.robots},
+                              {"masses_per_robot", m.masses / m.robots},
+                              {"springs_per_robot", m.springs / m.robots},
+                              {"steps", m.steps},
+                              {"device_seconds", m.seconds},
+                              {"springs_per_second", m.springs_a_second()},
+                              {"making_seconds", m.making},
+                              {"loading_seconds", m.loading},
+                              {"hash", fmt::format("{:016x}", m.hash)},
+                              {"hash_steps", steps_hashed}};
+  json["limit_springs_per_second"] = m.limit > 0 ? nlohmann::ordered_json(m.limit) : nlohmann::ordered_json();
+  return json;
+}
+
+// springs_evaluated is what one call evaluates: 1000 steps in a sweep.
+constexpr const char* csv_head =
+    "device,solver,environment,robots,masses_per_robot,springs_per_robot,steps,device_seconds,springs_evaluated,"
+    "springs_per_second\n";
+
+std::string csv_row(const Measurement& m) {
+  return fmt::format("\"{}\",{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", m.device, name_of(m.configuration.solver),
+                     name_of(m.configuration.environment), m.robots, m.masses / m.robots, m.springs / m.robots, m.steps,
+                     m.seconds, static_cast<double>(m.springs) * static_cast<double>(m.longest_call),
+                     m.springs_a_second());
+}
+
+// From one robot upwards, doubling, until the device's memory is full (paper, figure 4).
+std::vector<Measurement> sweep(const BenchOptions& options, const Configuration& configuration) {
+  std::vector<Measurement> all;
+  const std::size_t most = options.count > 0 ? options.count : std::size_t{1} << 20;
+  for (std::size_t count = 1; count <= most; count *= 2) {
+    try {
+      all.push_back(measure(options, configuration, count));
+    } catch (const DeviceError& error) {
+      if (all.empty()) throw;
+      fmt::print(stderr, "mercury: the sweep ends before {} robots: {}\n", count, error.what());
+      break;
+    }
+    fmt::print(stderr, "{:>8} robots  {:.3e} springs/s\n", count, all.back().springs_a_second());
+  }
+  return all;
+}
+
+int bench(const BenchOptions& options) {
+  const Configuration configuration = options.simulation.configuration();
+  require_positive("--least-seconds", options.least_seconds, "s");
+  const std::vector<Measurement> all =
+      options.sweep ? sweep(options, configuration)
+                    : std::vector{measure(options, configuration, choose_count(options, configuration))};
+  std::string csv = csv_head;
+  for (const Measurement& m : all) csv += csv_row(m);
+  if (!options.csv.empty()) write_whole_file(options.csv, csv);
+  if (options.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const Measurement& m : all) json.push_back(json_of(m));
+    fmt::print("{}\n", (options.sweep ? json : json.front()).dump(2));
+  } else if (options.sweep) {
+    fmt::print("{}", csv);
+  } else {
+    fmt::print("{}", table_of(all.front()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = program.add_subcommand("bench", "Measure springs evaluated per second");
+  add_value(*command, "--size", options->size, "Voxels of a robot, each of a random material", "XxYxZ",
+            [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); });
+  add_number(*command, "--count", options->count, "Robots; without it, a few times what the device steps at once", "N");
+  add_number(*command, "--seed", options->seed, "Of the robots", "S");
+  add_number(*command, "--least-seconds", options->least_seconds, "Measure at least this long, after a warm-up",
+             "SECONDS");
+  command->add_flag("--json", options->json, "Print JSON rather than a table");
+  command->add_flag("--sweep", options->sweep,
+                    "From one robot, doubling, until the memory is full or --count is reached");
+  add_text(*command, "--csv", options->csv, "Also write the measurements into this file (bench/plot.py draws it)",
+           "FILE");
+  options->simulation.add_to(*command);
+  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+           "FILE.toml");
+  command->footer(
+      "Springs per second = robots x springs x steps / time, with everything a step does: muscles, springs,\n"
+      "environment, contact, integration; the time is the device's own, uploading excluded.\n\n"
+      "Examples:\n"
+      "  mercury bench --environment land --solver xpbd\n"
+      "  mercury bench --size 5x5x5 --json\n"
+      "  mercury bench --sweep --csv sweep.csv && bench/plot.py sweep.csv -o sweep.png");
+  command->callback([options, choose] { choose([options] { return bench(*options); }); });
+}
+
+}  // namespace mercury

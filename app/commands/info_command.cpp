@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury info: what a robot file or trajectory holds, or what this machine can do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <variant>
+
+#include "app/base/version.h"
+#include "app/commands/commands.h"
+#include "app/commands/machine.h"
+#include "app/options/option_values.h"
+#include "app/recording/configuration_json.h"
+#include "app/recording/trajectory_layout.h"
+#include "app/recording/trajectory_reader.h"
+#include "mercury/inspect.h"
+#include "mercury/origin.h"
+#include "mercury/robot_file.h"
+#include "mercury/simulation.h"
+#include "sim/chip.h"
+
+namespace mercury {
+namespace {
+
+struct InfoOptions {
+  std::vector<std::string> paths;
+  std::string ffmpeg, config;
+};
+
+// "9: muscle 3 (120), bone (14), ..., and 4 more", the most used first.
+std::string materials_text(const Inspection& inspection) {
+  constexpr std::size_t shown = 5;
+  std::vector<MaterialUse> uses = inspection.materials;
+  std::stable_sort(uses.begin(), uses.end(), [](const auto& a, const auto& b) { return a.springs > b.springs; });
+  std::string text = fmt::format("{}", uses.size());
+  for (std::size_t i = 0; i < std::min(shown, uses.size()); ++i)
+    text += fmt::format("{}{} ({})", i == 0 ? ": " : ", ", uses[i].name, uses[i].springs);
+  if (uses.size() > shown) text += fmt::format(", and {} more", uses.size() - shown);
+  return text;
+}
+
+std::string surface_text(const Inspection& inspection) {
+  if (inspection.faces == 0) return "none";
+  std::string text = inspection.closed ? "closed" : fmt::format("open at {} edges", inspection.open_edges);
+  text += fmt::format(", Euler characteristic {}, {:.3g} m2", inspection.euler_characteristic, inspection.area);
+  if (inspection.closed) text += fmt::format(", {:.3g} m3", inspection.volume);
+  if (inspection.crowded_edges > 0) text += fmt::format(", {} edges of more than two faces", inspection.crowded_edges);
+  return text;
+}
+
+void line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, text); }
+
+std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", static_cast<double>(bytes) / 1024); }
+
+// Where its masses can be stepped without leaving the chip (docs/performance.md), here and in general.
+void describe_fit(const Robot& robot) {
+  constexpr std::size_t everywhere = 48 * 1024;  // what each CUDA device gives a block
+  Configuration configuration;
+  if (environment_of(robot) == Land::name) configuration.environment = Land{};
+  const std::size_t bytes = chip_bytes(robot, configuration);
+  line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
+                                environment_of(robot) == Land::name ? "on land" : "in water",
+                                bytes <= everywhere ? "fits every CUDA device, which has 48 kB or more"
+                                                    : "more than the 48 kB of the smallest CUDA devices"));
+  for (int device = 0; device < cuda_device_count(); ++device) {
+    const ChipFit fit = chip_fit(robot, configuration, device);
+    const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
+                        : !fit.contacts_on_chip && std::holds_alternative<Land>(configuration.environment)
+                            ? "fits but for its contacts"
+                            : "fits";
+    line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
+                         kilobytes(fit.most_bytes), where, fit.robots_at_once));
+  }
+  line("", "the CPU takes any size");
+}
+
+void describe(const Robot& robot) {
+  const Inspection found = inspect(robot);
+  const std::string kind = kind_of(robot), environment = environment_of(robot);
+  fmt::print("{}\n", robot.name);
+  if (!kind.empty() || !environment.empty())
+    line("made",
+         fmt::format("{}{}{}", kind.empty() ? "" : (kind == "nn" ? "as an " : "as a ") + kind + " robot",
+                     kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
+  line("masses", fmt::format("{}{}", found.masses,
+                             found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
+  line("springs", fmt::format("{}, {:.1f} a mass, {:.3g} to {:.3g} m, {} muscles", found.springs, found.springs_a_mass,
+                              found.shortest_spring, found.longest_spring, found.muscles));
+  line("faces", fmt::to_string(found.faces));
+  line("surface", surface_text(found));
+  line("materials", materials_text(found));
+  line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
+  describe_fit(robot);
+  if (found.components > 1) line("parts", fmt::format("{} that no spring joins", found.components));
+}
+
+int tell_machine(const std::string& ffmpeg) {
+  fmt::print("{}\n", program_version);
+  for (const auto& [what, found, advice] : inspect_machine(ffmpeg)) {
+    fmt::print("  {:<17}{}\n", what, found);
+    if (!advice.empty()) fmt::print("  {:<17}-> {}\n", "", advice);
+  }
+  return 0;
+}
+
+// "ocean, density 1000, ..." as the options would say it.
+std::string environment_text(const Configuration& configuration) {
+  std::string text(name_of(configuration.environment));
+  const nlohmann::ordered_json json = json_of(configuration);
+  for (auto item = std::next(json.find("environment")); item != json.end(); ++item)
+    text += fmt::format(", {} {}", item.key(), item.value().dump());
+  return text;
+}
+
+void describe(const TrajectoryReader& trajectory) {
+  constexpr std::size_t shown = 20;
+  const Configuration& configuration = trajectory.configuration();
+  fmt::print("{}\n", trajectory.path().string());
+  line("recorded by", trajectory.program() + " on " + trajectory.device_name());
+  line("frames", trajectory.frames() == 0
+                     ? "none"
+                     : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(), trajectory.every(),
+                                   trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
+  line("solver", fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt,
+                             configuration.damping));
+  line("environment", environment_text(configuration));
+  if (trajectory.seed()) line("seed", fmt::to_string(*trajectory.seed()));
+  line("robots", fmt::format("{}, {} masses", trajectory.robots().size(), trajectory.mass_count()));
+  for (std::size_t i = 0; i < std::min(shown, trajectory.robots().size()); ++i) {
+    const auto& [robot, group, exploded_at, bad_spring] = trajectory.robots()[i];
+    std::string text =
+        fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
+    if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
+    if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
+    fmt::print("    {}: {}\n", group, text);
+  }
+  if (trajectory.robots().size() > shown) fmt::print("    and {} more\n", trajectory.robots().size() - shown);
+}
+
+int tell(const InfoOptions& options) {
+  if (options.paths.empty()) return tell_machine(options.ffmpeg);
+  for (const std::filesystem::path path : options.paths) {
+    if (is_trajectory_name(path)) {
+      describe(TrajectoryReader(path));
+    } else {
+      for (const Robot& robot : load_robots(std::span(&path, 1))) describe(robot);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command =
+      program.add_subcommand("info", "What a robot or trajectory file holds; without one, what this machine can do");
+  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, trajectories (.h5)")
+      ->type_name("PATH");
+  add_text(*command, "--ffmpeg", options->ffmpeg, "The encoder to look at (default: MERCURY_FFMPEG, else ffmpeg)",
+           "PROGRAM");
+  command->callback([options, choose] { choose([options] { return tell(*options); }); });
+}
+
+}  // namespace mercury

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/program.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <optional>
+
+#include "app/base/interrupt.h"
+#include "app/base/suggestion.h"
+#include "app/base/version.h"
+#include "app/commands/commands.h"
+#include "app/options/config_file.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr const char* examples =
+    "Examples:\n"
+    "  mercury view                                              a window with the sample robots\n"
+    "  mercury render --random voxel:12 --seed 1 -o group.mp4    film twelve random robots\n"
+    "  mercury run --random voxel:64 --seconds 2 --json          simulate and print the results\n"
+    "  mercury new voxel --count 10 --seed 7 -o my-robots        make robot files\n"
+    "  mercury run my-robots --environment land --csv land.csv   try them on land\n"
+    "  mercury info                                              what this machine can do\n"
+    "Every command explains itself: mercury render --help";
+
+// Everything on one line, as every message of the program is.
+std::string one_line(std::string text) {
+  for (char& letter : text)
+    if (letter == '\n' || letter == '\r') letter = ' ';
+  return text;
+}
+
+// A message that quotes a long text keeps its two ends: where it was, and what would be accepted.
+std::string in_brief(const std::string& text) {
+  constexpr std::size_t longest = 800, end = 300;
+  return text.size() <= longest ? text : text.substr(0, end) + " ... " + text.substr(text.size() - end);
+}
+
+void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", in_brief(one_line(message))); }
+
+class Program {
+ public:
+  Program() {
+    app_.set_version_flag("--version", program_version);
+    app_.footer(examples);
+    app_.require_subcommand(1);
+    app_.get_formatter()->column_width(34);
+    const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
+    add_view_command(app_, choose);
+    add_render_command(app_, choose);
+    add_run_command(app_, choose);
+    add_new_command(app_, choose);
+    add_bench_command(app_, choose);
+    add_info_command(app_, choose);
+  }
+
+  int run(std::vector<std::string> arguments) {
+    try {
+      parse(std::move(arguments));
+      if (!body_) return help_ ? status_done : status_failed;
+      const int status = body_();
+      if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw std::runtime_error("standard output cannot be written");
+      return status;
+    } catch (const InputError& error) {
+      say(config_ ? config_->located(error.what()) : error.what());
+      return status_bad_input;
+    } catch (const std::bad_alloc&) {
+      say("not enough memory");
+      return status_failed;
+    } catch (const std::exception& error) {
+      say(error.what());
+      return status_failed;
+    }
+  }
+
+ private:
+  // The command that the first words name, and how many words that takes.
+  std::pair<CLI::App*, std::size_t> command_in(const std::vector<std::string>& arguments) {
+    CLI::App* command = &app_;
+    std::size_t words = 0;
+    while (words < arguments.size() && !arguments[words].starts_with("-")) {
+      const std::string& word = arguments[words];
+      const auto found = command->get_subcommands([&](const CLI::App* child) { return child->check_name(word); });
+      if (found.empty()) break;
+      command = found.front();
+      ++words;
+    }
+    return {command, words};
+  }
+
+  // Errors that are clearer told here than by the parser: no command, or one that does not exist.
+  void require_command(CLI::App& command, std::size_t words, const std::vector<std::string>& arguments) const {
+    const auto children = command.get_subcommands([](const CLI::App*) { return true; });
+    if (children.empty()) return;
+    for (std::size_t i = words; i < arguments.size(); ++i)
+      if (arguments[i] == "-h" || arguments[i] == "--help" || (&command == &app_ && arguments[i] == "--version"))
+        return;
+    std::vector<std::string> names;
+    for (const CLI::App* child : children) names.push_back(child->get_name());
+    const std::string called = &command == &app_ ? "mercury" : "mercury " + command.get_name();
+    if (words == arguments.size()) throw InputError(fmt::format("no command given; see {} --help", called));
+    throw InputError(fmt::format("\"{}\" is not a command{}; see {} --help", arguments[words],
+                                 suggestion(arguments[words], names), called));
+  }
+
+  void parse(std::vector<std::string> arguments) {
+    const auto [command, words] = command_in(arguments);
+    require_command(*command, words, arguments);
+    if (const std::string path = config_path_in(arguments); !path.empty()) {
+      config_.emplace(path, app_, *command, arguments);
+      arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
+                       config_->arguments().end());
+    }
+    require_values(*command, arguments);
+    try {
+      app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::Success& request) {  // --help or --version
+      help_ = true;
+      body_ = nullptr;
+      app_.exit(request);
+    } catch (const CLI::ExtrasError&) {
+      throw unknown_argument(*command);
+    } catch (const CLI::ArgumentMismatch& error) {
+      const std::string what = error.what();
+      throw InputError(what.substr(0, what.find(':')), "needs a value; see " + full_name(*command) + " --help");
+    } catch (const CLI::ParseError& error) {
+      throw InputError(fmt::format("{}; see {} --help", one_line(error.what()), full_name(*command)));
+    }
+  }
+
+  // CLI11 would take the next argument for the value of "--dt=".
+  static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
+    for (const std::string& argument : arguments)
+      if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+        throw InputError(argument.substr(0, argument.size() - 1),
+                         "needs a value; see " + full_name(command) + " --help");
+  }
+
+  static std::string full_name(const CLI::App& command) {
+    return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+  }
+
+  InputError unknown_argument(const CLI::App& command) const {
+    const std::vector<std::string> rest = app_.remaining(true);
+    const std::string word = rest.empty() ? "" : rest.front().substr(0, rest.front().find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return InputError(word, fmt::format("not an option of {}{}; see {} --help", full_name(command),
+                                        suggestion(word, names), full_name(command)));
+  }
+
+  CLI::App app_{"Mercury simulates soft robots, shows and films them.", "mercury"};
+  CommandBody body_;
+  std::optional<ConfigFile> config_;
+  bool help_ = false;
+};
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& arguments) {
+  catch_interrupts();
+  try {
+    return Program().run(arguments);
+  } catch (const std::exception& error) {
+    say(error.what());
+    return status_failed;
+  }
+}
+
+}  // namespace mercury

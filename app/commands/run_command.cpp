@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury run: simulate without pictures.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "app/base/progress.h"
+#include "app/base/stepping.h"
+#include "app/commands/commands.h"
+#include "app/options/option_values.h"
+#include "app/options/robot_options.h"
+#include "app/options/simulation_options.h"
+#include "app/recording/recorder.h"
+#include "app/recording/report.h"
+#include "app/recording/repro.h"
+#include "mercury/simulation.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+constexpr double sample_period = 0.1;  // between looks at the telemetry [s]
+constexpr double recorded_rate = 30;   // frames a second of simulated time, where --every says nothing else
+
+struct RunOptions {
+  RobotOptions robots;
+  SimulationOptions simulation;
+  std::string csv, config, record;
+  std::optional<std::int64_t> every;
+  bool compress = false;
+  bool json = false, strict = false, quiet = false;
+};
+
+double distance(Vec3 a, Vec3 b) { return length(a - b); }
+
+// Looks at the robots now and then: the way each went, and its largest strain.
+class Observer {
+ public:
+  explicit Observer(const Simulation& simulation)
+      : simulation_(simulation), start_(simulation.telemetry()), last_(start_), way_(start_.size(), 0.0),
+        strain_(start_.size(), 0.0) {
+    observe(start_);
+  }
+
+  void observe() { observe(simulation_.telemetry()); }
+
+  std::vector<RobotResult> results() const {
+    std::vector<RobotResult> results;
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      const Robot& robot = simulation_.robot(i);
+      const Telemetry& now = last_[i];
+      results.push_back({.name = robot.name,
+                         .masses = robot.masses.size(),
+                         .springs = robot.springs.size(),
+                         .displacement = distance(now.center_of_mass, start_[i].center_of_mass),
+                         .mean_speed = simulation_.time() > 0 ? way_[i] / simulation_.time() : 0,
+                         .largest_strain = strain_[i],
+                         .exploded = now.exploded,
+                         .exploded_at = now.exploded_at,
+                         .first_bad_spring = now.first_bad_spring,
+                         .hash = simulation_.hash(i)});
+    }
+    return results;
+  }
+
+ private:
+  void observe(const std::vector<Telemetry>& now) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      way_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
+      strain_[i] = std::max(strain_[i], static_cast<double>(now[i].largest_strain));
+    }
+    last_ = now;
+  }
+
+  const Simulation& simulation_;
+  std::vector<Telemetry> start_, last_;
+  std::vector<double> way_, strain_;
+};
+
+// Nothing when no recording is asked for. Throws InputError.
+std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
+  if (options.every && *options.every < 1)
+    throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
+  if (options.record.empty()) {
+    if (options.every || options.compress)
+      throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
+    return nullptr;
+  }
+  const double dt = simulation.configuration().dt;
+  const auto default_every = static_cast<std::int64_t>(std::clamp(1 / (recorded_rate * dt), 1.0, 1e15) + 0.5);
+  return std::make_unique<Recorder>(simulation, options.record,
+                                    RecordingOptions{.every = options.every.value_or(default_every),
+                                                     .last_step = steps,
+                                                     .seed = options.robots.seed(),
+                                                     .deflate = options.compress ? 1 : 0});
+}
+
+RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder,
+                   ReproChanges* changes = nullptr) {
+  Stepper stepper(simulation);
+  Observer observer(simulation);
+  const std::int64_t first = simulation.steps();
+  Progress progress("simulating", "steps", steps - first, quiet);
+  const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
+  bool on = true;
+  while (on && simulation.steps() < steps) {
+    if (changes) changes->make(simulation);
+    const std::int64_t sample = std::min(steps, (simulation.steps() / period + 1) * period);
+    const std::int64_t stop = changes ? std::min(sample, changes->next_step()) : sample;
+    on = stepper.advance_to(recorder ? std::min(stop, recorder->next_step()) : stop);
+    if (recorder && on) recorder->observe();
+    if (simulation.steps() == sample || !on) observer.observe();
+    progress.update(simulation.steps() - first);
+  }
+  return {.configuration = simulation.configuration(),
+          .device = simulation.device_name(),
+          .steps = simulation.steps(),
+          .seconds = simulation.time(),
+          .wall_seconds = stepper.wall_seconds(),
+          .interrupted = !on,
+          .notes = simulation.notes(),
+          .robots = observer.results()};
+}
+
+// Tells before a long simulation what would fail after it.
+void require_writable(const std::string& option, const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(option, file.string() + " cannot be written: " + std::strerror(errno));
+}
+
+int tell(const RunOptions& options, const RunReport& report) {
+  if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
+  fmt::print("{}", options.json ? json_of(report) : table_of(report));
+
+  const auto exploded = std::count_if(report.robots.begin(), report.robots.end(), [](auto& r) { return r.exploded; });
+  if (exploded > 0)
+    fmt::print(stderr, "mercury: {} of {} robots exploded; a smaller --dt or --solver xpbd helps\n", exploded,
+               report.robots.size());
+  if (report.interrupted) {
+    fmt::print(stderr, "mercury: stopped at {:.6g} s\n", report.seconds);
+    return 1;
+  }
+  return options.strict && exploded > 0 ? 1 : 0;
+}
+
+// Until the robot has exploded, or so long from the repro's start as --seconds says.
+int run_repro(const RunOptions& options, const std::filesystem::path& file) {
+  const Device device = options.simulation.configuration().device;
+  if (options.simulation.configuration() != Configuration{.device = device})
+    throw InputError(
+        file.string(),
+        "brings its own configuration; of the options for it give --device, --threads and --seconds alone");
+  if (!options.record.empty() || options.every) throw InputError("--record", "is not for a repro; give robots");
+  const Repro repro = load_repro(file);
+  Simulation simulation = start_of(repro, device);
+  if (simulation.device_name() != repro.device_name)
+    fmt::print(stderr, "mercury: {} was seen on {}, this is {}: it may go another way\n", file.string(),
+               repro.device_name, simulation.device_name());
+  ReproChanges changes(repro);
+  const double seconds = options.simulation.seconds(0);
+  const std::int64_t last =
+      seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
+  return tell(options, simulate(simulation, last, options.quiet, nullptr, &changes));
+}
+
+int run(const RunOptions& options) {
+  if (!options.csv.empty()) require_writable("--csv", options.csv);
+  if (const auto file = options.robots.repro()) return run_repro(options, *file);
+  options.simulation.configuration();  // errors in options come before those in files
+  const std::int64_t steps = options.simulation.steps();
+  const std::vector<Robot> robots = options.robots.load();
+  std::vector<std::string> notes;
+  Simulation simulation(options.simulation.configuration(robots, notes), robots);
+  for (const auto& several : {notes, simulation.notes()})
+    for (const std::string& note : several) fmt::print(stderr, "mercury: {}\n", note);
+
+  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
+  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
+  if (recorder) recorder->finish();
+  return tell(options, report);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = program.add_subcommand("run", "Simulate without pictures: a table, CSV or JSON");
+  options->robots.add_to(*command);
+  add_text(*command, "--csv", options->csv, "Also write one line a robot into this file", "FILE");
+  add_text(*command, "--record", options->record, "Record all masses' positions and velocities (H5MD 1.1)", "FILE.h5");
+  add_number(*command, "--every", options->every, "Steps between recorded frames (default 1/30 s)", "N");
+  command->add_flag("--compress", options->compress, "Compress the recording: smaller, slower");
+  command->add_flag("--json", options->json, "Print JSON rather than a table");
+  command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
+  command->add_flag("--quiet", options->quiet, "No progress on standard error");
+  options->simulation.add_to(*command);
+  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+           "FILE.toml");
+  command->footer(
+      "Displacement is that of the centre of mass; speed is the length of its way over the time, and strain the\n"
+      "largest of any spring, both looked at every 0.1 s.\n\n"
+      "Examples:\n"
+      "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
+      "  mercury run eel.json --record eel.h5 --every 10\n"
+      "  mercury run eel.repro        (of an explosion that was seen in the window)\n"
+      "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
+  command->callback([options, choose] { choose([options] { return run(*options); }); });
+}
+
+}  // namespace mercury

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury view: the interactive window.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/commands/commands.h"
+#include "app/options/option_values.h"
+#include "app/options/robot_options.h"
+#include "app/options/simulation_options.h"
+#include "app/options/view_options.h"
+#include "app/recording/repro.h"
+#include "app/window/toolkit/embedded.h"
+#include "app/window/viewer.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+struct ViewCommandOptions {
+  RobotOptions robots;
+  SimulationOptions simulation;
+  ViewOptions view;
+  std::string config, size, quality = "auto", report;
+  bool fresh = false, paused = false;
+};
+
+window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
+  window::ViewerOptions result;
+  if (!options.size.empty()) {
+    const std::vector<int> size = sizes_from("--size", options.size, 2, "WIDTHxHEIGHT");
+    result.size = {size[0], size[1]};
+  }
+  result.quality = render::quality_named(options.quality);
+  result.report = options.report;
+  result.remember = !options.fresh;
+  result.playing = !options.paused;
+  result.view = options.view.settings();
+  return result;
+}
+
+Generation generation_of(const RobotOptions::RandomRobots& request) {
+  const bool network = request.kind == RobotOptions::RandomRobots::Kind::network;
+  return {.kind = network ? Generation::Kind::network : Generation::Kind::voxel,
+          .count = request.count,
+          .seed = request.seed,
+          .first = request.first,
+          .voxel = request.voxel,
+          .network = request.network};
+}
+
+int view(const ViewCommandOptions& options) {
+  window::ViewerOptions viewer = viewer_options(options);
+  viewer.configuration = options.simulation.configuration();
+  if (options.robots.empty()) {
+    viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
+    // There are none for simple water: those that swim.
+    if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
+    return window::run_viewer(std::move(viewer));
+  }
+  if (const auto file = options.robots.repro()) {
+    load_repro(*file);  // for what is wrong with it
+    viewer.files = {*file};
+    return window::run_viewer(std::move(viewer));
+  }
+  // Files are looked at here for what is wrong with them and where the robots live; the window reads them again.
+  const std::vector<Robot> robots = options.robots.load_files();
+  if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
+  viewer.files = options.robots.files();
+  for (const RobotOptions::RandomRobots& request : options.robots.random())
+    viewer.generations.push_back(generation_of(request));
+  return window::run_viewer(std::move(viewer));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<ViewCommandOptions>();
+  CLI::App* command = program.add_subcommand("view", "Watch robots in a window, and play with them");
+  options->robots.add_to(*command);
+  add_text(*command, "--size", options->size, "Size of the window (default: that of the last time, or 1280x720)",
+           "WIDTHxHEIGHT")
+      ->group("Window");
+  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Effort of drawing")
+      ->group("Window");
+  command->add_flag("--paused", options->paused, "Begin at rest")->group("Window");
+  command->add_flag("--fresh", options->fresh, "Neither use nor keep settings of earlier windows")->group("Window");
+  add_text(*command, "--report", options->report,
+           "Write what happens in the window to a file, one JSON object a line (docs/window.md)", "FILE")
+      ->group("Window");
+  options->view.add_to(*command);
+  options->simulation.add_to(*command);
+  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+           "FILE.toml");
+  command->footer(
+      "Without ROBOTS it shows the sample robots. F1 in the window lists all keys.\n"
+      "Examples:\n"
+      "  mercury view\n"
+      "  mercury view my-robots --environment land\n"
+      "  mercury view --random voxel:12 --seed 3 --color strain");
+  command->callback([options, choose] { choose([options] { return view(*options); }); });
+}
+
+}  // namespace mercury

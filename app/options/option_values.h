@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options whose values are checked as they are read: every error names the option and says what is accepted.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/error.h"
+#include "mercury/vec3.h"
+
+namespace mercury {
+
+// The whole text as a number of that type. Throws InputError("--dt: \"fast\" is not a number").
+template <class Number>
+Number number_from(const std::string& option, std::string_view text);
+
+// The parts of a text between separators; one part if there is none.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+// So many numbers with commas between them. Throws InputError; `form` says what is accepted.
+std::vector<float> numbers_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
+
+// "1,0,-2.5". Throws InputError.
+Vec3 vector_from(const std::string& option, std::string_view text);
+
+// "WxH" or "WxHxD": positive whole numbers. Throws InputError; `form` says what is accepted, as in "WIDTHxHEIGHT".
+std::vector<int> sizes_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
+
+// An option with one value; given twice, the last one counts. `name` may list several, as in "-o,--output".
+template <class Value, class Parse>
+CLI::Option* add_value(CLI::App& app, const std::string& name, Value& value, const std::string& description,
+                       const std::string& form, Parse parse) {
+  return app
+      .add_option_function<std::string>(
+          name, [&value, name, parse](const std::string& text) { value = parse(name, text); }, description)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+      ->type_name(form);
+}
+
+// An option that is a number.
+template <class Number>
+CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, const std::string& description,
+                        const std::string& form) {
+  return add_value(app, name, value, description, form, number_from<Number>);
+}
+template <class Number>
+CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<Number>& value,
+                        const std::string& description, const std::string& form) {
+  return add_value(app, name, value, description, form, number_from<Number>);
+}
+
+// An option that is text.
+inline CLI::Option* add_text(CLI::App& app, const std::string& name, std::string& value, const std::string& description,
+                             const std::string& form) {
+  return add_value(app, name, value, description, form,
+                   [](const std::string&, const std::string& text) { return text; });
+}
+
+// An option that is one of several names.
+CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value, std::vector<std::string> choices,
+                        const std::string& description);
+
+// Throws InputError("--fps: 0 is not accepted; give a number > 0 <unit>") unless it is finite and above 0.
+void require_positive(const std::string& option, double value, const std::string& unit);
+
+}  // namespace mercury

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The robots a command works on: files, folders, and robots made at random.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/options/nn_options.h"
+#include "app/options/voxel_options.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+class RobotOptions {
+ public:
+  // Adds the options to a command. The object must outlive it.
+  void add_to(CLI::App& command);
+
+  // Reads the files and makes the random robots, files first. Throws InputError when there are none, or one cannot be
+  // used.
+  std::vector<Robot> load() const;
+
+  // The trajectory file, if that is what was given. Throws InputError if robots were given with it.
+  std::optional<std::filesystem::path> recording() const;
+
+  // The *.repro file, if that is what was given. Throws InputError if robots were given with it.
+  std::optional<std::filesystem::path> repro() const;
+
+  // The same in parts: robots of the files alone, the files' names, and what is to be made at random.
+  std::vector<Robot> load_files() const;
+  std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
+  struct RandomRobots {
+    enum class Kind { voxel, network } kind = Kind::voxel;
+    std::size_t count = 1;
+    std::uint64_t seed = 1, first = 0;
+    RandomVoxelOptions voxel;  // if voxel
+    NnOptions network;         // if network
+  };
+  std::vector<RandomRobots> random() const;
+
+  bool empty() const { return paths_.empty() && random_.empty(); }
+
+  // Of the random robots; nothing when there are none.
+  std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
+
+ private:
+  std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
+  RandomRobots random_from(const std::string& request) const;
+
+  std::vector<std::string> paths_;   // files and folders
+  std::vector<std::string> random_;  // "voxel:12", "nn:4"
+  std::uint64_t seed_ = 1;
+  VoxelOptions voxel_;
+  NnRobotOptions nn_;
+};
+
+}  // namespace mercury

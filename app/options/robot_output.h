@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many new robots into files: what all of `mercury new` has in common.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// Makes the index-th robot of a seed. Throws InputError if it cannot be made.
+using MakeRobot = std::function<Robot(std::uint64_t seed, std::uint64_t index)>;
+
+// A robot, or why there is none.
+struct MadeRobot {
+  std::optional<Robot> robot;
+  std::string failure;
+};
+
+// Robots first .. first + count - 1 of a seed, made on all cores.
+std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, std::uint64_t first, std::size_t count);
+
+// Where new robots go, and how many.
+class RobotOutput {
+ public:
+  // Adds the options to a command. The object must outlive it.
+  void add_to(CLI::App& command);
+
+  std::uint64_t count() const { return count_; }
+  std::uint64_t seed() const { return seed_; }
+
+  // Makes folders on the way. Throws InputError when the name cannot be used for so many robots.
+  void prepare() const;
+  // Writes one robot, whole or not at all, into the file or as NAME.json into the folder, and prints the file's name.
+  // Throws InputError for a file that exists, unless it may be replaced.
+  void write(const Robot& robot) const;
+
+ private:
+  bool names_file() const;
+
+  std::string path_;  // a file (.json, .cbor) or a folder
+  std::uint64_t count_ = 1;
+  std::uint64_t seed_ = 1;
+  std::string format_ = "json";  // of files in a folder
+  bool force_ = false;           // replace files that exist
+  std::string config_;
+};
+
+// Makes robots 0 .. count - 1 of the seed and writes them. A robot that cannot be made is told on standard error, and
+// the next one made. Returns the exit status: 0, or 1 if one could not be made or the user interrupted.
+int write_robots(const RobotOutput& output, const MakeRobot& make);
+
+}  // namespace mercury

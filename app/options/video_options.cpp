@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/options/video_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "app/options/option_values.h"
+#include "app/video/contact_sheet.h"
+
+namespace mercury {
+namespace {
+
+constexpr int sheet_gap = 4;  // between the moments of a contact sheet [pixels]
+
+PictureSize size_from(const std::string& option, const std::string& text) {
+  static const std::map<std::string, PictureSize> names{{"480p", {854, 480}},
+                                                        {"720p", {1280, 720}},
+                                                        {"1080p", {1920, 1080}},
+                                                        {"1440p", {2560, 1440}},
+                                                        {"4k", {3840, 2160}}};
+  if (const auto found = names.find(text); found != names.end()) return found->second;
+  const auto sizes = sizes_from(option, text, 2, "WIDTHxHEIGHT, 720p, 1080p or 4k");
+  return {sizes[0], sizes[1]};
+}
+
+Grid grid_from(const std::string& option, const std::string& text) {
+  const auto sizes = sizes_from(option, text, 2, "COLUMNSxROWS");
+  return {sizes[0], sizes[1]};
+}
+
+}  // namespace
+
+void VideoOptions::add_to(CLI::App& command) {
+  const auto add = [](CLI::Option* option) { option->group("Picture"); };
+  add_text(command, "-o,--output", output_, "Video (.mp4, .webm, .gif), picture (.png), or a folder for a PNG a frame",
+           "FILE|FOLDER")
+      ->required();
+  add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from));
+  add(add_number(command, "--fps", frames_per_second_, "Frames a second of video (default 30; 25 for .gif)", "N"));
+  add(add_number(command, "--speed", speed_, "Simulated seconds a second of video (default 1)", "X"));
+  add(add_number(command, "--still", still_, "One picture (.png) of this moment rather than a video", "S"));
+  add(add_value(command, "--contact-sheet", contact_sheet_,
+                "So many moments of --seconds in one picture (.png), which is as wide as --size", "CxR", grid_from));
+  add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4"));
+  add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
+                 "How well it is drawn (default auto: high on a GPU, low without)"));
+  add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},
+                 "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
+  add(command.add_flag("--no-interop", no_interop_,
+                       "Copy positions through the host even where CUDA and OpenGL can share them on the card"));
+  add(add_number(command, "--crf", crf_, "Of the encoding: lower is better and larger (default 18 .mp4, 30 .webm)",
+                 "N"));
+  add(add_text(command, "--ffmpeg", ffmpeg_, "The encoder (default: MERCURY_FFMPEG, else ffmpeg)", "PROGRAM"));
+}
+
+void VideoOptions::validate() const {
+  if (frames_per_second_) require_positive("--fps", *frames_per_second_, " frames/s");
+  require_positive("--speed", speed_, "");
+  if (crf_ < -1 || crf_ > 63)
+    throw InputError("--crf", fmt::format("{} is not accepted; give 0 to 51 (.mp4) or 63 (.webm)", crf_));
+  if (still_ && !(std::isfinite(*still_) && *still_ >= 0))
+    throw InputError("--still", fmt::format("{} is not accepted; give a finite number >= 0 s", *still_));
+  if (still_ && contact_sheet_) throw InputError("--still", "not together with --contact-sheet; give one of them");
+}
+
+PictureSize VideoOptions::asked_size() const {
+  return size_.value_or(contact_sheet_ ? PictureSize{1920, 1080} : PictureSize{});
+}
+
+VideoOptions::Plan VideoOptions::plan(double seconds) const {
+  validate();
+  if (single_picture()) return plan_pictures(seconds);
+  const VideoKind kind = video_kind_of(output_);
+  const double rate = frames_per_second_.value_or(kind == VideoKind::gif ? 25 : 30);
+  const double frames = seconds / speed_ * rate;
+  if (frames > 1e8) throw InputError("--seconds", fmt::format("{:.3g} frames are too many for a video", frames));
+  return {.size = encoded_size(kind, asked_size()),
+          .pixels = pixel_format_of(kind),
+          .timing = {
+              .frames = std::max<std::int64_t>(1, std::llround(frames)), .interval = speed_ / rate, .pace = 1 / rate}};
+}
+
+VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
+  if (still_) return {.size = asked_size(), .timing = {.frames = 1, .start = *still_}};
+  const PictureSize sheet = asked_size();
+  const int width = (sheet.width + sheet_gap) / contact_sheet_->columns - sheet_gap;
+  const PictureSize frame{width,
+                          static_cast<int>(std::lround(static_cast<double>(width) * sheet.height / sheet.width))};
+  if (frame.width < 16 || frame.height < 16)
+    throw InputError("--contact-sheet", "so many moments leave no room for each; give a larger --size or fewer");
+  const std::int64_t frames = static_cast<std::int64_t>(contact_sheet_->columns) * contact_sheet_->rows;
+  const double interval = frames > 1 ? seconds / static_cast<double>(frames - 1) : 0;
+  return {.size = frame, .timing = {.frames = frames, .interval = interval, .pace = interval}};
+}
+
+std::string VideoOptions::output_of(const std::string& name) const {
+  if (name.empty()) return output_;
+  std::filesystem::path path(output_);
+  if (path.filename().empty()) path = path.parent_path();
+  return (path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), name, path.extension().string())).string();
+}
+
+std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name) const {
+  const std::string output = output_of(name);
+  if (single_picture())
+    return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap);
+  return open_frame_writer(output, {.size = plan.size,
+                                    .frames_per_second = 1 / plan.timing.pace,
+                                    .expected_frames = plan.timing.frames,
+                                    .crf = crf_,
+                                    .ffmpeg = ffmpeg_});
+}
+
+}  // namespace mercury

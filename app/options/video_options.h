@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that say which pictures are made, and how they are drawn and kept.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+
+#include "app/scene/group_layout.h"
+#include "app/video/film.h"
+#include "app/video/frame_writer.h"
+#include "render/context.h"
+#include "render/renderer.h"
+
+namespace mercury {
+
+class VideoOptions {
+ public:
+  // Adds the options to a command. The object must outlive it.
+  void add_to(CLI::App& command);
+
+  // All of the following throw InputError naming the option that cannot be used.
+
+  // What is made of `seconds` of simulated time.
+  struct Plan {
+    PictureSize size;  // of a frame
+    render::PixelFormat pixels = render::PixelFormat::rgb;
+    FilmTiming timing;
+  };
+  Plan plan(double seconds) const;
+  // Where it goes. `name`: of the robot that is filmed alone; empty = all.
+  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name) const;
+  // The name of what open() makes.
+  std::string output_of(const std::string& name) const;
+
+  double speed() const { return speed_; }
+  bool each() const { return each_; }
+  bool single_picture() const { return still_ || contact_sheet_; }
+  PictureSize asked_size() const;
+  render::ContextKind context_kind() const { return render::context_kind_named(gl_); }
+  bool interop() const { return !no_interop_; }
+  render::Quality quality() const { return render::quality_named(quality_); }
+
+ private:
+  void validate() const;
+  Plan plan_pictures(double seconds) const;
+
+  std::string output_;
+  std::optional<PictureSize> size_;
+  std::optional<double> frames_per_second_, still_;
+  std::optional<Grid> contact_sheet_;
+  double speed_ = 1;
+  int crf_ = -1;
+  bool each_ = false, no_interop_ = false;
+  std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
+};
+
+}  // namespace mercury

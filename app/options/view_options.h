@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that say what is seen and how.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene/view_settings.h"
+
+namespace mercury {
+
+class ViewOptions {
+ public:
+  // Adds the options to a command. The object must outlive it.
+  void add_to(CLI::App& command);
+
+  // What was chosen. Throws InputError naming the option that cannot be used.
+  ViewSettings settings() const;
+
+ private:
+  std::string color_ = "material", theme_ = "dark", layout_ = "grid", camera_;
+  std::optional<std::pair<float, float>> scale_;
+  std::optional<std::string> shown_;
+  std::optional<render::CutPlane> cut_;
+  std::optional<Grid> grid_;
+  std::optional<float> azimuth_, elevation_, zoom_;
+  bool smooth_ = false, follow_ = false;
+};
+
+// "skin,labels,clock": exactly these are shown. Throws InputError("--show: ...") that lists what there is.
+Shown shown_from(const std::string& text);
+
+}  // namespace mercury

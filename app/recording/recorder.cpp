@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/recording/recorder.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace mercury {
+namespace {
+
+std::vector<const Robot*> robots_of(const Simulation& simulation) {
+  std::vector<const Robot*> robots;
+  for (std::size_t i = 0; i < simulation.size(); ++i) robots.push_back(&simulation.robot(i));
+  return robots;
+}
+
+TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions& options) {
+  const std::int64_t steps = options.last_step.value_or(0) - simulation.steps();
+  return {.configuration = simulation.configuration(),
+          .device_name = simulation.device_name(),
+          .seed = options.seed,
+          .every = options.every,
+          .expected_frames = options.last_step ? steps / options.every + 1 : 0,
+          .deflate = options.deflate};
+}
+
+}  // namespace
+
+Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options)
+    : simulation_(simulation), every_(options.every), next_(simulation.steps()),
+      writer_(path, header_of(simulation, options), robots_of(simulation), simulation.materials(), "--record") {
+  take();
+}
+
+void Recorder::observe() {
+  if (simulation_.steps() >= next_) take();
+}
+
+void Recorder::take() {
+  const TrajectoryWriter::Frame frame = writer_.add(simulation_.steps(), simulation_.time());
+  simulation_.read_positions(frame.positions);
+  simulation_.read_velocities(frame.velocities);
+  next_ = simulation_.steps() + std::min(every_, std::numeric_limits<std::int64_t>::max() - simulation_.steps());
+}
+
+void Recorder::finish() { writer_.finish(simulation_.telemetry()); }
+
+}  // namespace mercury

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Repros as JSON.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/recording/configuration_json.h"
+#include "app/recording/repro.h"
+#include "mercury/error.h"
+#include "mercury/robot_file.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format = "mercury-repro";
+constexpr int version = 1;
+constexpr std::int64_t most_steps = 1'000'000'000'000'000;
+
+Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
+
+Json json_of(std::span<const Vec3> vectors) {
+  Json list = Json::array();
+  for (const Vec3 v : vectors) list.push_back(json_of(v));
+  return list;
+}
+
+Json json_of(std::span<const Pull> pulls) {
+  Json list = Json::array();
+  for (const Pull& pull : pulls)
+    list.push_back({{"mass", pull.mass}, {"target", json_of(pull.target)}, {"stiffness", shortest(pull.stiffness)}});
+  return list;
+}
+
+// The materials that differ from those of before, as [id, stiffness, amplitude, frequency, phase].
+Json changes_of(std::span<const Material> before, std::span<const Material> after) {
+  Json list = Json::array();
+  for (std::size_t id = 0; id < after.size(); ++id)
+    if (id >= before.size() || before[id] != after[id])
+      list.push_back({id, shortest(after[id].stiffness), shortest(after[id].amplitude), shortest(after[id].frequency),
+                      shortest(after[id].phase)});
+  return list;
+}
+
+Json json_of(const ReproChange& change, std::vector<Material>& materials) {
+  Json json{{"step", change.step}};
+  if (change.configuration) json["configuration"] = json_of(*change.configuration);
+  if (change.materials) {
+    json["materials"] = changes_of(materials, *change.materials);
+    materials = *change.materials;
+  }
+  if (change.pulls) json["pulls"] = json_of(std::span<const Pull>(*change.pulls));
+  return json;
+}
+
+float number_of(const Json& json) {
+  if (!json.is_number()) throw InputError("a number is missing");
+  return static_cast<float>(json.get<double>());
+}
+
+Vec3 vector_of(const Json& json) {
+  if (!json.is_array() || json.size() != 3) throw InputError("a list of three numbers is missing");
+  return {number_of(json[0]), number_of(json[1]), number_of(json[2])};
+}
+
+std::vector<Vec3> vectors_of(const Json& json, std::size_t count) {
+  if (!json.is_array() || json.size() != count) throw InputError(fmt::format("a list of {} places is missing", count));
+  std::vector<Vec3> vectors;
+  for (const Json& one : json) vectors.push_back(vector_of(one));
+  return vectors;
+}
+
+std::int64_t step_of(const Json& json, std::int64_t least) {
+  const auto step = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+  if (step < least || step > most_steps)
+    throw InputError(fmt::format("{} is not accepted as a step here; give {} or more", json.dump(), least));
+  return step;
+}
+
+std::vector<Pull> pulls_of(const Json& json, const Robot& robot) {
+  std::vector<Pull> pulls;
+  for (const Json& one : json) {
+    const std::int64_t mass = step_of(one.at("mass"), 0);
+    if (mass >= static_cast<std::int64_t>(robot.masses.size()))
+      throw InputError(fmt::format("mass {} is out of range, the robot has {}", mass, robot.masses.size()));
+    pulls.push_back({.mass = static_cast<std::uint16_t>(mass),
+                     .target = vector_of(one.at("target")),
+                     .stiffness = number_of(one.at("stiffness"))});
+  }
+  return pulls;
+}
+
+void change_materials(const Json& json, std::vector<Material>& materials) {
+  for (const Json& one : json) {
+    if (!one.is_array() || one.size() != 5) throw InputError("[id, stiffness, amplitude, frequency, phase] is missing");
+    const std::int64_t id = step_of(one[0], 0);
+    if (id >= static_cast<std::int64_t>(materials.size())) throw InputError(fmt::format("there is no material {}", id));
+    Material& material = materials[static_cast<std::size_t>(id)];
+    material = {number_of(one[1]), number_of(one[2]), number_of(one[3]), number_of(one[4])};
+    validate(material, fmt::format("material {}", id));
+  }
+}
+
+std::vector<ReproChange> changes_from(const Json& json, const Repro& repro) {
+  const auto own = materials_of(repro.robot);
+  std::vector<Material> materials(own.begin(), own.end());
+  std::vector<ReproChange> changes;
+  std::int64_t least = repro.clock.step;
+  for (const Json& one : json) {
+    ReproChange change{.step = least = step_of(one.at("step"), least)};
+    if (one.contains("configuration")) change.configuration = configuration_from(one["configuration"]);
+    if (one.contains("materials")) {
+      change_materials(one["materials"], materials);
+      change.materials = materials;
+    }
+    if (one.contains("pulls")) change.pulls = pulls_of(one["pulls"], repro.robot);
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+Repro repro_from(const Json& json) {
+  if (!json.is_object() || json.value("format", "") != format)
+    throw InputError("is not a repro: its format is not \"mercury-repro\"");
+  if (json.at("version") != version)
+    throw InputError(fmt::format("is of version {}, this program reads {}", json["version"].dump(), version));
+  Repro repro;
+  try {
+    repro.robot = parse_robot(json.at("robot").dump(), RobotFormat::json);
+  } catch (const InputError& error) {
+    throw InputError("/robot", error.what());
+  }
+  repro.configuration = configuration_from(json.at("configuration"));
+  const Json& start = json.at("start");
+  repro.clock = {.dt = repro.configuration.dt,
+                 .base_time = start.at("base_time").get<double>(),
+                 .base_step = step_of(start.at("base_step"), 0)};
+  repro.clock.step = step_of(start.at("step"), repro.clock.base_step);
+  repro.state.positions = vectors_of(start.at("positions"), repro.robot.masses.size());
+  repro.state.velocities = vectors_of(start.at("velocities"), repro.robot.masses.size());
+  repro.pulls = pulls_of(start.at("pulls"), repro.robot);
+  repro.changes = changes_from(json.at("changes"), repro);
+  const Json& exploded = json.at("exploded");
+  repro.exploded_at = exploded.at("time").get<double>();
+  if (exploded.contains("first_bad_spring"))
+    repro.first_bad_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
+  repro.last_step = step_of(exploded.at("last_step"), repro.clock.step);
+  repro.device_name = json.value("device_name", "");
+  return repro;
+}
+
+}  // namespace
+
+std::string serialize_repro(const Repro& repro) {
+  Json json{{"format", format}, {"version", version}};
+  json["exploded"] = {{"time", repro.exploded_at}, {"last_step", repro.last_step}};
+  if (repro.first_bad_spring != no_spring) json["exploded"]["first_bad_spring"] = repro.first_bad_spring;
+  json["device_name"] = repro.device_name;
+  json["configuration"] = json_of(repro.configuration);
+  json["start"] = {{"step", repro.clock.step},
+                   {"base_step", repro.clock.base_step},
+                   {"base_time", repro.clock.base_time},
+                   {"pulls", json_of(std::span<const Pull>(repro.pulls))},
+                   {"positions", json_of(std::span<const Vec3>(repro.state.positions))},
+                   {"velocities", json_of(std::span<const Vec3>(repro.state.velocities))}};
+  const auto own = materials_of(repro.robot);
+  std::vector<Material> materials(own.begin(), own.end());
+  json["changes"] = Json::array();
+  // Changes of one step are of different kinds, which do not touch each other: told in one order, however they came.
+  std::vector<ReproChange> changes = repro.changes;
+  std::ranges::stable_sort(changes, {}, [](const ReproChange& c) {
+    return std::pair(c.step, c.configuration ? 2 : c.pulls ? 1 : 0);
+  });
+  for (const ReproChange& change : changes) json["changes"].push_back(json_of(change, materials));
+  json["robot"] = Json::parse(serialize_robot(repro.robot, RobotFormat::json));
+  return json.dump() + "\n";
+}
+
+Repro parse_repro(std::string_view document) {
+  try {
+    return repro_from(Json::parse(document));
+  } catch (const Json::exception& error) {
+    throw InputError(std::string("is not a whole repro: ") + error.what());
+  }
+}
+
+Repro load_repro(const std::filesystem::path& path) {
+  try {
+    return parse_repro(read_whole_file(path));
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    if (text.starts_with(path.string())) throw;
+    throw InputError(path.string(), text);
+  }
+}
+
+}  // namespace mercury

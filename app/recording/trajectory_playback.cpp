@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/recording/trajectory_playback.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mercury/error.h"
+#include "sim/backend.h"
+
+namespace mercury {
+namespace {
+
+// Tells of robots as the CPU backend does, whose masses it puts where they were.
+class Playback final : public Backend {
+ public:
+  explicit Playback(std::shared_ptr<TrajectoryReader> trajectory)
+      : trajectory_(std::move(trajectory)), robots_(make_cpu_backend({.kind = DeviceKind::cpu})) {}
+
+  std::string device_name() const override { return "recording of " + trajectory_->device_name(); }
+  std::vector<std::string> notes() const override { return {}; }
+  std::size_t robots_at_once() const override { return robots_->robots_at_once(); }
+  double spring_limit() const override { return robots_->spring_limit(); }
+  double busy_seconds() const override { return 0; }
+
+  void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
+    robots_->load(robots, configuration);
+    configuration_ = configuration;
+    go_to(0);
+  }
+  void configure(const Configuration& configuration) override { robots_->configure(configuration); }
+  void step(const Clock& clock, std::int64_t steps) override { go_to(clock.step + steps); }
+
+  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
+    at_present().read(robot, positions, velocities);
+  }
+  // A simulation puts its robots at rest to begin anew.
+  void write(std::size_t, std::span<const Vec3>, std::span<const Vec3>) override { go_to(0); }
+  void set_status(std::size_t, const RobotStatus&) override {}
+  void read_positions(std::span<Vec3> out) const override { at_present().read_positions(out); }
+  void read_velocities(std::span<Vec3> out) const override { at_present().read_velocities(out); }
+  RobotStatus status(std::size_t robot) const override { return at_present().status(robot); }
+  std::vector<RobotStatus> statuses() const override { return at_present().statuses(); }
+  void write_materials(std::span<const Material> tables) override { robots_->write_materials(tables); }
+  void write_materials(std::size_t robot, std::span<const Material> table) override {
+    robots_->write_materials(robot, table);
+  }
+  void set_pulls(std::span<const Pull>) override {}
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
+    at_present().report(clock, telemetry, statuses);
+  }
+
+ private:
+  void go_to(std::int64_t step) {
+    step_ = step;
+    shown_ = false;
+  }
+
+  // Frames are read when somebody looks, not for every step.
+  Backend& at_present() const {
+    if (!shown_) show();
+    shown_ = true;
+    return *robots_;
+  }
+
+  void show() const {
+    const std::int64_t step = trajectory_->step(0) + step_;
+    const std::size_t frame = trajectory_->frame_of_step(step);
+    State now = state(frame);
+    if (trajectory_->step(frame) < step && frame + 1 < trajectory_->frames()) {
+      const auto length = static_cast<double>(trajectory_->step(frame + 1) - trajectory_->step(frame));
+      const auto share = static_cast<float>(static_cast<double>(step - trajectory_->step(frame)) / length);
+      const State next = state(frame + 1);
+      mix(now.positions, next.positions, share);
+      mix(now.velocities, next.velocities, share);
+    }
+    const auto offsets = trajectory_->mass_offsets();
+    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+      const std::size_t masses = offsets[i + 1] - offsets[i];
+      robots_->write(i, std::span(now.positions).subspan(offsets[i], masses),
+                     std::span(now.velocities).subspan(offsets[i], masses));
+      robots_->set_status(i, status_at(trajectory_->robots()[i], step));
+    }
+  }
+
+  State state(std::size_t frame) const {
+    const auto positions = trajectory_->positions(frame), velocities = trajectory_->velocities(frame);
+    return {{positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}};
+  }
+
+  static void mix(std::vector<Vec3>& now, const std::vector<Vec3>& next, float share) {
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] += share * (next[i] - now[i]);
+  }
+
+  RobotStatus status_at(const RecordedRobot& robot, std::int64_t step) const {
+    if (!robot.exploded_at) return {};
+    const std::int64_t exploded =
+        trajectory_->step(0) + std::llround((*robot.exploded_at - trajectory_->time(0)) / configuration_.dt);
+    return exploded <= step ? RobotStatus{.exploded_step = exploded - trajectory_->step(0)} : RobotStatus{};
+  }
+
+  std::shared_ptr<TrajectoryReader> trajectory_;
+  std::unique_ptr<Backend> robots_;
+  Configuration configuration_;
+  std::int64_t step_ = 0;  // since the first frame
+  mutable bool shown_ = false;
+};
+
+}  // namespace
+
+Simulation playback(std::shared_ptr<TrajectoryReader> trajectory) {
+  if (trajectory->frames() == 0) throw InputError(trajectory->path().string(), "holds no frames");
+  std::vector<Robot> robots;
+  for (const RecordedRobot& recorded : trajectory->robots()) robots.push_back(recorded.robot);
+  return Simulation(trajectory->configuration(), robots, std::make_unique<Playback>(trajectory));
+}
+
+}  // namespace mercury

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/recording/trajectory_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "app/recording/trajectory_layout.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+using namespace hdf5;
+
+constexpr std::size_t held_bytes = std::size_t{64} << 20;
+
+Handle open_file(const std::filesystem::path& path) {
+  prepare();
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  checked(H5Pset_file_locking(access, true, true));
+  try {
+    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
+  } catch (const Error& error) {
+    if (error.number() == 0 && H5Fis_hdf5(path.c_str()) <= 0) throw Error("is not an HDF5 file");
+    throw;
+  }
+}
+
+// All elements of a dataset whose first axis is free and whose others are `row`.
+template <class Element>
+std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memory_type, const Extent& row) {
+  const Handle dataset = open_dataset(parent, name);
+  const Extent extent = extent_of(dataset);
+  if (extent.size() != row.size() + 1 || !std::equal(row.begin(), row.end(), extent.begin() + 1))
+    throw Error("\"" + name + "\" has another shape");
+  if (extent[0] > std::numeric_limits<std::uint64_t>::max() / sizeof(Element))
+    throw Error("\"" + name + "\" is too large");
+  require_content(dataset, extent[0] * sizeof(Element));
+  std::vector<Element> rows(extent[0]);
+  if (!rows.empty()) read_dataset(dataset, memory_type, rows.data());
+  return rows;
+}
+
+Configuration read_configuration(hid_t parameters) {
+  Configuration configuration;
+  configuration.device = device_named(read_text(parameters, "device"));
+  configuration.device.threads = read_attribute<std::int32_t>(parameters, "threads");
+  configuration.solver = solver_named(read_text(parameters, "solver"));
+  configuration.dt = read_attribute<double>(parameters, "dt");
+  configuration.damping = read_attribute<double>(parameters, "damping");
+  configuration.environment = environment_named(read_text(parameters, "environment"));
+  const auto read = [&]<class Value>(const char* name, Value& value) {
+    if constexpr (std::is_same_v<Value, Vec3>) {
+      const auto [x, y, z] = read_attributes<float, 3>(parameters, name);
+      value = {x, y, z};
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = read_attribute<std::uint8_t>(parameters, name) != 0;
+    } else {
+      value = read_attribute<Value>(parameters, name);
+    }
+  };
+  std::visit([&](auto& environment) { visit_parameters(environment, read); }, configuration.environment);
+  validate(configuration);
+  return configuration;
+}
+
+std::vector<Spring> read_springs(hid_t robot) {
+  const auto ends = read_rows<std::array<std::uint16_t, 2>>(robot, "springs", H5T_NATIVE_UINT16, {2});
+  const auto materials = read_rows<MaterialId>(robot, "spring_material", H5T_NATIVE_UINT8, {});
+  const auto rest_lengths = read_rows<float>(robot, "spring_rest_length", H5T_NATIVE_FLOAT, {});
+  if (materials.size() != ends.size() || rest_lengths.size() != ends.size())
+    throw Error("springs, spring_material and spring_rest_length differ in length");
+  std::vector<Spring> springs(ends.size());
+  for (std::size_t i = 0; i < springs.size(); ++i) springs[i] = {ends[i][0], ends[i][1], materials[i], rest_lengths[i]};
+  return springs;
+}
+
+// A table that equals the defaults is left out, as in a robot that has none of its own.
+void read_materials(hid_t group, Robot& robot) {
+  robot.materials = read_rows<Material>(group, "materials", material_type(), {});
+  if (has_member(group, "material_names")) robot.material_names = read_texts_dataset(group, "material_names");
+  const auto has_default_name = [&, id = 0](const std::string& name) mutable {
+    return name == default_material_name(static_cast<MaterialId>(id++));
+  };
+  if (std::ranges::equal(robot.materials, default_materials()) &&
+      std::ranges::all_of(robot.material_names, has_default_name)) {
+    robot.materials.clear();
+    robot.material_names.clear();
+  }
+}
+
+template <class Value>
+std::size_t last_not_above(const std::vector<Value>& rising, Value value) {
+  const auto after = std::upper_bound(rising.begin(), rising.end(), value);
+  return after == rising.begin() ? 0 : static_cast<std::size_t>(after - rising.begin()) - 1;
+}
+
+std::size_t chunk_length(hid_t dataset) {
+  const Handle properties(H5Dget_create_plist(dataset));
+  if (H5Pget_layout(properties) != H5D_CHUNKED) return 1;
+  Extent chunk(3, 1);
+  checked(H5Pget_chunk(properties, 3, chunk.data()));
+  return std::max<std::size_t>(1, chunk[0]);
+}
+
+}  // namespace
+
+template <class Work>
+auto TrajectoryReader::guarded(const Work& work) const {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw InputError(path_.string(), error.number() != 0 ? std::strerror(error.number()) : error.what());
+  } catch (const InputError& error) {
+    throw InputError(path_.string(), error.what());
+  }
+}
+
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path.string(), "is a folder, not a trajectory");
+  guarded([&] {
+    file_ = open_file(path);
+    if (!has_member(file_, "h5md") || !has_member(file_, "parameters") || !has_member(file_, "particles"))
+      throw Error("is not a trajectory that mercury recorded");
+    read_parameters();
+    read_robots();
+  });
+}
+
+void TrajectoryReader::read_parameters() {
+  const Handle h5md = open_group(file_, "h5md"), parameters = open_group(file_, "parameters");
+  if (read_attributes<std::int32_t, 2>(h5md, "version")[0] != h5md_version[0])
+    throw Error("is not of H5MD's version 1");
+  if (!has_attribute(parameters, "format")) throw Error("is not a trajectory that mercury recorded");
+  if (const int format = read_attribute<std::int32_t>(parameters, "format"); format != trajectory_format)
+    throw Error("is a trajectory of format " + std::to_string(format) + "; this program reads format " +
+                std::to_string(trajectory_format));
+  const Handle creator = open_group(h5md, "creator");
+  program_ = read_text(creator, "name") + " " + read_text(creator, "version");
+  device_name_ = read_text(parameters, "device_name");
+  if (has_attribute(parameters, "seed")) seed_ = read_attribute<std::uint64_t>(parameters, "seed");
+  every_ = read_attribute<std::int64_t>(parameters, "every");
+  configuration_ = read_configuration(parameters);
+  steps_ = read_rows<std::int64_t>(parameters, "step", H5T_NATIVE_INT64, {});
+  times_ = read_rows<double>(parameters, "time", H5T_NATIVE_DOUBLE, {});
+  if (steps_.size() != times_.size()) throw Error("step and time differ in length");
+  for (std::size_t i = 0; i < times_.size(); ++i)
+    if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1] && steps_[i] > steps_[i - 1])))
+      throw Error("the times of its frames do not grow");
+}
+
+void TrajectoryReader::read_robots() {
+  particles_ = open_group(file_, "particles");
+  const std::vector<std::string> groups = members(particles_);
+  if (groups.empty()) throw Error("holds no robots");
+  robots_.resize(groups.size());
+  std::size_t chunk = 1;
+  for (const std::string& name : groups) {
+    const Handle group = open_group(particles_, name);
+    const std::uint64_t index = read_attribute<std::uint64_t>(group, "index");
+    if (index >= groups.size() || !robots_[index].group.empty())
+      throw Error("the indices of its robots are not 0, 1, 2, ...");
+    try {
+      robots_[index] = read_robot(name, group);
+      require_frames(group, robots_[index].robot.masses.size());
+      chunk = std::max(chunk, chunk_length(open_dataset(open_group(group, "position"), "value")));
+    } catch (const std::runtime_error& error) {
+      throw Error("/particles/" + name + ": " + error.what());
+    }
+  }
+  offsets_.assign(1, 0);
+  for (const RecordedRobot& recorded : robots_) offsets_.push_back(offsets_.back() + recorded.robot.masses.size());
+  frames_a_block_ = std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * offsets_.back()), 1, chunk);
+}
+
+RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group) const {
+  RecordedRobot recorded{.group = name};
+  Robot& robot = recorded.robot;
+  robot.name = read_text(group, "name");
+  robot.masses = read_rows<Vec3>(group, "rest_position", H5T_NATIVE_FLOAT, {3});
+  robot.springs = read_springs(group);
+  robot.faces = read_rows<Face>(group, "faces", H5T_NATIVE_UINT16, {3});
+  read_materials(group, robot);
+  if (has_member(group, "origin")) robot.origin = read_text_dataset(group, "origin");
+  validate(robot);
+  if (has_attribute(group, "exploded_at")) recorded.exploded_at = read_attribute<double>(group, "exploded_at");
+  if (has_attribute(group, "first_bad_spring"))
+    recorded.first_bad_spring = read_attribute<std::uint32_t>(group, "first_bad_spring");
+  return recorded;
+}
+
+void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
+  for (const char* element : {"position", "velocity"})
+    if (extent_of(open_dataset(open_group(robot, element), "value")) != Extent{steps_.size(), masses, 3})
+      throw Error(std::string(element) + "/value has another shape than its masses and the file's frames");
+}
+
+std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }
+std::size_t TrajectoryReader::frame_of_step(std::int64_t step) const { return last_not_above(steps_, step); }
+
+std::span<const Vec3> TrajectoryReader::read(Block& block, std::size_t frame) {
+  if (frame >= frames()) throw std::out_of_range("frame " + std::to_string(frame) + " of " + std::to_string(frames()));
+  if (frame < block.first || frame >= block.first + block.count)
+    guarded([&] { read_block(block, frame - frame % frames_a_block_); });
+  return std::span(block.values).subspan((frame - block.first) * mass_count(), mass_count());
+}
+
+void TrajectoryReader::read_block(Block& block, std::size_t first) {
+  block.count = 0;  // nothing, until all of it is there
+  const std::size_t count = std::min(frames_a_block_, frames() - first);
+  block.values.resize(count * mass_count());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const hsize_t masses = offsets_[i + 1] - offsets_[i];
+    const Handle dataset = open_dataset(open_group(open_group(particles_, robots_[i].group), block.element), "value");
+    const Handle stored(H5Dget_space(dataset)),
+        held(H5Screate_simple(3, Extent{count, mass_count(), 3}.data(), nullptr));
+    const Extent extent{count, masses, 3};
+    checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{first, 0, 0}.data(), nullptr, extent.data(), nullptr));
+    checked(
+        H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[i], 0}.data(), nullptr, extent.data(), nullptr));
+    checked(H5Dread(dataset, H5T_NATIVE_FLOAT, held, stored, H5P_DEFAULT, block.values.data()));
+  }
+  block.first = first;
+  block.count = count;
+}
+
+}  // namespace mercury

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads what TrajectoryWriter wrote: robots, configuration, and frames by index.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/recording/trajectory_hdf5.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// A robot of a trajectory, enough to simulate it again.
+struct RecordedRobot {
+  Robot robot;
+  std::string group;                  // its name in /particles
+  std::optional<double> exploded_at;  // [s]
+  std::optional<std::uint32_t> first_bad_spring;
+};
+
+// Holds a few frames (at most 64 MB, or one frame if that is more); memory follows what the file holds, never what it
+// announces. Every member throws InputError, the path before the message, for a file that cannot be read.
+class TrajectoryReader {
+ public:
+  explicit TrajectoryReader(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::vector<RecordedRobot>& robots() const { return robots_; }  // in the order of the batch
+  const Configuration& configuration() const { return configuration_; }
+  const std::string& device_name() const { return device_name_; }  // what ran it, for people
+  const std::string& program() const { return program_; }          // what wrote it: "mercury 0.1.0"
+  std::optional<std::uint64_t> seed() const { return seed_; }
+  std::int64_t every() const { return every_; }  // steps from frame to frame
+
+  std::size_t frames() const { return steps_.size(); }
+  std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
+  double time(std::size_t frame) const { return times_.at(frame); }  // [s]
+  // The last frame at or before a time or step; 0 for one before the first.
+  std::size_t frame_at(double time) const;
+  std::size_t frame_of_step(std::int64_t step) const;
+
+  std::size_t mass_count() const { return offsets_.back(); }              // of all robots together
+  std::span<const std::size_t> mass_offsets() const { return offsets_; }  // size() + 1 elements
+  // All robots' masses, one robot after the other; the span is valid until the next call. One frame after the other is
+  // fastest.
+  std::span<const Vec3> positions(std::size_t frame) { return read(positions_, frame); }
+  std::span<const Vec3> velocities(std::size_t frame) { return read(velocities_, frame); }
+
+ private:
+  // Neighbouring frames of one element, read together since they are stored together.
+  struct Block {
+    const char* element;
+    std::size_t first = 0, count = 0;
+    std::vector<Vec3> values;
+  };
+
+  void read_parameters();
+  void read_robots();
+  RecordedRobot read_robot(const std::string& group, hid_t particles) const;
+  void require_frames(hid_t robot, std::size_t masses) const;
+  std::span<const Vec3> read(Block& block, std::size_t frame);
+  void read_block(Block& block, std::size_t first);
+  template <class Work>
+  auto guarded(const Work& work) const;
+
+  std::filesystem::path path_;
+  hdf5::Handle file_, particles_;
+  Configuration configuration_;
+  std::string device_name_, program_;
+  std::optional<std::uint64_t> seed_;
+  std::int64_t every_ = 1;
+  std::vector<std::int64_t> steps_;
+  std::vector<double> times_;
+  std::vector<RecordedRobot> robots_;
+  std::vector<std::size_t> offsets_;
+  std::size_t frames_a_block_ = 1;
+  Block positions_{"position"}, velocities_{"velocity"};
+};
+
+}  // namespace mercury

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/recording/trajectory_writer.h"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include "app/base/version.h"
+#include "app/recording/trajectory_layout.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+using namespace hdf5;
+
+static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Spring) == 12 && sizeof(Face) == 6);
+
+constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames, before they are written
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of the largest robot's chunks, at most
+constexpr std::size_t longest_block = 64;                  // frames
+
+// The user's name, which H5MD asks for.
+std::string author() {
+  const passwd* user = getpwuid(getuid());
+  if (!user) return "unknown";
+  const std::string_view real = user->pw_gecos ? user->pw_gecos : "";
+  const std::string_view name = real.substr(0, real.find(','));
+  return name.empty() ? user->pw_name : std::string(name);
+}
+
+std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t expected_frames) {
+  std::size_t length =
+      std::min({longest_block, held_bytes / (2 * sizeof(Vec3) * masses), chunk_bytes / (sizeof(Vec3) * largest)});
+  length = std::max<std::size_t>(1, length);
+  if (expected_frames <= 0) return length;
+  const auto frames = static_cast<std::size_t>(expected_frames), blocks = (frames - 1) / length + 1;
+  return (frames - 1) / blocks + 1;  // equal blocks, so that the last one is hardly padded
+}
+
+Handle create_file(const std::filesystem::path& path) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  // This format checksums all that describes the data, so that damage is found when it is read.
+  checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST));
+  checked(H5Pset_file_locking(access, true, true));  // some network drives lack locks
+  return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
+}
+
+std::runtime_error write_failure(const std::filesystem::path& path, const Error& error) {
+  const std::string reason = error.number() == ENOSPC   ? "the disk is full"
+                             : error.number() == EDQUOT ? "the disk quota is used up"
+                             : error.number() != 0      ? std::strerror(error.number())
+                                                        : error.what();
+  return std::runtime_error(path.string() + ": " + reason + "; nothing was kept");
+}
+
+}  // namespace
+
+// Runs work that writes. A file that could not be written takes its room on a full disk until the program ends, so it
+// is emptied.
+template <class Work>
+void TrajectoryWriter::guarded(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    [[maybe_unused]] const int ignored = truncate(unfinished_.path().c_str(), 0);
+    throw write_failure(path_, error);
+  }
+}
+
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
+                                   std::span<const Robot* const> robots, std::span<const Material> materials,
+                                   const char* option)
+    : path_(path), unfinished_(path), deflate_(header.deflate) {
+  if (!is_trajectory_name(path))
+    throw InputError(option, "\"" + path.string() + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw InputError(option, path.string() + " is a folder");
+  prepare();
+  try {
+    file_ = create_file(unfinished_.path());
+  } catch (const Error& error) {
+    if (error.number() == ENOSPC || error.number() == EDQUOT) throw write_failure(path_, error);
+    const char* reason = error.number() != 0 ? std::strerror(error.number()) : error.what();
+    throw InputError(option, path.string() + " cannot be written: " + reason);
+  }
+
+  std::vector<std::string> names;
+  std::size_t largest = 1;
+  offsets_.push_back(0);
+  for (const Robot* robot : robots) {
+    names.push_back(robot->name);
+    offsets_.push_back(offsets_.back() + robot->masses.size());
+    largest = std::max(largest, robot->masses.size());
+  }
+  groups_ = group_names(names);
+  frames_a_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
+  positions_.resize(frames_a_block_ * offsets_.back());
+  velocities_.resize(frames_a_block_ * offsets_.back());
+  guarded([&] {
+    write_header(header);
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
+  });
+}
+
+TrajectoryWriter::~TrajectoryWriter() = default;
+
+void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
+  const Handle h5md = create_group(file_, "h5md");
+  write_attribute(h5md, "version", std::span<const std::int32_t>(h5md_version));
+  const Handle author_group = create_group(h5md, "author"), creator = create_group(h5md, "creator");
+  write_text(author_group, "name", author());
+  const std::string_view program = program_version;  // "mercury 0.1.0"
+  write_text(creator, "name", program.substr(0, program.find(' ')));
+  write_text(creator, "version", program.substr(program.find(' ') + 1));
+  const Handle modules = create_group(h5md, "modules"), units = create_group(modules, "units");
+  constexpr std::array<std::int32_t, 2> units_version{1, 0};
+  write_attribute(units, "version", std::span<const std::int32_t>(units_version));
+  write_unit(units, "SI", "system");
+
+  particles_ = create_ordered_group(file_, "particles");
+  connectivity_ = create_ordered_group(file_, "connectivity");
+  parameters_ = create_group(file_, "parameters");
+  write_attribute(parameters_, "format", std::int32_t{trajectory_format});
+  write_attribute(parameters_, "every", header.every);
+  if (header.seed) write_attribute(parameters_, "seed", *header.seed);
+  write_text(parameters_, "device_name", header.device_name);
+  write_configuration(parameters_, header.configuration);
+
+  const hsize_t chunk = std::clamp<hsize_t>(static_cast<hsize_t>(header.expected_frames), 1, 1024);
+  create_growing(parameters_, "step", H5T_STD_I64LE, {.chunk = chunk});
+  write_unit(create_growing(parameters_, "time", H5T_IEEE_F64LE, {.chunk = chunk}), "s");
+  write_dataset(parameters_, "materials", material_type(), material_type(), {default_materials().size()},
+                default_materials().data());
+  std::vector<std::string> names;
+  for (std::size_t id = 0; id < default_materials().size(); ++id)
+    names.push_back(default_material_name(static_cast<MaterialId>(id)));
+  write_text_dataset(parameters_, "material_names", names);
+}
+
+void TrajectoryWriter::write_configuration(hid_t parameters, Configuration configuration) {
+  write_text(parameters, "device", name_of(configuration.device));
+  write_attribute(parameters, "threads", std::int32_t{configuration.device.threads});
+  write_text(parameters, "solver", name_of(configuration.solver));
+  write_attribute(parameters, "dt", configuration.dt);
+  write_attribute(parameters, "damping", configuration.damping);
+  write_text(parameters, "environment", name_of(configuration.environment));
+  const auto write = [&]<class Value>(const char* name, const Value& value) {
+    if constexpr (std::is_same_v<Value, Vec3>)
+      write_attribute(parameters, name, std::span<const float>(std::array{value.x, value.y, value.z}));
+    else if constexpr (std::is_same_v<Value, bool>)
+      write_attribute(parameters, name, std::uint8_t{value});
+    else
+      write_attribute(parameters, name, value);
+  };
+  std::visit([&](auto& environment) { visit_parameters(environment, write); }, configuration.environment);
+}
+
+void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials) {
+  const std::string& name = groups_[index];
+  const Handle group = create_group(particles_, name);
+  write_text(group, "name", robot.name);
+  write_attribute(group, "index", static_cast<std::uint64_t>(index));
+  const Handle box = create_group(group, "box");
+  write_attribute(box, "dimension", std::int32_t{3});
+  write_texts(box, "boundary", {"none", "none", "none"});
+  create_frames(group, robot.masses.size());
+  write_unit(write_constant(group, "mass", 1, {robot.masses.size()}), "kg");
+  write_unit(write_dataset(group, "rest_position", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {robot.masses.size(), 3},
+                           robot.masses.data()),
+             "m");
+  write_connectivity(name, robot, group);
+  write_materials(group, robot, materials);
+  if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
+}
+
+// The pairs and triples where H5MD looks for them, and beside the masses as well.
+void TrajectoryWriter::write_connectivity(const std::string& name, const Robot& robot, hid_t particles) {
+  std::vector<std::uint16_t> ends;
+  std::vector<MaterialId> materials;
+  std::vector<float> rest_lengths;
+  for (const Spring& spring : robot.springs) {
+    ends.insert(ends.end(), {spring.a, spring.b});
+    materials.push_back(spring.material);
+    rest_lengths.push_back(spring.rest_length);
+  }
+  const Handle group = create_group(connectivity_, name);
+  const Handle springs =
+      write_dataset(group, "springs", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.springs.size(), 2}, ends.data());
+  const Handle faces =
+      write_dataset(group, "faces", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.faces.size(), 3}, robot.faces.data());
+  write_reference(springs, "particles_group", particles_, name);
+  write_reference(faces, "particles_group", particles_, name);
+  link(group, "springs", particles, "springs");
+  link(group, "faces", particles, "faces");
+  write_dataset(particles, "spring_material", H5T_STD_U8LE, H5T_NATIVE_UINT8, {materials.size()}, materials.data());
+  write_unit(write_dataset(particles, "spring_rest_length", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {rest_lengths.size()},
+                           rest_lengths.data()),
+             "m");
+}
+
+// A robot with the default materials shares one table with all others of that kind.
+void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials) {
+  if (std::ranges::equal(materials, default_materials()) && robot.material_names.empty()) {
+    link(parameters_, "materials", particles, "materials");
+    link(parameters_, "material_names", particles, "material_names");
+    return;
+  }
+  write_dataset(particles, "materials", material_type(), material_type(), {materials.size()}, materials.data());
+  if (!robot.material_names.empty()) write_text_dataset(particles, "material_names", robot.material_names);
+}
+
+// H5MD lets elements sampled at the same times share one time axis.
+void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
+  for (const auto& [element, unit] : {std::pair{"position", "m"}, std::pair{"velocity", "m s-1"}}) {
+    const Handle group = create_group(particles, element);
+    write_unit(create_growing(group, "value", H5T_IEEE_F32LE,
+                              {.row = {masses, 3}, .chunk = frames_a_block_, .deflate = deflate_}),
+               unit);
+    link(parameters_, "step", group, "step");
+    link(parameters_, "time", group, "time");
+  }
+}
+
+TrajectoryWriter::Frame TrajectoryWriter::add(std::int64_t step, double time) {
+  if (steps_.size() == frames_a_block_) flush();
+  const std::size_t masses = offsets_.back(), first = steps_.size() * masses;
+  steps_.push_back(step);
+  times_.push_back(time);
+  ++frames_;
+  return {std::span(positions_).subspan(first, masses), std::span(velocities_).subspan(first, masses)};
+}
+
+void TrajectoryWriter::flush() {
+  if (steps_.empty()) return;
+  guarded([&] {
+    const hsize_t first = static_cast<hsize_t>(frames_) - steps_.size();
+    flush_times(first);
+    for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
+      flush_robot(robot, "position", positions_, first);
+      flush_robot(robot, "velocity", velocities_, first);
+    }
+  });
+  steps_.clear();
+  times_.clear();
+}
+
+void TrajectoryWriter::flush_times(hsize_t first) {
+  append_rows(open_dataset(parameters_, "step"), H5T_NATIVE_INT64, first, steps_.size(), steps_.data());
+  append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, times_.size(), times_.data());
+}
+
+void TrajectoryWriter::flush_robot(std::size_t robot, const char* element, const std::vector<Vec3>& values,
+                                   hsize_t first) {
+  const hsize_t count = steps_.size(), masses = offsets_[robot + 1] - offsets_[robot];
+  const Handle group(H5Gopen2(particles_, groups_[robot].c_str(), H5P_DEFAULT)), series = open_group(group, element);
+  const Handle held(H5Screate_simple(3, Extent{count, offsets_.back(), 3}.data(), nullptr));
+  checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[robot], 0}.data(), nullptr,
+                              Extent{count, masses, 3}.data(), nullptr));
+  append_rows(open_dataset(series, "value"), H5T_NATIVE_FLOAT, first, count, values.data(), held);
+}
+
+void TrajectoryWriter::finish(std::span<const Telemetry> telemetry) {
+  flush();
+  guarded([&] {
+    for (std::size_t robot = 0; robot < telemetry.size(); ++robot) {
+      if (!telemetry[robot].exploded) continue;
+      const Handle group = open_group(particles_, groups_[robot]);
+      write_attribute(group, "exploded_at", telemetry[robot].exploded_at);
+      if (telemetry[robot].first_bad_spring != no_spring)
+        write_attribute(group, "first_bad_spring", telemetry[robot].first_bad_spring);
+    }
+    for (Handle* group : {&particles_, &connectivity_, &parameters_}) group->close();
+    checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    file_.close();
+  });
+  unfinished_.keep();
+}
+
+}  // namespace mercury

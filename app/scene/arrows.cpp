@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/scene/arrows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "app/scene/eigen_vec3.h"
+#include "app/scene/face_forces.h"
+#include "app/scene/floor_forces.h"
+#include "app/scene/group_layout.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr render::Color drag_color = render::rgb(0xff7043);
+constexpr render::Color lift_color = render::rgb(0x4fc3f7);
+constexpr render::Color velocity_color = render::rgb(0xaed581);
+constexpr render::Color gravity_color = render::rgb(0xce93d8);
+constexpr render::Color contact_color = render::rgb(0xffca28);
+
+// The largest of the middle one of the robots that have any, so that one strong robot does not make all others'
+// invisible.
+float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
+  std::vector<float> largest(robots);
+  for (const render::Arrow& arrow : arrows)
+    if (arrow.vector.allFinite()) largest[arrow.body] = std::max(largest[arrow.body], arrow.vector.norm());
+  std::erase(largest, 0.0f);
+  if (largest.empty()) return 0;
+  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
+  std::ranges::nth_element(largest, middle);
+  return *middle;
+}
+
+void scale(std::span<render::Arrow> arrows, float factor, float most) {
+  for (render::Arrow& arrow : arrows) {
+    arrow.vector *= factor;
+    const float length = arrow.vector.norm();
+    if (length > most) arrow.vector *= most / length;
+  }
+}
+
+float mean_size(const Simulation& simulation) {
+  float sum = 0;
+  for (std::size_t i = 0; i < simulation.size(); ++i) sum += 2 * rest_bounds(simulation.robot(i)).radius();
+  return simulation.size() > 0 ? sum / static_cast<float>(simulation.size()) : 1;
+}
+
+}  // namespace
+
+Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
+    : simulation_(simulation), kinds_(kinds), longest_(0.5f * mean_size(simulation)) {
+  const Environment& environment = simulation.configuration().environment;
+  if (kinds.contact && !std::holds_alternative<Land>(environment))
+    throw InputError("--show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
+  if ((kinds.drag || kinds.lift) && !has_face_forces(environment))
+    throw InputError("--show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
+                                           kinds.drag ? "drag" : "lift", name_of(environment)));
+}
+
+// Metres an arrow of one unit is long.
+float Arrows::Gauge::fit(float largest) {
+  if (largest > most) most = round_up(largest);
+  return most > 0 ? 1 / most : 0;
+}
+
+void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
+                       std::vector<render::Arrow>& lift) const {
+  const Robot& body = simulation_.robot(robot);
+  const std::size_t first = simulation_.mass_offsets()[robot];
+  const auto positions = std::span(state.positions).subspan(first, body.masses.size());
+  const auto velocities = std::span(state.velocities).subspan(first, body.masses.size());
+  for (const Face& face : body.faces) {
+    const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
+    const auto index = static_cast<std::uint32_t>(robot);
+    if (kinds_.drag) drag.push_back({index, eigen(force.center), eigen(force.drag), drag_color});
+    if (kinds_.lift) lift.push_back({index, eigen(force.center), eigen(force.lift), lift_color});
+  }
+}
+
+// From the mass up.
+void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const {
+  const std::size_t first = simulation_.mass_offsets()[robot];
+  for (const FloorForce& contact : floor_forces(simulation_, robot, state))
+    contacts.push_back({static_cast<std::uint32_t>(robot), eigen(state.positions[first + contact.mass]),
+                        eigen(contact.force), contact_color});
+}
+
+std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
+  std::vector<render::Arrow> forces, lifts, velocities;
+  std::vector<render::Arrow> gravities, contacts;
+  const Eigen::Vector3f gravity = eigen(gravity_of(simulation_.configuration().environment));
+  for (std::size_t i = 0; i < simulation_.size(); ++i) {
+    if (telemetry[i].exploded) continue;
+    if (kinds_.drag || kinds_.lift) add_faces(i, state, forces, lifts);
+    if (kinds_.contact) add_contacts(i, state, contacts);
+    const Eigen::Vector3f middle = eigen(telemetry[i].center_of_mass);
+    const auto index = static_cast<std::uint32_t>(i);
+    if (kinds_.velocity) velocities.push_back({index, middle, eigen(telemetry[i].velocity), velocity_color});
+    if (kinds_.gravity && gravity.norm() > 0)
+      gravities.push_back({index, middle, longest_ * gravity.normalized(), gravity_color});
+  }
+  forces.insert(forces.end(), lifts.begin(), lifts.end());
+  const auto fit = [&](std::vector<render::Arrow>& arrows, Gauge& gauge) {
+    scale(arrows, longest_ * gauge.fit(largest_of(arrows, simulation_.size())), 2 * longest_);
+  };
+  fit(forces, force_);
+  fit(velocities, velocity_);
+  fit(contacts, contact_);
+  for (const auto* more : {&velocities, &gravities, &contacts}) forces.insert(forces.end(), more->begin(), more->end());
+  std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.allFinite(); });
+  return forces;
+}
+
+std::string Arrows::key() const {
+  std::string text;
+  const auto add = [&](bool shown, const std::string& name, const Gauge& gauge) {
+    if (!shown || gauge.most <= 0) return;
+    text += fmt::format("{}{}: {:.2g} m = {:g} {}", text.empty() ? "" : "   ", name, longest_, gauge.most, gauge.unit);
+  };
+  add(kinds_.drag && kinds_.lift, "drag, lift", force_);
+  add(kinds_.drag && !kinds_.lift, "drag", force_);
+  add(kinds_.lift && !kinds_.drag, "lift", force_);
+  add(kinds_.contact, contact_.name, contact_);
+  add(kinds_.velocity, velocity_.name, velocity_);
+  return text;
+}
+
+}  // namespace mercury

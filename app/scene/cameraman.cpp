@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/scene/cameraman.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr double lag = 0.8;     // of the camera behind what it should see [s]
+constexpr float margin = 1.1f;  // of the framing, as a share of the distance
+constexpr float follow_margin = 1.8f;
+
+// The eye's axes in the world, as rows: right, up and forward.
+Eigen::Matrix3f axes_of(const render::Orbit& orbit) {
+  const render::Camera camera = orbit.camera();
+  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
+  const Eigen::Vector3f right = forward.cross(camera.up).normalized();
+  Eigen::Matrix3f axes;
+  axes << right.transpose(), right.cross(forward).transpose(), forward.transpose();
+  return axes;
+}
+
+// The distance at which an orbit sees all boxes, its target staying where it is: |x| <= tan_x (depth) for every corner.
+float least_distance(std::span<const render::Bounds> boxes, const render::Orbit& orbit, float aspect) {
+  const Eigen::Matrix3f axes = axes_of(orbit);
+  const Eigen::Array2f tangents = std::tan(orbit.field_of_view / 2) * Eigen::Array2f(aspect, 1);
+  float least = 0;
+  for (const render::Bounds& box : boxes) {
+    if (box.empty()) continue;
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3f corner(i & 1 ? box.high.x() : box.low.x(), i & 2 ? box.high.y() : box.low.y(),
+                                   i & 4 ? box.high.z() : box.low.z());
+      const Eigen::Vector3f p = axes * (corner - orbit.target);
+      least = std::max(least, (p.head<2>().array().abs() / tangents).maxCoeff() - p.z());
+    }
+  }
+  return least;
+}
+
+render::Bounds all_of(std::span<const render::Bounds> boxes) {
+  render::Bounds all;
+  for (const render::Bounds& box : boxes)
+    if (!box.empty()) all.extend(box);
+  return all;
+}
+
+std::size_t robot_named(const std::string& name, std::span<const std::string> names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc{} && end == name.data() + name.size() && number < names.size()) return number;
+  throw InputError("--camera", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", name,
+                                           names.size() - 1));
+}
+
+}  // namespace
+
+render::Orbit direction_of(const CameraPlan& plan, bool on_ground) {
+  render::Orbit orbit{.azimuth = -1.3f, .elevation = on_ground ? 0.6f : 0.35f};
+  if (plan.mode == CameraMode::top) {
+    orbit.azimuth = -std::numbers::pi_v<float> / 2;
+    orbit.elevation = std::numbers::pi_v<float> / 2;
+  }
+  orbit.azimuth = plan.azimuth.value_or(orbit.azimuth);
+  orbit.elevation = plan.elevation.value_or(orbit.elevation);
+  orbit.field_of_view = plan.field_of_view;
+  return orbit;
+}
+
+Cameraman::Cameraman(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names)
+    : plan_(plan), picture_(picture), orbit_(direction_of(plan, picture.on_ground)) {
+  if (!plan.robot.empty()) robot_ = robot_named(plan.robot, names);
+}
+
+render::Camera Cameraman::at(std::span<const render::Bounds> robots, double dt) {
+  switch (plan_.mode) {
+    case CameraMode::group:
+    case CameraMode::top:
+      keep_in_view(robots, dt);
+      break;
+    case CameraMode::follow:
+      go_along(robots, dt);
+      break;
+    case CameraMode::turntable:
+      circle(robots, dt);
+      break;
+    case CameraMode::still:
+      if (started_) break;
+      orbit_.frame(robots, picture_.aspect, margin / plan_.zoom, picture_.free);
+      orbit_.target = plan_.target.value_or(orbit_.target);
+      orbit_.distance = plan_.distance.value_or(orbit_.distance);
+      break;
+  }
+  started_ = true;
+  return orbit_.camera();
+}
+
+void Cameraman::keep_in_view(std::span<const render::Bounds> robots, double dt) {
+  constexpr float least_margin = 1.02f;  // what the lag may leave
+  render::Orbit wanted = orbit_;
+  wanted.frame(robots, picture_.aspect, margin / plan_.zoom, picture_.free);
+  const auto share = static_cast<float>(started_ ? 1 - std::exp(-dt / lag) : 1);
+  orbit_.target += share * (wanted.target - orbit_.target);
+  orbit_.distance += share * (wanted.distance - orbit_.distance);
+  if (plan_.zoom <= 1)
+    orbit_.distance = std::max(orbit_.distance, least_margin * least_distance(robots, orbit_, picture_.aspect));
+}
+
+void Cameraman::go_along(std::span<const render::Bounds> robots, double dt) {
+  const auto followed = robot_ ? robots.subspan(*robot_, 1) : robots;
+  const render::Bounds box = all_of(followed);
+  if (box.empty()) return;  // it has exploded: the camera stays
+  if (!started_) orbit_.frame(followed, picture_.aspect, (robot_ ? follow_margin : margin) / plan_.zoom, picture_.free);
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  int count = 0;
+  for (const render::Bounds& robot : followed) {
+    if (robot.empty()) continue;
+    middle += robot.center();
+    ++count;
+  }
+  middle /= static_cast<float>(count);
+  render::follow(orbit_, middle, started_ ? dt : INFINITY, lag);
+}
+
+void Cameraman::circle(std::span<const render::Bounds> robots, double dt) {
+  const render::Bounds box = all_of(robots);
+  if (box.empty()) return;
+  // A sphere looks the same from all sides, so that nothing pulses while the camera turns.
+  const float smaller_side = std::min(1.0f, picture_.aspect);
+  const float half_angle = std::atan(smaller_side * std::tan(plan_.field_of_view / 2));
+  const float distance = margin / plan_.zoom * box.radius() / std::sin(half_angle);
+  const double since = started_ ? dt : INFINITY;
+  render::follow(orbit_, box.center(), since, lag);
+  orbit_.distance += static_cast<float>(1 - std::exp(-since / lag)) * (distance - orbit_.distance);
+  if (started_) orbit_.azimuth += static_cast<float>(2 * std::numbers::pi * dt / plan_.period);
+}
+
+}  // namespace mercury

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// A group of simulated robots as a scene to draw.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/scene/appearance.h"
+#include "app/scene/group_layout.h"
+#include "app/scene/robot_shape.h"
+#include "app/scene/scene_details.h"
+#include "app/scene/view_settings.h"
+#include "mercury/simulation.h"
+#include "render/renderer.h"
+
+namespace mercury {
+
+// The robots of a group when its scene is made; referred to only until then.
+struct Group {
+  std::vector<const Robot*> robots;
+  std::vector<std::string> names;                    // one a robot
+  std::vector<std::span<const Material>> materials;  // one table a robot, as they are now
+  std::vector<Telemetry> telemetry;                  // one a robot
+  Environment environment;
+  std::vector<std::shared_ptr<const RobotShape>> shapes;  // one a robot; empty = to be made
+  std::shared_ptr<const render::BodyData> bodies;         // of the shapes; nothing = to be made
+};
+Group group_of(const Simulation& simulation);
+
+// The way that a robot's centre of mass went.
+struct Trail {
+  Eigen::Vector3f start{0, 0, 0};  // [m]
+  std::vector<float> points;       // 3 each
+};
+
+// Keeps what Scene's spans refer to. Knows no OpenGL.
+class GroupScene {
+ public:
+  // `offsets`: one a robot, added to its coordinates.
+  GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
+  GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+      : GroupScene(group_of(simulation), std::move(offsets), settings) {}
+
+  // Changes that need no new bodies; from the next update() on.
+  void set_settings(const ViewSettings& settings);
+  void set_environment(const Environment& environment);
+  void set_offsets(std::span<const Eigen::Vector3f> offsets);
+  void set_materials(std::size_t robot, std::span<const Material> materials);
+  void set_name(std::size_t robot, const std::string& name) { names_[robot] = name; }
+  void mark(std::size_t robot, bool selected, bool hidden);
+  // Trails begin anew.
+  void restart(std::span<const Telemetry> telemetry);
+  const std::vector<Trail>& trails() const { return trails_; }
+  void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
+
+  // Gives the robots to a renderer; once, and again when the robots change.
+  void set_bodies(render::Renderer& renderer) const;
+
+  // Brings everything but the positions to a moment of the simulation.
+  void update(double time, std::span<const Telemetry> telemetry, SceneDetails details);
+
+  render::Scene& scene() { return scene_; }
+
+  // The box around each robot in the picture at the last update(), told from its centre of mass and size at rest.
+  // Those of exploded robots are empty, unless all have exploded.
+  std::span<const render::Bounds> bounds() const { return bounds_; }
+
+ private:
+  // Looks of robots that have the same materials now and the same of their own, which give the colours.
+  struct Table {
+    std::size_t first_look = 0;
+    std::vector<Material> own, materials;
+    bool defaults = true;    // it has the default table
+    std::size_t robots = 0;  // that use it; 0 = free for others
+  };
+  void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
+           const Eigen::Vector3f& offset);
+  std::size_t table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults);
+  void use_table(std::size_t robot, std::size_t table);
+  void show_surroundings();
+  void place_floor();
+  void place(std::span<const Telemetry> telemetry);
+  void lengthen_paths(std::span<const Telemetry> telemetry);
+  void write_labels(std::span<const Telemetry> telemetry);
+  void color(SceneDetails details);
+
+  ViewSettings settings_;
+  GrowingScale scale_;
+  std::vector<std::string> names_;
+  std::shared_ptr<const render::BodyData> bodies_;
+  std::vector<Table> tables_;
+  std::vector<render::Look> looks_;
+  std::vector<render::Placement> placements_;
+  std::vector<render::Bounds> rest_;  // about the centre of mass at rest
+  std::vector<render::Bounds> bounds_;
+  std::vector<std::size_t> table_of_;  // one a robot
+  std::vector<bool> grown_;            // robots drawn smooth whatever the settings
+  Environment environment_;
+  std::vector<Trail> trails_;
+  std::vector<render::Path> paths_;
+  std::vector<render::Label> labels_;
+  std::vector<std::pair<render::Color, std::string>> swatches_;  // of the legend of materials
+  SceneDetails details_;
+  render::Scene scene_;
+};
+
+}  // namespace mercury

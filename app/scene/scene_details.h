@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is shown of a moment beside the robots' shapes: values to colour by, and arrows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene/arrows.h"
+#include "app/scene/coloring.h"
+#include "app/scene/view_settings.h"
+#include "mercury/simulation.h"
+
+namespace mercury {
+
+struct SceneDetails {
+  ColorValues values;
+  std::vector<render::Arrow> arrows;
+  std::string arrow_key;  // what their lengths mean
+};
+
+// Computes them by the thread that simulates, so that it overlaps with drawing. When nothing but shapes is shown,
+// positions and velocities are not even read.
+class DetailObserver {
+ public:
+  // Throws InputError when the environment has no such quantity.
+  DetailObserver(const Simulation& simulation, const ViewSettings& settings);
+  SceneDetails observe(std::span<const Telemetry> telemetry);
+  // What the values are values of.
+  ColorBy color() const { return coloring_ ? coloring_->by() : ColorBy::material; }
+
+ private:
+  const Simulation& simulation_;
+  std::optional<Coloring> coloring_;
+  std::optional<Arrows> arrows_;
+};
+
+}  // namespace mercury

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen of a group, and how: the choices that a window and a video share.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "app/scene/arrows.h"
+#include "app/scene/camera_plan.h"
+#include "app/scene/coloring.h"
+#include "app/scene/group_layout.h"
+#include "render/scene.h"
+
+namespace mercury {
+
+struct Shown {
+  bool skin = true, springs = false, masses = false;
+  bool path = false;    // of each centre of mass
+  bool labels = false;  // name, distance and rank at each robot
+  bool legend = false;  // of the colours
+  bool clock = true;
+  bool scale_bar = false;
+  ArrowKinds arrows;
+};
+
+struct ViewSettings {
+  ColorBy color = ColorBy::material;
+  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits what was seen so far
+  Shown shown;
+  render::Theme theme = render::Theme::dark;
+  bool smooth = false;
+  std::optional<render::CutPlane> cut;
+  Layout layout = Layout::grid;
+  std::optional<Grid> grid;
+  CameraPlan camera;
+  bool interop = true;  // let CUDA write into OpenGL's memory where it can
+  double speed = 1;     // simulated seconds a second, for the clock
+};
+
+}  // namespace mercury

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Positions from CUDA's memory into OpenGL's, on the card that both use.
+#include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
+
+#include <cuda_gl_interop.h>
+#include <cuda_runtime_api.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "app/video/position_bridge.h"
+#include "sim/cuda/memory.h"
+
+namespace mercury {
+namespace {
+
+using cuda::check;
+
+// A point in a stream that other streams can wait for.
+class Mark {
+ public:
+  Mark() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
+  ~Mark() { cudaEventDestroy(event_); }
+  Mark(const Mark&) = delete;
+  Mark& operator=(const Mark&) = delete;
+  void set(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "recording an event"); }
+  // What is put into the stream from now on waits for the mark; one never set holds nothing up.
+  void hold(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "waiting for an event"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// A stream that does not wait for the simulation's.
+class Stream {
+ public:
+  Stream() {
+    int least = 0, greatest = 0;
+    check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "asking for priorities");
+    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, greatest), "making a stream");
+  }
+  ~Stream() {
+    cudaStreamSynchronize(stream_);
+    cudaStreamDestroy(stream_);
+  }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  cudaStream_t get() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+// An OpenGL buffer as CUDA knows it.
+class SharedBuffer {
+ public:
+  explicit SharedBuffer(GLuint name) {
+    const cudaError_t error = cudaGraphicsGLRegisterBuffer(&resource_, name, cudaGraphicsRegisterFlagsWriteDiscard);
+    if (error == cudaSuccess) return;
+    (void)cudaGetLastError();
+    throw NoInterop(std::string("CUDA does not take OpenGL's buffer: ") + cudaGetErrorString(error));
+  }
+  ~SharedBuffer() { cudaGraphicsUnregisterResource(resource_); }
+  SharedBuffer(const SharedBuffer&) = delete;
+  SharedBuffer& operator=(const SharedBuffer&) = delete;
+
+  // Fills its beginning. OpenGL's calls before and after this one see it before and after.
+  void fill(const cuda::DeviceArray<float>& values, cudaStream_t stream) {
+    check(cudaGraphicsMapResources(1, &resource_, stream), "taking OpenGL's buffer");
+    void* memory = nullptr;
+    std::size_t bytes = 0;
+    check(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_), "finding OpenGL's buffer");
+    const std::size_t wanted = values.size() * sizeof(float);
+    if (bytes < wanted) throw std::logic_error("the renderer's bodies are not those of the simulation");
+    const cudaError_t copied = cudaMemcpyAsync(memory, values.data(), wanted, cudaMemcpyDeviceToDevice, stream);
+    check(cudaGraphicsUnmapResources(1, &resource_, stream), "giving OpenGL's buffer back");
+    check(copied, "copying positions");
+  }
+
+ private:
+  cudaGraphicsResource_t resource_ = nullptr;
+};
+
+// Memory of one snapshot.
+struct Store {
+  explicit Store(std::size_t masses) : positions(3 * masses) {}
+  cuda::DeviceArray<float> positions;
+  Mark taken, shown;  // it is full; it has been copied on
+};
+
+// Stores that are done with, for the next snapshots.
+class Shelf {
+ public:
+  std::unique_ptr<Store> take(std::size_t masses) {
+    const std::lock_guard lock(mutex_);
+    while (!free_.empty()) {
+      std::unique_ptr<Store> store = std::move(free_.back());
+      free_.pop_back();
+      if (store->positions.size() == 3 * masses) return store;
+    }
+    return std::make_unique<Store>(masses);
+  }
+  void put(std::unique_ptr<Store> store) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(store));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Store>> free_;
+};
+
+class CudaSnapshot final : public PositionSnapshot {
+ public:
+  CudaSnapshot(std::shared_ptr<Shelf> shelf, const Simulation& simulation)
+      : shelf_(std::move(shelf)), store_(shelf_->take(simulation.mass_count())) {
+    // The simulation's kernels run in this stream: the copy comes after the steps before and before those after.
+    store_->shown.hold(cudaStreamLegacy);
+    simulation.copy_positions(store_->positions.data());
+    store_->taken.set(cudaStreamLegacy);
+  }
+  ~CudaSnapshot() override { shelf_->put(std::move(store_)); }
+
+  Store& store() const { return *store_; }
+
+ private:
+  std::shared_ptr<Shelf> shelf_;
+  std::unique_ptr<Store> store_;
+};
+
+class CudaBridge final : public PositionBridge {
+ public:
+  CudaBridge(int device, GLuint buffer) : device_(device), buffer_(buffer) {}
+
+  std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
+    use_device();
+    return std::make_unique<CudaSnapshot>(shelf_, simulation);
+  }
+
+  void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
+    use_device();
+    Store& store = dynamic_cast<const CudaSnapshot&>(snapshot).store();
+    store.taken.hold(stream_.get());
+    buffer_.fill(store.positions, stream_.get());
+    store.shown.set(stream_.get());
+    scene.positions = {};
+  }
+
+ private:
+  void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
+
+  int device_;
+  Stream stream_;
+  SharedBuffer buffer_;
+  std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+};
+
+}  // namespace
+
+int cuda_device_of_current_context() {
+  unsigned count = 0;
+  int device = -1;
+  if (cudaGLGetDevices(&count, &device, 1, cudaGLDeviceListAll) == cudaSuccess && count > 0) return device;
+  (void)cudaGetLastError();
+  return -1;
+}
+
+std::unique_ptr<PositionBridge> make_cuda_bridge(const Simulation& simulation, const render::Renderer& renderer) {
+  const int simulating = simulation.cuda_device();
+  if (simulating < 0) throw NoInterop("the robots are not on one CUDA device");
+  if (simulation.mass_count() == 0) throw NoInterop("there are no robots");
+  const int drawing = cuda_device_of_current_context();
+  if (drawing < 0) throw NoInterop("OpenGL does not draw on a card that CUDA knows");
+  if (drawing != simulating)
+    throw NoInterop("CUDA device " + std::to_string(simulating) + " simulates, device " + std::to_string(drawing) +
+                    " draws");
+  check(cudaSetDevice(simulating), "choosing the device");
+  return std::make_unique<CudaBridge>(simulating, renderer.position_buffer());
+}
+
+}  // namespace mercury

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/ffmpeg_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <sys/wait.h>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+// A palette for the whole GIF needs all frames in memory until the last has come; beyond this each frame gets its own.
+constexpr double palette_memory = 1.5e9;  // [bytes]
+
+std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& settings) {
+  const std::vector<std::string> color{"-colorspace", "bt709", "-color_primaries", "bt709",
+                                       "-color_trc",  "bt709", "-color_range",     "tv"};
+  std::vector<std::string> arguments;
+  switch (kind) {
+    case VideoKind::mp4:
+      arguments = {"-c:v",       "libx264",   "-preset", "veryfast",
+                   "-profile:v", "high",      "-crf",    fmt::to_string(settings.crf < 0 ? 18 : settings.crf),
+                   "-movflags",  "+faststart"};
+      break;
+    case VideoKind::webm:
+      arguments = {
+          "-c:v",      "libvpx-vp9", "-b:v",      "0", "-crf",    fmt::to_string(settings.crf < 0 ? 30 : settings.crf),
+          "-deadline", "good",       "-cpu-used", "5", "-row-mt", "1"};
+      break;
+    case VideoKind::gif: {
+      const double bytes = 4.0 * settings.size.width * settings.size.height;
+      const bool own_palettes = bytes * static_cast<double>(settings.expected_frames) > palette_memory;
+      return {"-filter_complex",
+              fmt::format("split[a][b];[a]palettegen=stats_mode={}[p];[b][p]paletteuse=dither=bayer:bayer_scale=4{}",
+                          own_palettes ? "single" : "full", own_palettes ? ":new=1" : ":diff_mode=rectangle"),
+              "-loop",
+              "0",
+              "-f",
+              "gif"};
+    }
+    case VideoKind::png_folder:
+      break;
+  }
+  arguments.insert(arguments.end(), color.begin(), color.end());
+  arguments.insert(arguments.end(), {"-f", kind == VideoKind::mp4 ? "mp4" : "webm"});
+  return arguments;
+}
+
+// Makes the file at once, so that a name that cannot be written is told before anything is computed.
+void create(const std::string& output, const UnfinishedFile& file) {
+  if (std::filesystem::exists(output) && !std::filesystem::is_regular_file(output))
+    throw InputError("-o", output + " is not a file that can be replaced");
+  const int descriptor = ::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw InputError("-o", output + " cannot be written: " + std::strerror(errno));
+  ::close(descriptor);
+}
+
+}  // namespace
+
+std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& settings, const std::string& file) {
+  const bool yuv = pixel_format_of(kind) == render::PixelFormat::yuv420;
+  std::vector<std::string> arguments{"-hide_banner",
+                                     "-loglevel",
+                                     "error",
+                                     "-nostdin",
+                                     "-y",
+                                     "-f",
+                                     "rawvideo",
+                                     "-pixel_format",
+                                     yuv ? "yuv420p" : "rgb24",
+                                     "-video_size",
+                                     fmt::format("{}x{}", settings.size.width, settings.size.height),
+                                     "-framerate",
+                                     fmt::format("{}", settings.frames_per_second)};
+  if (yuv) arguments.insert(arguments.end(), {"-colorspace", "bt709", "-color_range", "tv"});
+  arguments.insert(arguments.end(), {"-i", "pipe:0", "-an"});
+  const std::vector<std::string> codec = codec_arguments(kind, settings);
+  arguments.insert(arguments.end(), codec.begin(), codec.end());
+  // "file:" keeps a colon or a leading dash in the name from meaning something to ffmpeg.
+  arguments.push_back("file:" + file);
+  return arguments;
+}
+
+std::string telling_line(const std::string& messages) {
+  std::string last;
+  for (std::size_t start = 0; start < messages.size();) {
+    std::size_t end = messages.find_first_of("\r\n", start);
+    if (end == std::string::npos) end = messages.size();
+    const std::string line = messages.substr(start, end - start);
+    start = end + 1;
+    const bool says_nothing = line.find_first_not_of(" \t") == std::string::npos || line == "Conversion failed!" ||
+                              line.find("Last message repeated") != std::string::npos;
+    if (!says_nothing) last = line.substr(line.find_first_not_of(" \t"));
+  }
+  constexpr std::size_t longest = 300;
+  return last.size() > longest ? last.substr(0, longest) + "..." : last;
+}
+
+FfmpegWriter::FfmpegWriter(const std::string& output, VideoKind kind, const VideoSettings& settings)
+    : output_(output), kind_(kind), program_(encoder_program(settings.ffmpeg)), file_(output) {
+  create(output, file_);
+  try {
+    encoder_.emplace(program_, ffmpeg_arguments(kind, settings, file_.path().string()));
+  } catch (const CannotStart& error) {
+    if (!settings.ffmpeg.empty()) throw InputError("--ffmpeg", program_ + " cannot be started: " + error.what());
+    if (program_ != "ffmpeg") throw InputError("MERCURY_FFMPEG", program_ + " cannot be started: " + error.what());
+    throw VideoError(
+        "ffmpeg was not found: install the package ffmpeg (apt install ffmpeg), name the program with --ffmpeg, or "
+        "write PNG pictures into a folder (-o FOLDER)");
+  }
+}
+
+void FfmpegWriter::write(const render::Image& frame) {
+  if (!encoder_->write(frame.bytes)) fail(encoder_->finish());
+}
+
+void FfmpegWriter::finish() {
+  const int status = encoder_->finish();
+  std::error_code error;
+  if (status != 0 || std::filesystem::file_size(file_.path(), error) == 0 || error) fail(status);
+  try {
+    file_.keep();
+  } catch (const std::filesystem::filesystem_error& failure) {
+    throw VideoError(output_ + ": cannot be given its name: " + failure.code().message());
+  }
+}
+
+void FfmpegWriter::fail(int status) {
+  const std::string messages = encoder_->messages();
+  if (messages.find("No space left on device") != std::string::npos)
+    throw VideoError(output_ + ": the disk is full; nothing was kept");
+  if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) || messages.find("File too large") != std::string::npos)
+    throw VideoError(output_ + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept");
+  const std::string end = status == 0 ? "wrote nothing" : describe_exit(status);
+  const std::string line = telling_line(messages);
+  throw VideoError(output_ + ": the encoder " + program_ + " " + end + (line.empty() ? "" : ": " + line));
+}
+
+std::string FfmpegWriter::description() const {
+  const char* codec = kind_ == VideoKind::mp4 ? "H.264" : kind_ == VideoKind::webm ? "VP9" : "GIF";
+  return fmt::format("{} by {}", codec, program_);
+}
+
+}  // namespace mercury

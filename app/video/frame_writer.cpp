@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/frame_writer.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "app/video/ffmpeg_writer.h"
+#include "app/video/png_folder.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require_usable(const std::string& output, VideoKind kind, const VideoSettings& settings) {
+  const auto [width, height] = settings.size;
+  if (width < 1 || height < 1 || width > 16384 || height > 16384)
+    throw InputError("--size", std::to_string(width) + "x" + std::to_string(height) +
+                                   " is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384");
+  if (!(settings.frames_per_second > 0 && settings.frames_per_second <= 1000))
+    throw InputError("--fps", "give a number above 0 and up to 1000");
+  if (kind == VideoKind::gif && settings.frames_per_second > 50)
+    throw InputError("--fps", "a GIF shows at most 50 frames/s; give 50 or less, or another format");
+  if (settings.size != encoded_size(kind, settings.size))
+    throw InputError(output, "this format needs an even width and height");
+}
+
+}  // namespace
+
+void make_parent_folder(const fs::path& output) {
+  const fs::path parent = output.parent_path();
+  std::error_code error;
+  if (!parent.empty()) fs::create_directories(parent, error);
+  if (error) throw InputError("-o", "cannot make the folder " + parent.string() + ": " + error.message());
+}
+
+VideoKind video_kind_of(const std::string& output) {
+  const fs::path path(output);
+  if (output.empty()) throw InputError("-o", "give a file (.mp4, .webm or .gif) or a folder for PNG pictures");
+  if (fs::is_directory(path) || path.filename().empty()) return VideoKind::png_folder;
+  const std::string extension = path.extension().string();
+  if (extension == ".mp4") return VideoKind::mp4;
+  if (extension == ".webm") return VideoKind::webm;
+  if (extension == ".gif") return VideoKind::gif;
+  if (extension.empty()) return VideoKind::png_folder;
+  if (extension == ".png")
+    throw InputError("-o", output + " is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder");
+  throw InputError("-o", output + ": \"" + extension +
+                             "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
+}
+
+PictureSize encoded_size(VideoKind kind, PictureSize size) {
+  if (pixel_format_of(kind) != render::PixelFormat::yuv420) return size;
+  return {size.width + size.width % 2, size.height + size.height % 2};
+}
+
+render::PixelFormat pixel_format_of(VideoKind kind) {
+  return kind == VideoKind::mp4 || kind == VideoKind::webm ? render::PixelFormat::yuv420 : render::PixelFormat::rgb;
+}
+
+std::string encoder_program(const std::string& ffmpeg_option) {
+  if (!ffmpeg_option.empty()) return ffmpeg_option;
+  const char* named = std::getenv("MERCURY_FFMPEG");
+  return named && *named ? named : "ffmpeg";
+}
+
+std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const VideoSettings& settings) {
+  const VideoKind kind = video_kind_of(output);
+  require_usable(output, kind, settings);
+  if (kind == VideoKind::png_folder) {
+    const fs::path path(output);
+    const fs::path folder = path.filename().empty() && path.has_parent_path() ? path.parent_path() : path;
+    make_parent_folder(folder);
+    return std::make_unique<PngFolder>(folder);
+  }
+  make_parent_folder(output);
+  return std::make_unique<FfmpegWriter>(output, kind, settings);
+}
+
+}  // namespace mercury

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/position_bridge.h"
+
+#include <mutex>
+
+namespace mercury {
+namespace {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are handed on as plain floats");
+
+// Memory of snapshots that are done with, for the next ones.
+class Shelf {
+ public:
+  std::vector<Vec3> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return {};
+    std::vector<Vec3> positions = std::move(free_.back());
+    free_.pop_back();
+    return positions;
+  }
+  void put(std::vector<Vec3> positions) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(positions));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::vector<Vec3>> free_;
+};
+
+class HostSnapshot final : public PositionSnapshot {
+ public:
+  HostSnapshot(std::shared_ptr<Shelf> shelf, const Simulation& simulation)
+      : shelf_(std::move(shelf)), positions_(shelf_->take()) {
+    positions_.resize(simulation.mass_count());
+    simulation.read_positions(positions_);
+  }
+  ~HostSnapshot() override { shelf_->put(std::move(positions_)); }
+
+  std::span<const float> floats() const { return {&positions_.data()->x, 3 * positions_.size()}; }
+
+ private:
+  std::shared_ptr<Shelf> shelf_;
+  std::vector<Vec3> positions_;
+};
+
+class HostBridge final : public PositionBridge {
+ public:
+  std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
+    return std::make_unique<HostSnapshot>(shelf_, simulation);
+  }
+  void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
+    scene.positions = dynamic_cast<const HostSnapshot&>(snapshot).floats();
+  }
+
+ private:
+  std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+};
+
+}  // namespace
+
+std::unique_ptr<PositionBridge> make_host_bridge() { return std::make_unique<HostBridge>(); }
+
+ChosenBridge choose_bridge(const Simulation& simulation, const render::Renderer& renderer, bool interop) {
+  if (!interop || simulation.cuda_device() < 0) return {.bridge = make_host_bridge()};
+  try {
+    return {.bridge = make_cuda_bridge(simulation, renderer), .on_card = true};
+  } catch (const NoInterop& error) {
+    return {.bridge = make_host_bridge(),
+            .note = std::string("positions are copied through the host: ") + error.what()};
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/studio.h"
+
+#include <variant>
+
+#include "app/scene/group_layout.h"
+
+namespace mercury {
+namespace {
+
+bool on_land(const Simulation& simulation) {
+  return std::holds_alternative<Land>(simulation.configuration().environment);
+}
+
+std::vector<std::string> names_of(const Simulation& simulation) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < simulation.size(); ++i) names.push_back(simulation.robot(i).name);
+  return names;
+}
+
+float aspect_of(const render::Renderer& renderer) {
+  return static_cast<float>(renderer.width()) / static_cast<float>(renderer.height());
+}
+
+std::vector<Eigen::Vector3f> offsets_of(const Simulation& simulation, const ViewSettings& settings, float aspect) {
+  std::vector<render::Bounds> bounds;
+  for (std::size_t i = 0; i < simulation.size(); ++i) bounds.push_back(rest_bounds(simulation.robot(i)));
+  const bool land = on_land(simulation);
+  // From straight above, robots that swim are laid out as if on the ground.
+  const bool flat = land || settings.camera.mode == CameraMode::top;
+  return grid_layout(bounds, {.layout = settings.layout,
+                              .grid = settings.grid,
+                              .aspect = aspect,
+                              .view = direction_of(settings.camera, land),
+                              .on_ground = flat});
+}
+
+// What the picture keeps free of robots for what is written on it, as shares of its sides.
+render::Insets written_on(const ViewSettings& settings) {
+  render::Insets free;
+  if (settings.shown.legend) free.right = 0.1f;
+  if (settings.shown.labels) free.top = 0.07f;
+  if (settings.shown.clock || settings.shown.scale_bar) free.bottom = 0.03f;
+  return free;
+}
+
+}  // namespace
+
+Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality, int cuda_device) {
+  auto context = render::make_context({.kind = kind, .cuda_device = cuda_device, .debug = false});
+  render::Renderer renderer(*context, {.width = size.width, .height = size.height, .quality = quality});
+  return {std::move(context), std::move(renderer)};
+}
+
+Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings)
+    : stage_(stage), simulation_(std::move(simulation)),
+      scene_(simulation_, offsets_of(simulation_, settings, aspect_of(stage.renderer)), settings),
+      camera_(settings.camera,
+              {.aspect = aspect_of(stage.renderer), .free = written_on(settings), .on_ground = on_land(simulation_)},
+              names_of(simulation_)),
+      details_(simulation_, settings) {
+  scene_.set_bodies(stage.renderer);
+  bridge_ = choose_bridge(simulation_, stage.renderer, settings.interop);
+}
+
+FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet,
+                        FilmControl* control) {
+  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels},
+                       timing, quiet, control);
+}
+
+}  // namespace mercury

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the file dialog looks.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/window/dialogs/file_dialog.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = FileQuestion::Kind;
+
+std::string size_text(std::uintmax_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  if (bytes < 1'000'000) return fmt::format("{:.3g} kB", static_cast<double>(bytes) / 1e3);
+  return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6);
+}
+
+std::string date_text(std::time_t time) {
+  std::tm local{};
+  return time == 0 || !localtime_r(&time, &local) ? "" : fmt::format("{:%Y-%m-%d %H:%M}", local);
+}
+
+// A sign before the name, as high as a line.
+void sign(bool folder) {
+  const float text = ImGui::GetFontSize();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (folder) {
+    list.AddRectFilled({corner.x, corner.y + 0.2f * text}, {corner.x + 0.45f * text, corner.y + 0.5f * text},
+                       palette().accent, 0.1f * text);
+    list.AddRectFilled({corner.x, corner.y + 0.32f * text}, {corner.x + text, corner.y + 0.95f * text},
+                       palette().accent, 0.1f * text);
+  } else {
+    list.AddRect({corner.x + 0.15f * text, corner.y + 0.1f * text}, {corner.x + 0.8f * text, corner.y + 0.97f * text},
+                 palette().faint, 0.1f * text);
+  }
+  ImGui::Dummy({1.25f * text, text});
+  ImGui::SameLine(0, 0);
+}
+
+// Before an item that takes the rest of the row.
+void label(const char* text, float width) {
+  const float left = ImGui::GetCursorPosX();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(left + width);
+  ImGui::SetNextItemWidth(-1);
+}
+
+}  // namespace
+
+void FileDialog::draw(Observations& observations) {
+  if (!open_ && !shown_) return;
+  const std::string id = question_.title + "###files";
+  if (open_ && fresh_) {
+    ImGui::OpenPopup(id.c_str());
+    focus_ = true;
+    entered_ = false;
+  }
+  fresh_ = false;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float text = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 46 * text), std::min(0.94f * screen.y, 32 * text)});
+  if (!ImGui::BeginPopupModal(id.c_str(), nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
+    open_ = shown_ = false;
+    return;
+  }
+  shown_ = open_;
+  if (open_) {
+    draw_places(observations);
+    draw_items(observations);
+    draw_name(observations);
+    draw_buttons(observations);
+    if (std::exchange(entered_, false)) {
+      if (place_active_)
+        enter(typed_path(view_.folder(), place_));
+      else
+        accept();
+    }
+  }
+  if (!open_) {  // answered, or Esc
+    shown_ = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+  // It may open the next dialog.
+  if (std::exchange(answered_, false)) act_(answer_);
+}
+
+void FileDialog::draw_places(Observations& observations) {
+  if (ImGui::Button("Up")) go_up();
+  observations.item("files.up");
+  hint("the folder above (Backspace where no name is typed)");
+  ImGui::SameLine();
+  if (const char* home = std::getenv("HOME"); home && *home) {
+    if (ImGui::Button("Home")) enter(home);
+    observations.item("files.home");
+    ImGui::SameLine();
+  }
+  if (ImGui::Button("Start")) enter(fs::current_path());
+  observations.item("files.start");
+  hint("the folder that the program was started in");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID(view_.folder().string().c_str());
+  text_field("##place", place_);
+  place_active_ = ImGui::IsItemActive() || (place_active_ && entered_);
+  ImGui::PopID();
+  observations.item("files.place");
+  hint("a folder's name, then Enter");
+}
+
+void FileDialog::draw_items(Observations& observations) {
+  const float lines = (error_.empty() ? 2.0f : 3.0f) + (question_.formats.empty() ? 0.0f : 1.0f) +
+                      (question_.kind == Kind::folder ? 1.0f : 0.0f);
+  const float height = ImGui::GetContentRegionAvail().y - lines * ImGui::GetFrameHeightWithSpacing();
+  const auto flags =
+      ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Sortable;
+  if (!ImGui::BeginTable("items", 3, flags, {0, std::max(height, 4 * ImGui::GetFrameHeight())})) return;
+  const float text = ImGui::GetFontSize();
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch | ImGuiTableColumnFlags_DefaultSort);
+  ImGui::TableSetupColumn("size", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending,
+                          5 * text);
+  ImGui::TableSetupColumn("changed", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending,
+                          9 * text);
+  ImGui::TableHeadersRow();
+  if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0)
+    view_.sort(static_cast<FolderView::Order>(specs->Specs[0].ColumnIndex),
+               specs->Specs[0].SortDirection == ImGuiSortDirection_Descending);
+  const float row_height = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+  if (std::exchange(reveal_, false) && view_.cursor()) {
+    const float row = row_height * static_cast<float>(*view_.cursor()),
+                seen = ImGui::GetWindowHeight() - 2 * row_height;
+    if (row < ImGui::GetScrollY()) ImGui::SetScrollY(row);
+    if (row > ImGui::GetScrollY() + seen) ImGui::SetScrollY(row - seen);
+  }
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(view_.items().size()), row_height);
+  const fs::path folder = view_.folder();
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      // A click may have gone to another folder.
+      if (static_cast<std::size_t>(i) < view_.items().size() && view_.folder() == folder)
+        draw_row(static_cast<std::size_t>(i), observations);
+  ImGui::EndTable();
+}
+
+void FileDialog::draw_row(std::size_t index, Observations& observations) {
+  const FolderItem item = view_.items()[index];
+  ImGui::PushID(static_cast<int>(index));
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  const bool clicked = ImGui::Selectable("##row", item.marked,
+                                         ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
+  if (index < 20) observations.item(fmt::format("file.{}", item.name));
+  ImGui::SameLine(0, 0);
+  sign(item.folder);
+  const bool dim = !item.folder && question_.kind == Kind::folder;
+  if (dim) ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::TextUnformatted(shortened(item.name, ImGui::GetContentRegionAvail().x, true).c_str());
+  if (dim) ImGui::PopStyleColor();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::TableNextColumn();
+  if (!item.folder) ImGui::TextUnformatted(size_text(item.bytes).c_str());
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(date_text(item.changed).c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopID();
+  if (clicked) click(index);
+}
+
+void FileDialog::draw_name(Observations& observations) {
+  if (!error_.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+    ImGui::TextUnformatted(shortened(error_, ImGui::GetContentRegionAvail().x, true).c_str());
+    ImGui::PopStyleColor();
+  }
+  static constexpr const char* names[] = {"name", "name", "folder"};
+  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path",
+                                           "a folder in this one, or none"};
+  const auto kind = static_cast<std::size_t>(question_.kind);
+  const float names_width = 6 * ImGui::GetFontSize();
+  label(names[kind], names_width);
+  if (std::exchange(focus_, false)) ImGui::SetKeyboardFocusHere();
+  const std::string before = text_;
+  ImGui::PushID(text_edition_);
+  text_field("##name", text_, wanted[kind]);
+  ImGui::PopID();
+  observations.item("dialog.text");
+  if (question_.kind != Kind::open) hint("folders that are missing are made");
+  if (text_ != before) typed();
+  if (question_.kind == Kind::folder)
+    note(shortened(
+             question_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(),
+             ImGui::GetContentRegionAvail().x, true)
+             .c_str());
+  if (question_.formats.empty()) return;
+  label("kind", names_width);
+  if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) &&
+      question_.kind == Kind::save)
+    set_text(fs::path(text_).replace_extension(question_.extensions[static_cast<std::size_t>(format_)]).string());
+  observations.item("files.format");
+  hint("JSON can be read by people; CBOR is the same, and smaller");
+}
+
+void FileDialog::draw_buttons(Observations& observations) {
+  const float text = ImGui::GetFontSize(),
+              width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
+  if (question_.kind == Kind::open) {
+    ImGui::BeginDisabled(view_.file_count() == 0);
+    if (ImGui::Button(fmt::format("All {} shown", view_.file_count()).c_str())) {
+      std::vector<fs::path> all;
+      for (const FolderItem& item : view_.items())
+        if (!item.folder) all.push_back(view_.folder() / item.name);
+      finish(std::move(all));
+    }
+    observations.item("files.all");
+    ImGui::EndDisabled();
+    hint("opens every file of this folder that the name leaves in the list");
+    ImGui::SameLine();
+  }
+  const float room = ImGui::GetContentRegionAvail().x - 2 * width - ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
+  if (ImGui::Button("Cancel", {width, 0})) open_ = false;
+  observations.item("files.cancel");
+  ImGui::SameLine();
+  const std::vector<FolderItem> marked = view_.marked();
+  const bool into = marked.size() == 1 && marked.front().folder;
+  if (ImGui::Button(into ? "Open folder###accept" : (question_.button + "###accept").c_str(), {width, 0})) accept();
+  observations.item("files.accept");
+}
+
+}  // namespace mercury::window

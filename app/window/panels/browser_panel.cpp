@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/browser_panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+
+#include "app/window/toolkit/embedded.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+#include "mercury/origin.h"
+
+namespace mercury::window {
+namespace {
+
+std::string figures_of(const FolderEntry& entry) {
+  return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs,
+                     entry.figures.extent.x, entry.figures.extent.y, entry.figures.extent.z);
+}
+
+void tooltip(const FolderEntry& entry) {
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(26 * ImGui::GetFontSize());
+  ImGui::TextUnformatted(entry.path.filename().string().c_str());
+  if (entry.robot) {
+    const Inspection& f = entry.figures;
+    const std::string kind = kind_of(*entry.robot), environment = environment_of(*entry.robot);
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+    ImGui::TextUnformatted(
+        fmt::format("{} masses, {} springs, {} faces\n{} % muscle, {} materials\n{}{}{}click: add it to the scene",
+                    f.masses, f.springs, f.faces, f.springs ? 100 * f.muscles / f.springs : 0, f.materials.size(),
+                    kind.empty() ? "" : kind + " robot", environment.empty() ? "" : " for " + environment,
+                    kind.empty() && environment.empty() ? "" : "\n")
+            .c_str());
+    ImGui::PopStyleColor();
+  } else {
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+    ImGui::TextUnformatted(entry.error.c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+}  // namespace
+
+void BrowserPanel::show_folder(const std::filesystem::path& folder) {
+  entries_.clear();
+  thumbnails_.clear();
+  waiting_ = 0;
+  typed_ = folder.string();
+  reader_.reset();
+  if (!folder.empty()) {
+    reader_ = std::make_unique<FolderReader>(folder);
+    return;
+  }
+  for (Robot& robot : sample_robots("")) {
+    FolderEntry entry{.path = robot.name, .figures = inspect(robot)};
+    entry.robot = std::make_shared<Robot>(std::move(robot));
+    entries_.push_back(std::move(entry));
+  }
+}
+
+void BrowserPanel::draw_bar(Desk& desk) {
+  std::string& folder = desk.preferences.folder;
+  if (ImGui::Button("Samples")) folder.clear();
+  desk.observations.item("browser.samples");
+  hint("the robots that come with the program");
+  ImGui::SameLine();
+  if (ImGui::Button("Folder...")) {
+    desk.dialogs.ask_files(
+        {.kind = FileQuestion::Kind::folder,
+         .title = "Folder of robots",
+         .button = "Show",
+         .extensions = {".json", ".cbor"},
+         .folder = folder,
+         .name = "",
+         .formats = {}},
+        [&desk](const FileAnswer& answer) { desk.preferences.folder = answer.paths.front().string(); });
+  }
+  desk.observations.item("browser.choose");
+  hint("shows the robots of a folder");
+  ImGui::SetNextItemWidth(-1);
+  if (text_field("##folder", typed_, "sample robots; or a folder") && !typed_.empty()) folder = typed_;
+  desk.observations.item("browser.folder");
+  hint("type a folder's name, then Enter");
+  if (!reader_) return;
+  if (!reader_->error().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+    ImGui::TextWrapped("%s", reader_->error().c_str());
+    ImGui::PopStyleColor();
+  }
+  if (reader_->folders().empty()) return;
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##folders", fmt::format("{} folders", reader_->folders().size()).c_str())) {
+    const std::string above = reader_->folder().parent_path().string();
+    for (const std::filesystem::path& other : reader_->folders()) {
+      const bool up = other.string() == above;
+      if (ImGui::Selectable(up ? ".. (up)" : other.filename().string().c_str())) folder = other.string();
+    }
+    ImGui::EndCombo();
+  }
+}
+
+void BrowserPanel::draw(Desk& desk) {
+  theme_ = desk.scene.view().theme;
+  draw_bar(desk);
+  const bool shown = reader_ ? reader_->folder() == std::filesystem::path(desk.preferences.folder).lexically_normal()
+                             : !entries_.empty() && desk.preferences.folder.empty();
+  if (!shown) show_folder(desk.preferences.folder);
+  const std::size_t total = reader_ ? reader_->files() : entries_.size();
+  note(total == 0 ? "no robots here"
+                  : fmt::format("{} of {} robots; click one to add it", entries_.size(), total).c_str());
+  ImGui::BeginDisabled(entries_.empty());
+  if (ImGui::Button("Add all", {-1, 0})) {
+    std::vector<Robot> robots;
+    for (const FolderEntry& entry : entries_)
+      if (entry.robot) robots.push_back(*entry.robot);
+    desk.scene.add(std::move(robots));
+  }
+  desk.observations.item("browser.all");
+  ImGui::EndDisabled();
+  const float text = ImGui::GetFontSize(), spacing = ImGui::GetStyle().ItemSpacing.x;
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+  const int columns = std::max(1, static_cast<int>((room + spacing) / (8.2f * text + spacing)));
+  const float width = (room - static_cast<float>(columns - 1) * spacing) / static_cast<float>(columns);
+  if (ImGui::BeginChild("cards", {0, 0}))
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine();
+      draw_card(desk, i, width);
+    }
+  ImGui::EndChild();
+}
+
+void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
+  const FolderEntry& entry = entries_[index];
+  const float line = ImGui::GetTextLineHeight(), picture = width * Thumbnails::height / Thumbnails::width;
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, picture + 3.5f * line};
+  ImGui::PushID(static_cast<int>(index));
+  const bool clicked = ImGui::InvisibleButton("card", size);
+  const bool hovered = ImGui::IsItemHovered();
+  if (index < 30 && ImGui::IsItemVisible()) desk.observations.item(fmt::format("card.{}", index));
+  ImGui::PopID();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float rounding = ImGui::GetStyle().ChildRounding;
+  const ImVec2 end{corner.x + size.x, corner.y + size.y};
+  list.AddRectFilled(corner, end, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
+  const ImVec2 below{corner.x + width, corner.y + picture};
+  // Pictures have their lower row first.
+  if (const ImTextureID texture = thumbnails_.find(entry.path.string()))
+    list.AddImageRounded(texture, corner, below, {0, 1}, {1, 0}, IM_COL32_WHITE, rounding, ImDrawFlags_RoundCornersTop);
+  else
+    list.AddText({corner.x + 0.4f * line, corner.y + 0.4f * line}, entry.robot ? palette().faint : palette().bad,
+                 entry.robot ? "..." : "cannot be read");
+  const float margin = 0.35f * line;
+  const std::string name =
+      entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
+  list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text),
+               shortened(name, width - 2 * margin).c_str());
+  if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, figures_of(entry).c_str());
+  if (hovered && rests_here()) tooltip(entry);
+  if (clicked && entry.robot) desk.scene.add({*entry.robot});
+  if (clicked && !entry.robot) desk.toasts.say(Tone::error, entry.error);
+}
+
+void BrowserPanel::work(double seconds, render::Theme theme) {
+  if (reader_) {
+    std::vector<FolderEntry> fresh = reader_->take();
+    entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  while (waiting_ < entries_.size()) {
+    const FolderEntry& entry = entries_[waiting_++];
+    if (entry.robot) thumbnails_.draw(entry.path.string(), *entry.robot, theme);
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) return;
+  }
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/explosion_card.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/window/picture/explosion_marks.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+std::string advice_for(const ExplodedRobot& robot) {
+  const std::string advice = "A smaller time step, or XPBD, may help.";
+  if (!robot.spring) return "It is frozen; no spring is to blame. " + advice;
+  return fmt::format("Spring {} went first (masses {} and {}, {}). It is frozen, the others go on. {}",
+                     robot.spring->index, robot.spring->a, robot.spring->b, robot.spring->figures.material_name,
+                     advice);
+}
+
+void ask_for_repro(Desk& desk, const ExplodedRobot& robot) {
+  desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+                          .title = "Save what explodes, to see it again",
+                          .button = "Save here",
+                          .extensions = {".repro"},
+                          .folder = desk.preferences.save_folder,
+                          .name = "repro",
+                          .formats = {}},
+                         [&desk, id = robot.robot](const FileAnswer& answer) {
+                           save_with_care(desk, "repro", [&desk, id, folder = answer.paths.front()](bool overwrite) {
+                             return desk.scene.save_repro(id, folder, overwrite);
+                           });
+                         });
+}
+
+}  // namespace
+
+const ExplodedRobot* ExplosionCard::chosen() const {
+  const auto found = std::ranges::find_if(robots_, [&](const ExplodedRobot& robot) { return robot.robot == chosen_; });
+  return found == robots_.end() ? nullptr : &*found;
+}
+
+void ExplosionCard::choose(int places) {
+  const auto count = static_cast<int>(robots_.size());
+  const auto place = static_cast<int>(chosen() - robots_.data());
+  chosen_ = robots_[static_cast<std::size_t>((place + places + count) % count)].robot;
+}
+
+void ExplosionCard::follow(Desk& desk, const PictureArea& area, const render::Camera& camera) {
+  desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
+  for (const Explosion& explosion : desk.scene.take_explosions())
+    desk.observations.tell(
+        "exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.first_bad_spring}});
+  robots_ = desk.scene.exploded();
+  std::erase_if(dismissed_, [&](const auto& one) {
+    return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) {
+      return one == std::pair{robot.robot, robot.time};
+    });
+  });
+  if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
+  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, desk.observations,
+                       area, camera);
+}
+
+void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
+  low_ = high_ = {0, 0};
+  const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) {
+    return !dismissed_.contains({robot.robot, robot.time});
+  });
+  if (!news) return;
+  const ExplodedRobot robot = *chosen();
+  const float text = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({area.low.x + text, area.high.y - text}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({std::min(27 * text, area.width() - 2 * text), 0});
+  ImGui::PushStyleColor(ImGuiCol_Border, palette().bad);
+  ImGui::Begin("##explosion", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PopStyleColor();
+  draw_heading(desk, robot);
+  note(advice_for(robot).c_str());
+  draw_buttons(desk, robot, area);
+  ImGui::Checkbox("Pause when something explodes", &desk.preferences.pause_on_explosion);
+  low_ = ImGui::GetWindowPos();
+  high_ = {low_.x + ImGui::GetWindowWidth(), low_.y + ImGui::GetWindowHeight()};
+  desk.observations.item("panel.Explosion", low_, high_);
+  ImGui::End();
+}
+
+void ExplosionCard::draw_heading(Desk& desk, const ExplodedRobot& robot) {
+  const std::string place = fmt::format("{} of {}", chosen() - robots_.data() + 1, robots_.size());
+  const float spacing = ImGui::GetStyle().ItemInnerSpacing.x, button = ImGui::GetFrameHeight();
+  const float steppers =
+      robots_.size() < 2 ? 0 : 2 * (button + spacing) + ImGui::CalcTextSize(place.c_str()).x + spacing;
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+  const std::string when = fmt::format(" exploded at {:.4g} s", robot.time);
+  const float room = right - ImGui::GetCursorPosX() - steppers - ImGui::CalcTextSize(when.c_str()).x;
+  ImGui::TextUnformatted((shortened(robot.name, room) + when).c_str());
+  ImGui::PopStyleColor();
+  if (robots_.size() < 2) return;
+  ImGui::SameLine(right - steppers + spacing);
+  if (ImGui::ArrowButton("##earlier", ImGuiDir_Left)) choose(-1);
+  ImGui::SameLine(0, spacing);
+  ImGui::TextUnformatted(place.c_str());
+  ImGui::SameLine(0, spacing);
+  if (ImGui::ArrowButton("##later", ImGuiDir_Right)) choose(1);
+  desk.observations.item("explosion.next");
+}
+
+void ExplosionCard::draw_buttons(Desk& desk, const ExplodedRobot& robot, const PictureArea& area) {
+  if (ImGui::Button("Show it")) {
+    desk.scene.select(robot.robot);
+    desk.camera.set_mode(CameraMode::still);
+    if (robot.spring)
+      desk.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
+    else
+      frame_robots(desk, {robot.robot}, area.aspect());
+  }
+  desk.observations.item("explosion.show");
+  ImGui::SameLine();
+  if (ImGui::Button("Save repro...")) ask_for_repro(desk, robot);
+  desk.observations.item("explosion.repro");
+  ImGui::SameLine();
+  if (ImGui::Button("Reset")) desk.scene.reset();
+  desk.observations.item("explosion.reset");
+  ImGui::SameLine();
+  if (ImGui::Button("Dismiss"))
+    for (const ExplodedRobot& one : robots_) dismissed_.insert({one.robot, one.time});
+  desk.observations.item("explosion.dismiss");
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/help_panel.h"
+
+#include <algorithm>
+#include <string>
+
+#include "app/window/toolkit/actions.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+void line(const char* keys, const char* meaning) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().accent);
+  ImGui::TextUnformatted(keys);
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(meaning);
+}
+
+bool begin_lines(const char* id) {
+  if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit)) return false;
+  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, 9.5f * ImGui::GetFontSize());
+  ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
+  return true;
+}
+
+void group(const std::string& name) {
+  heading(name.c_str());
+  if (!begin_lines(name.c_str())) return;
+  for (const Binding& binding : bindings())
+    if (binding.group == name) line(binding.keys, binding.meaning);
+  ImGui::EndTable();
+}
+
+void mouse() {
+  heading("Mouse");
+  if (!begin_lines("mouse")) return;
+  for (const MouseUse& use : mouse_uses()) line(use.gesture, use.meaning);
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void draw_help(bool& open, Observations& observations) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float text = ImGui::GetFontSize();
+  const ImVec2 size{std::min(0.96f * screen.x, 58 * text), std::min(0.96f * screen.y, 41.5f * text)};
+  // The menu's line keeps windows from its place.
+  const float top = std::max((screen.y - size.y) / 2, ImGui::GetFrameHeight() + 0.2f * text);
+  ImGui::SetNextWindowPos({(screen.x - size.x) / 2, top}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize({size.x, std::min(size.y, screen.y - top - 0.2f * text)}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowBgAlpha(1);
+  if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    observations.item(
+        "panel.Help", ImGui::GetWindowPos(),
+        {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
+    if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingStretchSame)) {
+      ImGui::TableNextColumn();
+      mouse();
+      group("Time");
+      group("Camera");
+      ImGui::TableNextColumn();
+      group("Robots");
+      group("Picture");
+      ImGui::EndTable();
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/materials_panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+// The materials that a robot's springs are of.
+std::vector<int> used_materials(const Robot& robot) {
+  std::set<int> used;
+  for (const Spring& spring : robot.springs) used.insert(spring.material);
+  return {used.begin(), used.end()};
+}
+
+std::string name_of_material(const Robot& robot, int id) {
+  const auto index = static_cast<std::size_t>(id);
+  if (index < robot.material_names.size()) return robot.material_names[index];
+  if (robot.materials.empty()) return default_material_name(static_cast<MaterialId>(id));
+  return fmt::format("material {}", id);
+}
+
+}  // namespace
+
+void MaterialsPanel::draw(Desk& desk) {
+  heading("Materials");
+  const std::vector<RobotId> robots = chosen_robots(desk.scene);
+  if (robots.empty()) {
+    note("There are no robots.");
+    return;
+  }
+  const std::size_t selected = desk.scene.selection().size();
+  note(fmt::format("of {}",
+                   selected == 0
+                       ? fmt::format("all {} robots; select some to change only those", robots.size())
+                       : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected)))
+           .c_str());
+  draw_factors(desk, robots);
+  if (ImGui::Button("As in the file", {-1, 0})) {
+    scale_ = {};
+    desk.scene.reset_materials(robots);
+    desk.scene.end_edit();
+  }
+  desk.observations.item("materials.reset");
+  hint("the materials that the robots were made with");
+  draw_one(desk, robots);
+}
+
+void MaterialsPanel::draw_factors(Desk& desk, const std::vector<RobotId>& robots) {
+  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1,
+                        {0.1f, 10, "\xc3\x97 %.2f", true});
+  desk.observations.item("materials.stiffness");
+  changed |=
+      slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
+  changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
+  changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
+  if (changed) desk.scene.scale_materials(robots, scale_);
+}
+
+void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
+  const RobotId shown = desk.scene.current().value_or(robots.front());
+  const DocumentRobot* document = desk.scene.document().find(shown);
+  if (!document || !ImGui::CollapsingHeader("One material")) return;
+  const Robot& robot = *document->body.robot;
+  const std::vector<int> used = used_materials(robot);
+  if (used.empty()) return;
+  if (std::find(used.begin(), used.end(), material_) == used.end()) material_ = used.front();
+  row("material", fmt::format("those that {} is made of", document->body.name).c_str());
+  if (ImGui::BeginCombo("##material", name_of_material(robot, material_).c_str())) {
+    for (const int id : used)
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_))
+        material_ = id;
+    ImGui::EndCombo();
+  }
+  const std::span<const Material> table = desk.scene.materials(shown);
+  if (static_cast<std::size_t>(material_) >= table.size()) return;
+  const auto id = static_cast<std::size_t>(material_);
+  Material material = table[id];
+  const Material made = materials_of(robot)[id];
+  bool changed = slider("stiffness", "k of a spring", material.stiffness, made.stiffness, {0, 500, "%.1f N/m"});
+  changed |= slider("amplitude", "relative change of length, 0 = does not move", material.amplitude, made.amplitude,
+                    {0, 0.6f, "%.3f"});
+  changed |= slider("frequency", "omega", material.frequency, made.frequency, {0, 25, "%.2f rad/s"});
+  changed |= slider("phase", "phi", material.phase, made.phase, {-pi, 2 * pi, "%.2f rad"});
+  if (changed && is_valid(material)) desk.scene.set_material(robots, static_cast<MaterialId>(material_), material);
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the time goes.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "app/live/moment.h"
+#include "app/window/picture/picture_view.h"
+#include "app/window/toolkit/observations.h"
+
+namespace mercury::window {
+
+// What the parts of one frame of the window took [s].
+struct FrameCost {
+  double whole = 0;    // from frame to frame
+  double scene = 0;    // following the physics
+  double picture = 0;  // drawing the robots
+  double panels = 0;   // this and the other panels
+  double thumbnails = 0;
+};
+
+class PerformancePanel {
+ public:
+  void note(const FrameCost& cost);
+  void draw(const Moment& moment, const PictureView& picture, const std::string& device, const std::string& card);
+
+ private:
+  std::deque<FrameCost> costs_;
+};
+
+}  // namespace mercury::window

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/play_bar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "app/window/toolkit/interface.h"
+#include "app/window/toolkit/plot.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+enum class Sign { play, pause, step, reset };
+
+// A button with a drawn sign, so that it needs no font of signs.
+bool sign_button(const char* id, Sign sign, const char* explanation, bool lit = false) {
+  const float side = 1.15f * ImGui::GetFrameHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  if (lit) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
+  const bool clicked = ImGui::Button(id, {side, side});
+  if (lit) ImGui::PopStyleColor();
+  hint(explanation);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 color = lit ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text);
+  const ImVec2 c{corner.x + side / 2, corner.y + side / 2};
+  const float r = 0.24f * side;
+  switch (sign) {
+    case Sign::play:
+      list.AddTriangleFilled({c.x - 0.7f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.7f * r, c.y + r}, color);
+      break;
+    case Sign::pause:
+      list.AddRectFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.2f * r, c.y + r}, color);
+      list.AddRectFilled({c.x + 0.25f * r, c.y - r}, {c.x + 0.85f * r, c.y + r}, color);
+      break;
+    case Sign::step:
+      list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
+      list.AddTriangleFilled({c.x - 0.3f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.3f * r, c.y + r}, color);
+      break;
+    case Sign::reset:
+      list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
+      list.AddTriangleFilled({c.x + 0.9f * r, c.y - r}, {c.x - 0.5f * r, c.y}, {c.x + 0.9f * r, c.y + r}, color);
+      break;
+  }
+  return clicked;
+}
+
+std::string time_text(double seconds, int digits) {
+  if (seconds < 60) return fmt::format("{:.{}f} s", seconds, digits);
+  const auto minutes = static_cast<long>(seconds / 60);
+  return fmt::format("{}:{:05.2f}", minutes, seconds - 60 * static_cast<double>(minutes));
+}
+
+std::string factor_text(double factor) {
+  return factor >= 100 ? fmt::format("{:.0f}", factor) : fmt::format("{:.3g}", factor);
+}
+
+void draw_speed(Desk& desk) {
+  LiveScene& scene = desk.scene;
+  const float text = ImGui::GetFontSize();
+  const bool unlimited = scene.speed() == unlimited_speed;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Speed");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(9 * text);
+  auto speed = static_cast<float>(unlimited ? 100 : scene.speed());
+  const std::string shown = unlimited ? "-" : "\xc3\x97 " + factor_text(static_cast<double>(speed));
+  ImGui::BeginDisabled(unlimited);
+  if (ImGui::SliderFloat("##speed", &speed, 0.001f, 100, shown.c_str(),
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat) &&
+      std::isfinite(speed))
+    scene.set_speed(static_cast<double>(speed));
+  ImGui::EndDisabled();
+  desk.observations.item("speed");
+  hint("simulated seconds a second, 1/1000 to 100 (keys + and -)");
+  ImGui::SameLine();
+  if (toggle("\xc3\x97"
+             "1",
+             scene.speed() == 1))
+    scene.set_speed(1);
+  desk.observations.item("speed.one");
+  hint("real time (key 0)");
+  ImGui::SameLine();
+  if (toggle("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
+  desk.observations.item("speed.fastest");
+  hint("as fast as it goes (key *)");
+  ImGui::SameLine();
+  const double achieved = scene.moment().achieved_speed;
+  const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
+  ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
+  ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
+  ImGui::PopStyleColor();
+  hint(late ? "the computer is too slow for the speed asked for" : "what the physics manages, over the last second");
+}
+
+}  // namespace
+
+void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
+  ImGui::SetNextWindowPos(low);
+  ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  ImGui::Begin("##play", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  LiveScene& scene = desk.scene;
+  const float text = ImGui::GetFontSize();
+  if (sign_button("##reset", Sign::reset, "back to the start (key R)")) scene.reset();
+  desk.observations.item("reset");
+  ImGui::SameLine();
+  if (sign_button("##toggle", scene.playing() ? Sign::pause : Sign::play,
+                  scene.playing() ? "pause (Space)" : "play (Space)", true))
+    scene.toggle();
+  desk.observations.item("play");
+  ImGui::SameLine();
+  if (sign_button("##step", Sign::step, "one step of time (right arrow or .)")) scene.step();
+  desk.observations.item("step");
+  ImGui::SameLine(0, 1.2f * text);
+  // All of the line in the middle of the buttons' height.
+  const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
+  ImGui::PushFont(large_font());
+  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 -
+                       ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
+  ImGui::TextUnformatted(time_text(scene.moment().time, scene.speed() < 0.05 ? 3 : 2).c_str());
+  ImGui::PopFont();
+  hint(
+      fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt)
+          .c_str());
+  ImGui::SameLine();
+  ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
+  draw_speed(desk);
+  const std::string rate = short_number(scene.moment().springs_per_second) + " springs/s";
+  const std::string where =
+      fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
+  const float width = ImGui::CalcTextSize(where.c_str()).x;
+  ImGui::SameLine();
+  const float room = ImGui::GetContentRegionAvail().x - width;
+  if (room > text) {
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+    ImGui::TextUnformatted(where.c_str());
+    ImGui::PopStyleColor();
+    hint(scene.device_name().c_str());
+  }
+  ImGui::End();
+}
+
+}  // namespace mercury::window

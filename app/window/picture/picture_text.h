@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is written on the picture: names, legend, clock, lengths; by ImGui, so that it is sharp however coarse the
+// picture.
+#pragma once
+
+#include "app/window/picture/hands.h"
+#include "render/scene.h"
+
+namespace mercury::window {
+
+// The scene without its texts.
+render::Scene without_text(const render::Scene& scene);
+
+// The texts of the scene, over its picture, the clock where it is wanted. `bounds`: one box a body, in the picture.
+void draw_picture_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const PictureArea& area,
+                       const render::Camera& camera, bool clock);
+
+}  // namespace mercury::window

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/toolkit/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+#include "render/overlay.h"
+
+namespace mercury::window {
+namespace {
+
+struct Range {
+  double low = 1e300, high = -1e300;
+  void extend(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool empty() const { return !(low <= high); }
+};
+
+struct Frame {
+  ImVec2 low, high;  // of the area of the lines, on the screen
+  Range x, y;
+  ImVec2 at(double px, double py) const {
+    const double u = (px - x.low) / (x.high - x.low), v = (py - y.low) / (y.high - y.low);
+    return {low.x + static_cast<float>(u) * (high.x - low.x), high.y - static_cast<float>(v) * (high.y - low.y)};
+  }
+};
+
+// Room above the highest value; amounts begin at 0.
+Range rounded(Range range) {
+  if (range.empty()) return {0, 1};
+  if (range.low > 0 && range.low < 0.6 * range.high) range.low = 0;
+  if (range.high - range.low < 1e-9 * std::max(1.0, std::abs(range.high))) {
+    const double half = std::max(1e-6, 0.05 * std::abs(range.high));
+    range = {range.low - half, range.high + half};
+    if (range.low < 0 && range.high - half >= 0) range.low = 0;
+  }
+  range.high += 0.06 * (range.high - range.low);
+  if (range.low < 0) range.low -= 0.06 * (range.high - range.low);
+  return range;
+}
+
+void draw_axes(const Frame& frame, const PlotAxes& axes) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float text = ImGui::GetFontSize();
+  const auto y_ticks = render::ticks(static_cast<float>(frame.y.low), static_cast<float>(frame.y.high), 5);
+  for (const float tick : y_ticks) {
+    const ImVec2 p = frame.at(frame.x.low, tick);
+    list.AddLine(p, {frame.high.x, p.y}, palette().grid);
+    const float step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : 1;
+    const std::string label = render::tick_text(tick, step);
+    list.AddText({p.x - ImGui::CalcTextSize(label.c_str()).x - 0.3f * text, p.y - 0.5f * text}, palette().faint,
+                 label.c_str());
+  }
+  const auto x_ticks = render::ticks(static_cast<float>(frame.x.low), static_cast<float>(frame.x.high), 5);
+  for (const float tick : x_ticks) {
+    const ImVec2 p = frame.at(tick, frame.y.low);
+    list.AddLine({p.x, frame.low.y}, {p.x, frame.high.y}, palette().grid);
+    const float step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : 1;
+    const std::string label = render::tick_text(tick, step);
+    const float width = ImGui::CalcTextSize(label.c_str()).x;
+    const float x = std::clamp(p.x - width / 2, frame.low.x, frame.high.x - width);
+    list.AddText({x, frame.high.y + 0.15f * text}, palette().faint, label.c_str());
+  }
+  const std::string title = axes.unit.empty() ? axes.title : fmt::format("{} [{}]", axes.title, axes.unit);
+  list.AddText({frame.low.x, frame.low.y - 1.25f * text}, ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
+  const float width = ImGui::CalcTextSize(axes.x_title.c_str()).x;
+  list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
+}
+
+void draw_line(const Frame& frame, const PlotLine& line) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  std::vector<ImVec2> points;
+  const auto flush = [&] {
+    if (points.size() > 1)
+      list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0,
+                       1.6f * ImGui::GetFontSize() / 17);
+    points.clear();
+  };
+  const std::size_t count = std::min(line.x.size(), line.y.size());
+  const float pixel = 0.7f;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isfinite(line.y[i])) {
+      flush();
+      continue;
+    }
+    const ImVec2 p = frame.at(line.x[i], line.y[i]);
+    if (points.empty() || i + 1 == count || std::abs(p.x - points.back().x) + std::abs(p.y - points.back().y) > pixel)
+      points.push_back(p);
+  }
+  flush();
+}
+
+void show_values(const Frame& frame, const PlotAxes& axes, std::span<const PlotLine> lines) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const double x = frame.x.low + (mouse.x - frame.low.x) / (frame.high.x - frame.low.x) * (frame.x.high - frame.x.low);
+  ImGui::GetWindowDrawList()->AddLine({mouse.x, frame.low.y}, {mouse.x, frame.high.y}, palette().faint);
+  ImGui::BeginTooltip();
+  ImGui::Text("%s %s", short_number(x).c_str(), axes.x_unit.c_str());
+  for (const PlotLine& line : lines) {
+    const auto next = std::lower_bound(line.x.begin(), line.x.end(), x);
+    if (line.x.empty()) continue;
+    const std::size_t i =
+        std::min(static_cast<std::size_t>(next - line.x.begin()), std::min(line.x.size(), line.y.size()) - 1);
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(line.color));
+    ImGui::TextUnformatted("\xe2\x80\xa2");
+    ImGui::PopStyleColor();
+    ImGui::SameLine();
+    ImGui::Text("%s  %s %s", line.name.c_str(), short_number(line.y[i]).c_str(), axes.unit.c_str());
+  }
+  ImGui::EndTooltip();
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  if (size >= 1e9) return fmt::format("{:.3g} G", value / 1e9);
+  if (size >= 1e6) return fmt::format("{:.3g} M", value / 1e6);
+  if (size >= 1e4) return fmt::format("{:.3g} k", value / 1e3);
+  if (size >= 1e3) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.3g}", value);
+}
+
+void plot_key(std::span<const PlotLine> lines) {
+  const float text = ImGui::GetFontSize(), end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+  bool first = true;
+  for (const PlotLine& line : lines) {
+    const std::string name = shortened(line.name, 9 * text);
+    const float width = 0.7f * text + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(name.c_str()).x;
+    if (!first) {
+      ImGui::SameLine();
+      if (ImGui::GetCursorPosX() + width > end) ImGui::NewLine();
+    }
+    first = false;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled({corner.x, corner.y + 0.3f * text},
+                                              {corner.x + 0.6f * text, corner.y + 0.8f * text}, packed(line.color),
+                                              0.1f * text);
+    ImGui::Dummy({0.7f * text, text});
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+  }
+}
+
+void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines) {
+  const float text = ImGui::GetFontSize();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = std::max(8 * text, ImGui::GetContentRegionAvail().x);
+  ImGui::InvisibleButton(id, {width, axes.height});
+  Frame frame{.low = {corner.x + 3.2f * text, corner.y + 1.4f * text},
+              .high = {corner.x + width - 0.3f * text, corner.y + axes.height - 1.3f * text}};
+  Range y;
+  for (const PlotLine& line : lines) {
+    for (const double value : line.x) frame.x.extend(value);
+    for (const double value : line.y) y.extend(value);
+  }
+  if (frame.x.empty()) frame.x = {0, 1};
+  if (frame.x.high - frame.x.low < 1e-9) frame.x.high = frame.x.low + 1;
+  frame.y = rounded(y);
+  draw_axes(frame, axes);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(frame.low, frame.high, true);
+  for (const PlotLine& line : lines) draw_line(frame, line);
+  list.PopClipRect();
+  if (ImGui::IsItemHovered() && ImGui::IsMouseHoveringRect(frame.low, frame.high)) show_values(frame, axes, lines);
+}
+
+}  // namespace mercury::window

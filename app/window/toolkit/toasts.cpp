@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/toolkit/toasts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/window/toolkit/theme.h"
+
+namespace mercury::window {
+namespace {
+
+constexpr std::size_t most = 5;
+
+const char* name_of(Tone tone) {
+  switch (tone) {
+    case Tone::news:
+      return "news";
+    case Tone::success:
+      return "success";
+    case Tone::warning:
+      return "warning";
+    case Tone::error:
+      return "error";
+  }
+  return "";
+}
+
+ImU32 color_of(Tone tone) {
+  switch (tone) {
+    case Tone::success:
+      return palette().good;
+    case Tone::warning:
+      return palette().warning;
+    case Tone::error:
+      return palette().bad;
+    default:
+      return palette().accent;
+  }
+}
+
+}  // namespace
+
+void Toasts::say(Tone tone, std::string text) {
+  const double stays = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
+  for (Toast& toast : toasts_)
+    if (toast.text == text) {
+      toast.left = stays;
+      ++toast.count;
+      toast.told = false;
+      return;
+    }
+  // "picture saved: ..." takes the place of the one before.
+  const std::string kind = text.substr(0, text.find(": "));
+  std::erase_if(toasts_, [&](const Toast& toast) {
+    return tone == Tone::success && toast.tone == tone && toast.told &&
+           toast.text.substr(0, toast.text.find(": ")) == kind;
+  });
+  toasts_.push_back({tone, std::move(text), stays});
+  if (toasts_.size() > most) toasts_.pop_front();
+}
+
+void Toasts::draw(ImVec2 low, ImVec2 high, double dt, Observations& observations) {
+  const float line = ImGui::GetFontSize();
+  float y = low.y + line;
+  int number = 0;
+  for (Toast& toast : toasts_) {
+    if (!toast.told) observations.tell("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
+    toast.told = true;
+    const float width = std::min(high.x - low.x - 2 * line, 34 * line);
+    const std::string text = toast.count > 1 ? fmt::format("{}  (x{})", toast.text, toast.count) : toast.text;
+    const float needed = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).x + 2.4f * line;
+    ImGui::SetNextWindowPos({(low.x + high.x) / 2, y}, ImGuiCond_Always, {0.5f, 0});
+    ImGui::SetNextWindowSize({std::min(needed, width + 2.4f * line), 0});
+    ImGui::SetNextWindowBgAlpha(0.94f * static_cast<float>(std::clamp(toast.left * 2, 0.0, 1.0)));
+    ImGui::Begin(fmt::format("##toast{}", number++).c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + 0.3f * line, corner.y + size.y}, color_of(toast.tone),
+                                              ImGui::GetStyle().WindowRounding, ImDrawFlags_RoundCornersLeft);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) toast.left = 0;
+    y += size.y + 0.4f * line;
+    ImGui::End();
+    toast.left -= dt;
+  }
+  std::erase_if(toasts_, [](const Toast& toast) { return toast.left <= 0; });
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/toolkit/window.h"
+
+#include <epoxy/gl.h>
+// Only after epoxy, which brings OpenGL.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace mercury::window {
+namespace {
+
+std::string& last_error() {
+  static std::string text;
+  return text;
+}
+
+void on_error(int, const char* text) { last_error() = text; }
+
+Window& window_of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
+
+// What GLFW says, without the name of the part that said it.
+std::string reason() {
+  const std::string& text = last_error();
+  const std::size_t colon = text.find(": ");
+  return text.empty() ? "no reason was given" : colon == std::string::npos ? text : text.substr(colon + 2);
+}
+
+void start_glfw() {
+  glfwSetErrorCallback(on_error);
+  if (!glfwInit())
+    throw NoDisplay("no display to open a window on (" + reason() +
+                    "); mercury render makes videos and pictures without one");
+}
+
+GLFWwindow* open_window(const std::string& title, WindowSize size) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  glfwWindowHint(GLFW_SAMPLES, 0);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "mercury");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "mercury");
+  GLFWwindow* window = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (!window) {
+    const std::string why = reason();
+    glfwTerminate();
+    throw NoDisplay("the display has no OpenGL 4.5 (" + why + "); mercury render makes videos and pictures without it");
+  }
+  return window;
+}
+
+}  // namespace
+
+Window::Window(const std::string& title, WindowSize size) {
+  start_glfw();
+  window_ = open_window(title, size);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  listen();
+  try {
+    context_ =
+        render::adopt_context([this] { glfwMakeContextCurrent(window_); }, [] { glfwMakeContextCurrent(nullptr); });
+  } catch (const render::ContextError& error) {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+    throw NoDisplay(std::string(error.what()) + "; mercury render makes videos and pictures without a window");
+  }
+}
+
+Window::~Window() {
+  context_.reset();
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void Window::push(const InputEvent& event) {
+  active_ = true;
+  input_.push(event);
+}
+
+void Window::listen() {
+  using Kind = InputEvent::Kind;
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* handle, int key, int scancode, int action, int mods) {
+    const bool control = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
+    const char* name = glfwGetKeyName(key, scancode);
+    const char32_t letter = name && !name[1] ? static_cast<unsigned char>(name[0]) : 0;
+    window_of(handle).push({.kind = Kind::key,
+                            .code = key,
+                            .scancode = scancode,
+                            .action = action,
+                            .mods = mods,
+                            .name = letter,
+                            .types = name && !control});
+  });
+  glfwSetCharCallback(window_, [](GLFWwindow* handle, unsigned character) {
+    window_of(handle).push({.kind = Kind::character, .code = static_cast<int>(character)});
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* handle, int button, int action, int mods) {
+    window_of(handle).push({.kind = Kind::button, .code = button, .action = action, .mods = mods});
+  });
+  glfwSetScrollCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    window_of(handle).push({.kind = Kind::scroll, .x = x, .y = y});
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    window_of(handle).push({.kind = Kind::move, .x = x, .y = y});
+  });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* handle, int entered) {
+    window_of(handle).push({.kind = Kind::enter, .on = entered != 0});
+  });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* handle, int focused) {
+    window_of(handle).push({.kind = Kind::focus, .on = focused != 0});
+  });
+  glfwSetDropCallback(window_, [](GLFWwindow* handle, int count, const char** paths) {
+    Window& self = window_of(handle);
+    self.active_ = true;
+    self.dropped_.insert(self.dropped_.end(), paths, paths + count);
+  });
+  const auto active = [](GLFWwindow* handle, auto...) { window_of(handle).active_ = true; };
+  glfwSetFramebufferSizeCallback(window_, active);
+  glfwSetWindowRefreshCallback(window_, active);
+}
+
+std::vector<Press> presses_of(const std::vector<InputEvent>& events) {
+  std::vector<Press> presses;
+  bool repeated = false;
+  for (const InputEvent& event : events) {
+    const bool control = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
+    if (event.kind == InputEvent::Kind::key) repeated = event.action == GLFW_REPEAT;
+    if (event.kind == InputEvent::Kind::key && event.action != GLFW_RELEASE && !event.types)
+      presses.push_back({.character = event.name,
+                         .key = event.code,
+                         .control = control,
+                         .shift = (event.mods & GLFW_MOD_SHIFT) != 0,
+                         .repeated = repeated});
+    // Space goes by its key.
+    if (event.kind == InputEvent::Kind::character && event.code != ' ')
+      presses.push_back({.character = static_cast<char32_t>(event.code), .repeated = repeated});
+  }
+  return presses;
+}
+
+bool Window::asked_to_close() const { return glfwWindowShouldClose(window_); }
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::stay_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+
+void Window::poll(double wait) {
+  if (wait > 0)
+    glfwWaitEventsTimeout(wait);
+  else
+    glfwPollEvents();
+}
+
+void Window::show_picture() { glfwSwapBuffers(window_); }
+
+WindowSize Window::size() const {
+  WindowSize size;
+  glfwGetWindowSize(window_, &size.width, &size.height);
+  return size;
+}
+
+WindowSize Window::pixels() const {
+  WindowSize size;
+  glfwGetFramebufferSize(window_, &size.width, &size.height);
+  return size;
+}
+
+float Window::content_scale() const {
+  float across = 1, down = 1;
+  glfwGetWindowContentScale(window_, &across, &down);
+  // Where the framebuffer has more pixels than the window has coordinates, coordinates are scaled already.
+  const WindowSize coordinates = size(), framebuffer = pixels();
+  const float done =
+      coordinates.width > 0 ? static_cast<float>(framebuffer.width) / static_cast<float>(coordinates.width) : 1;
+  return std::max(0.5f, across / std::max(done, 0.1f));
+}
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::toggle_full_screen() {
+  if (glfwGetWindowMonitor(window_)) {
+    glfwSetWindowMonitor(window_, nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height, GLFW_DONT_CARE);
+    return;
+  }
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+  if (!mode) return;
+  glfwGetWindowPos(window_, &windowed_.x, &windowed_.y);
+  glfwGetWindowSize(window_, &windowed_.width, &windowed_.height);
+  glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+std::vector<std::filesystem::path> Window::take_dropped_files() { return std::exchange(dropped_, {}); }
+bool Window::take_activity() { return std::exchange(active_, false); }
+
+}  // namespace mercury::window

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Voxel robots: a grid of cubes, each of one material, turned into masses, springs and a skin (paper, III.A).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mercury/material.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// A box of nx * ny * nz voxels. With masses of 1 kg, voxels of 0.1 m have about the density of water.
+struct VoxelGrid {
+  int nx = 0, ny = 0, nz = 0;
+  float edge = 0.1f;              // of a voxel [m]
+  std::vector<MaterialId> cells;  // nx * ny * nz, x fastest, then y; each air or a base material (1..22)
+
+  VoxelGrid() = default;
+  // All voxels of one material. Throws InputError unless every size is at least 1 and the grid has at most max_cells.
+  VoxelGrid(int size_x, int size_y, int size_z, MaterialId fill = air);
+
+  static constexpr std::size_t max_cells = std::size_t{1} << 26;
+
+  std::size_t index(int x, int y, int z) const {
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(nx) *
+               (static_cast<std::size_t>(y) + static_cast<std::size_t>(ny) * static_cast<std::size_t>(z));
+  }
+  bool contains(int x, int y, int z) const { return x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz; }
+  MaterialId& cell(int x, int y, int z) { return cells[index(x, y, z)]; }
+  // Air outside of the grid.
+  MaterialId at(int x, int y, int z) const { return contains(x, y, z) ? cells[index(x, y, z)] : air; }
+
+  friend bool operator==(const VoxelGrid&, const VoxelGrid&) = default;
+};
+
+// Throws InputError("voxel grid: ...") unless sizes are at least 1, there is one cell a voxel, every cell is air or a
+// base material, and the edge is at least min_rest_length and the grid at most 2e6 m long.
+void validate(const VoxelGrid& grid);
+
+// The grid with all but its largest connected body turned to air; of equally large ones the one with the first voxel
+// stays. Two voxels are connected where they share a side: a body that hung on a mere edge or corner would swing on
+// it like on a hinge. (Within one body voxels may touch at an edge or corner too, and share its masses.)
+VoxelGrid largest_body(const VoxelGrid& grid);
+
+// What a voxel robot is told beside its grid.
+struct VoxelRobotOptions {
+  std::string name = "voxel";
+  std::string environment;                  // where it lives ("ocean", "land"), kept in its origin; empty = not said
+  std::optional<std::uint64_t> seed;        // kept in its origin
+  std::optional<std::uint64_t> index;       // which robot of that seed's population, kept in its origin
+  std::vector<Material> materials;          // its own table, pairs by the ids of combine(); empty = the 254 defaults
+  std::vector<std::string> material_names;  // of its own table; may be empty
+};
+
+// The largest connected body of the grid as a robot, the grid's middle at the origin of coordinates.
+// Masses: the corners of its voxels, shared by neighbours, x fastest.
+// Springs: every pair of a voxel's 8 masses, once; the material combines the two most common materials among the
+// voxels that share the pair (ties go to the lower id), air not counted.
+// Faces: its outward skin, two triangles a voxel side, counter-clockwise from outside; a closed oriented surface.
+// Origin: {"kind": "voxel", ...}, enough for voxel_grid_of.
+// Throws InputError for a grid that breaks a rule, is all air, or needs more than max_masses masses.
+Robot make_voxel_robot(const VoxelGrid& grid, const VoxelRobotOptions& options = {});
+
+// The grid that a voxel robot was made from, read from its origin; nothing for robots of another kind.
+// Throws InputError("/origin: ...") if the origin says "voxel" but holds no valid grid.
+std::optional<VoxelGrid> voxel_grid_of(const Robot& robot);
+
+}  // namespace mercury

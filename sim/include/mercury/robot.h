@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A robot: point masses of 1 kg, springs that join them, and a skin of triangles (paper, II.A).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mercury/material.h"
+#include "mercury/vec3.h"
+
+namespace mercury {
+
+struct Spring {
+  std::uint16_t a = 0, b = 0;  // masses
+  MaterialId material = 0;
+  float rest_length = 0;  // L0 [m], at least min_rest_length
+  friend constexpr bool operator==(const Spring&, const Spring&) = default;
+};
+
+struct Face {
+  std::uint16_t a = 0, b = 0, c = 0;  // masses, counter-clockwise seen from outside
+  friend constexpr bool operator==(const Face&, const Face&) = default;
+};
+
+inline constexpr float min_rest_length = 0.001f;  // [m] (paper, III.B)
+inline constexpr std::size_t max_masses = 65535;
+
+struct Robot {
+  std::string name;
+  std::vector<Material> materials;          // by id; empty = the 254 defaults
+  std::vector<std::string> material_names;  // empty, or one a material
+  std::vector<Vec3> masses;                 // position at rest [m]
+  std::vector<Spring> springs;
+  std::vector<Face> faces;
+  std::string origin;  // how it was made, as JSON text; empty = unknown
+  friend bool operator==(const Robot&, const Robot&) = default;
+};
+
+// The robot's own table, or the defaults.
+std::span<const Material> materials_of(const Robot& robot);
+
+// Distance of a spring's two masses at rest [m], the default of rest_length.
+float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
+
+// Robots of one build have the same masses joined and the same faces, in the same order; materials, lengths and places
+// may differ. Keys are equal for robots of one build, and seldom for others.
+bool same_build(const Robot& a, const Robot& b);
+std::uint64_t build_key(const Robot& robot);
+
+// Throws InputError, its place a JSON pointer ("/springs/7: mass 912 is out of range, the robot has 300"), unless
+// there are 1 to max_masses masses, all finite and within 1e6 m; every spring joins two different masses of the
+// robot, has a material of its table other than air, and a finite rest length of at least min_rest_length; every
+// face has three different masses; every material is valid.
+void validate(const Robot& robot);
+
+}  // namespace mercury

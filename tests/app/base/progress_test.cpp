@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/base/progress.h"
+
+#include <gtest/gtest.h>
+
+namespace mercury::test {
+namespace {
+
+TEST(Progress, LineTellsRateAndTimeLeft) {
+  // 150 in 3 s are 50 a second; the other 150 take 3 s more.
+  EXPECT_EQ(progress_line("rendering", "frames", 150, 300, 3),
+            "rendering: 150/300 frames (50 %)  50 frames/s  0:03 left");
+  EXPECT_EQ(progress_line("rendering", "frames", 0, 300, 1), "rendering: 0/300 frames (0 %)");
+}
+
+TEST(Progress, BarFillsWithTheShareAndFitsTheTerminal) {
+  EXPECT_EQ(progress_bar("rendering", "frames", 150, 300, 3, 200),
+            "rendering [############............]  50 %  150/300 frames  50 frames/s  0:03 left");
+  EXPECT_EQ(progress_bar("rendering", "frames", 300, 300, 6, 40).size(), 39u);
+}
+
+TEST(WithMagnitude, ThreeDigits) {
+  EXPECT_EQ(with_magnitude(0), "0");
+  EXPECT_EQ(with_magnitude(7), "7");
+  EXPECT_EQ(with_magnitude(7.256), "7.26");
+  EXPECT_EQ(with_magnitude(72.56), "72.6");
+  EXPECT_EQ(with_magnitude(999.4), "999");
+  EXPECT_EQ(with_magnitude(999.6), "1.00 k");
+  EXPECT_EQ(with_magnitude(12345), "12.3 k");
+  EXPECT_EQ(with_magnitude(3.7e11), "370 G");
+}
+
+TEST(ClockText, MinutesAndHours) {
+  EXPECT_EQ(clock_text(4.4), "0:04");
+  EXPECT_EQ(clock_text(59.6), "1:00");
+  EXPECT_EQ(clock_text(3723), "1:02:03");
+}
+
+}  // namespace
+}  // namespace mercury::test

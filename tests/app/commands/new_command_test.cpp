@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury new: robot files.
+#include <gmock/gmock.h>
+
+#include "mercury/origin.h"
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "program.h"
+
+namespace mercury::test {
+namespace {
+
+class NewCommand : public FolderTest {};
+
+TEST_F(NewCommand, WritesTheRobotsOfASeed) {
+  const Outcome outcome = mercury({"new", "voxel", "-o", path("r"), "--count", "3", "--seed", "7"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(listing("r"), (std::vector<std::string>{"voxel-7-0.json", "voxel-7-1.json", "voxel-7-2.json"}));
+  EXPECT_EQ(outcome.output,
+            path("r/voxel-7-0.json") + "\n" + path("r/voxel-7-1.json") + "\n" + path("r/voxel-7-2.json") + "\n");
+  EXPECT_EQ(load_robot(path("r/voxel-7-2.json")), random_voxel_robot({}, 7, 2));
+}
+
+TEST_F(NewCommand, OptionsShapeTheRobots) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.cbor"), "--voxels", "3x4x5", "--air", "0", "--edge", "0.2",
+                     "--symmetry", "x", "--patch", "1"})
+                .status,
+            0);
+  const RandomVoxelOptions options{
+      .smallest = {3, 4, 5}, .largest = {3, 4, 5}, .edge = 0.2f, .air = 0, .mirror = Mirror::x, .patch = 1};
+  EXPECT_EQ(load_robot(path("a.cbor")), random_voxel_robot(options, 1));
+  EXPECT_EQ(load_robot(path("a.cbor")).masses.size(), 4u * 5 * 6);
+}
+
+TEST_F(NewCommand, FormatOfAFolderIsChosen) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("r/"), "--format", "cbor"}).status, 0);
+  EXPECT_EQ(listing("r"), std::vector<std::string>{"voxel-1-0.cbor"});
+}
+
+TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
+  write("a.json", "mine");
+  const std::vector<std::string> command{"new", "voxel", "-o", path("a.json")};
+  const Outcome refused = mercury(command);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.messages,
+            "mercury: " + path("a.json") + ": exists already; use --force to replace it, or another name\n");
+  EXPECT_EQ(read("a.json"), "mine");
+  std::vector<std::string> forced = command;
+  forced.push_back("--force");
+  EXPECT_EQ(mercury(forced).status, 0);
+  EXPECT_EQ(load_robot(path("a.json")), random_voxel_robot({}, 1));
+}
+
+// The winners are those that `run` says got farthest.
+TEST_F(NewCommand, BestOfKeepsTheFarthest) {
+  const Outcome outcome =
+      mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const auto report =
+      nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
+  std::vector<std::pair<double, std::string>> ranking;
+  for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["displacement"].get<double>(), robot["name"]);
+  std::sort(ranking.begin(), ranking.end());
+  std::vector<std::string> best{ranking[0].second + ".json", ranking[1].second + ".json"};
+  std::sort(best.begin(), best.end());
+  EXPECT_EQ(listing("best"), best);
+}
+
+TEST_F(NewCommand, RobotsSayWhereTheyWereTried) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"})
+                .status,
+            0);
+  EXPECT_EQ(environment_of(load_robot(path("a.json"))), "land");
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("b.json"), "--best-of", "2", "--seconds", "0"}).status, 0);
+  EXPECT_EQ(environment_of(load_robot(path("b.json"))), "ocean");
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("c.json")}).status, 0);
+  EXPECT_EQ(environment_of(load_robot(path("c.json"))), "");
+}
+
+TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
+  write("file", "");
+  const auto message = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"new", "voxel"});
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.messages;
+  };
+  EXPECT_EQ(message({"-o", path("a.json"), "--count", "2"}),
+            "mercury: -o: " + path("a.json") + " is one file; give a folder for several robots\n");
+  EXPECT_EQ(message({"-o", path("a.txt")}),
+            "mercury: -o: " + path("a.txt") + ": \".txt\" is not a robot file; give .json, .cbor or a folder\n");
+  EXPECT_EQ(message({"-o", path("file")}), "mercury: -o: " + path("file") + " is a file, not a folder\n");
+  EXPECT_EQ(message({"-o", path("r"), "--count", "0"}), "mercury: --count: 0 is not accepted; give 1 or more\n");
+  EXPECT_EQ(message({"-o", path("r"), "--count", "5", "--best-of", "3"}),
+            "mercury: --best-of: 3 is not accepted; give at least --count, 5\n");
+  EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--seconds", "2", "--settle", "3"}),
+            "mercury: --settle: 3 is not accepted; give 0 to --seconds, 2 s\n");
+  EXPECT_EQ(message({}), "mercury: --output is required; see mercury new voxel --help\n");
+  EXPECT_EQ(listing(), std::vector<std::string>{"file"});
+}
+
+}  // namespace
+}  // namespace mercury::test

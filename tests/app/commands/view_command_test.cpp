@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury view, as far as it goes without a window.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "app/window/toolkit/embedded.h"
+#include "mercury/origin.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Outcome without_display(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", MERCURY_PROGRAM});
+  return run_program("env", arguments);
+}
+
+TEST(ViewCommand, WithoutADisplayOneLineNamesTheCommandThatNeedsNone) {
+  const Outcome outcome = without_display({"view"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_THAT(outcome.messages, HasSubstr("no display"));
+  EXPECT_THAT(outcome.messages, HasSubstr("mercury render"));
+  EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1);
+}
+
+TEST(ViewCommand, WhatCannotBeUsedIsToldBeforeAWindowIsTried) {
+  const Outcome robot = without_display({"view", "nowhere.json"});
+  EXPECT_EQ(robot.status, 2);
+  EXPECT_THAT(robot.messages, HasSubstr("nowhere.json"));
+  EXPECT_THAT(robot.messages, Not(HasSubstr("display")));
+  const Outcome size = without_display({"view", "--size", "1280"});
+  EXPECT_EQ(size.status, 2);
+  EXPECT_THAT(size.messages, HasSubstr("--size"));
+}
+
+TEST(SampleRobots, AreChosenByTheirEnvironment) {
+  const std::vector<Robot> swimmers = window::sample_robots("ocean"), crawlers = window::sample_robots("land");
+  EXPECT_FALSE(swimmers.empty());
+  EXPECT_FALSE(crawlers.empty());
+  for (const Robot& robot : swimmers) EXPECT_EQ(environment_of(robot), "ocean") << robot.name;
+  for (const Robot& robot : crawlers) EXPECT_EQ(environment_of(robot), "land") << robot.name;
+  EXPECT_EQ(window::sample_robots("").size(), swimmers.size() + crawlers.size());
+}
+
+}  // namespace
+}  // namespace mercury::test

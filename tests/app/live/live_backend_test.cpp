@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window's scene on every backend; on a machine without a CUDA device its cases are skipped.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "app/recording/repro.h"
+#include "live_scene_bodies.h"
+#include "mercury/random_voxel.h"
+#include "tests/sim/backend.h"
+
+namespace mercury {
+namespace {
+
+using testing::SizeIs;
+
+class LiveOn : public BackendTest {
+ protected:
+  LiveSceneOptions options(Environment environment = Ocean{}) const {
+    return {.configuration = {.environment = environment, .device = device()}};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, LiveOn, every_device, BackendTest::name);
+
+TEST_P(LiveOn, StepsAndEditsGiveWhatTheSimulationGives) {
+  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+    LiveScene scene(options(environment));
+    test::make_robots(scene, 3);
+    scene.step(130);
+    scene.wait_until_done();
+    const auto ids = test::ids_of(scene);
+    scene.scale_materials({ids[2]}, {.stiffness = 1.25f, .frequency = 2});
+    scene.remove({ids[0]});
+    scene.step(70);
+    scene.wait_until_done();
+    Simulation simulation(options(environment).configuration, random_voxel_robots({}, 5, 3));
+    simulation.step(130);
+    const auto table = scene.materials(ids[2]);
+    for (std::size_t id = 1; id < table.size(); ++id)
+      simulation.set_material(2, static_cast<MaterialId>(id), table[id]);
+    simulation.step(70);
+    for (const std::size_t robot : {1u, 2u}) {
+      const State state = simulation.state(robot);
+      EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(robot - 1), state.positions)) << robot;
+      EXPECT_TRUE(std::ranges::equal(scene.moment().velocities_of(robot - 1), state.velocities)) << robot;
+    }
+    scene.undo();
+    scene.wait_until_done();
+    EXPECT_EQ(scene.moment().robots->size(), 3u);
+    EXPECT_THAT(scene.take_messages(), testing::IsEmpty());
+  }
+}
+
+TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
+  LiveScene scene(options());
+  test::make_robots(scene, 4);
+  scene.set_speed(unlimited_speed);
+  scene.play();
+  std::uint64_t pictures = 0;
+  for (std::int64_t seen = -1; scene.moment().steps < 4000 || pictures < 5; std::this_thread::yield()) {
+    scene.frame();
+    pictures += scene.moment().steps != seen;
+    seen = scene.moment().steps;
+    if (scene.moment().playing && pictures > 3) {
+      EXPECT_TRUE(scene.moment().velocities.empty()) << "they are not read when nobody asks";
+    }
+  }
+  scene.pause();
+  scene.wait_until_done();
+  Simulation simulation(options().configuration, random_voxel_robots({}, 5, 4));
+  simulation.step(scene.moment().steps);
+  for (std::size_t robot = 0; robot < 4; ++robot) {
+    EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(robot), simulation.positions(robot)));
+    EXPECT_FALSE(scene.moment().velocities_of(robot).empty()) << "at rest they are there";
+  }
+  // However many samples were left out, those that are there are evenly spaced.
+  const Series series = scene.series(test::ids_of(scene)[0]);
+  ASSERT_EQ(series.times.size(), series.samples.size());
+  ASSERT_GE(series.times.size(), 3u);
+  for (std::size_t i = 2; i < series.times.size(); ++i)
+    EXPECT_NEAR(series.times[i] - series.times[i - 1], series.times[1] - series.times[0], 1e-9) << i;
+}
+
+TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  const RobotId robot = test::ids_of(scene)[1];
+  scene.step(50);
+  scene.wait_until_done();
+  scene.begin_pull({.robot = robot, .index = 1, .mass = 2}, 30);
+  scene.move_pull(scene.pull()->at + Eigen::Vector3f(0.3f, 0, 0));
+  scene.step(50);
+  scene.wait_until_done();
+  Configuration coarse = scene.configuration();
+  coarse.dt = 0.4;
+  scene.set_configuration(coarse);
+  scene.step(300);
+  scene.wait_until_done();
+  const auto exploded = scene.exploded();
+  const auto found = std::ranges::find(exploded, robot, &ExplodedRobot::robot);
+  ASSERT_NE(found, exploded.end());
+  ASSERT_TRUE(found->spring);
+  const std::size_t index = found->index;
+  const std::vector<Vec3> frozen(scene.moment().positions_of(index).begin(), scene.moment().positions_of(index).end());
+  scene.remove({robot});
+  scene.wait_until_done();
+  scene.undo();
+  scene.wait_until_done();
+  const auto back = scene.exploded();
+  const auto again = std::ranges::find(back, robot, &ExplodedRobot::robot);
+  ASSERT_NE(again, back.end());
+  EXPECT_EQ(again->time, found->time);
+  EXPECT_EQ(again->spring->index, found->spring->index);
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(again->index), frozen));
+}
+
+TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
+  Robot robot = random_voxel_robot({}, 5, 0);
+  Simulation simulation({.device = device()}, std::span(&robot, 1));
+  simulation.step(120);
+  Repro repro{.robot = robot,
+              .configuration = simulation.configuration(),
+              .clock = simulation.clock(),
+              .state = simulation.state(0)};
+  Material material = default_materials()[3];
+  material.stiffness *= 2;
+  std::vector<Material> table(default_materials().begin(), default_materials().end());
+  table[3] = material;
+  Configuration changed = simulation.configuration();
+  changed.dt = 6e-4;
+  repro.pulls = {{.mass = 1, .target = {0, 1, 0}, .stiffness = 25}};
+  repro.changes = {{.step = 150, .materials = table},
+                   {.step = 170, .configuration = changed},
+                   {.step = 200, .pulls = std::vector<Pull>{}}};
+  repro.last_step = 400;
+  simulation.set_pulls(repro.pulls);
+  simulation.step(30);
+  simulation.set_material(0, 3, material);
+  simulation.step(20);
+  simulation.configure(changed);
+  simulation.step(30);
+  simulation.set_pulls({});
+  simulation.step(200);
+  const Repro read = parse_repro(serialize_repro(repro));
+  Simulation same = start_of(read, device());
+  ReproChanges changes(read);
+  while (same.steps() < 400) {
+    changes.make(same);
+    same.step(std::min<std::int64_t>(400, changes.next_step()) - same.steps());
+  }
+  EXPECT_EQ(same.hash(0), simulation.hash(0));
+  EXPECT_EQ(same.time(), simulation.time());
+}
+
+}  // namespace
+}  // namespace mercury

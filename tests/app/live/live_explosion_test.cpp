@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Explosions in the window's scene: which spring is shown, where, and that it stays true when edits are taken back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "app/scene/eigen_vec3.h"
+#include "live_scene_bodies.h"
+#include "mercury/random_voxel.h"
+
+namespace mercury {
+namespace {
+
+using test::ids_of;
+using test::names_of;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr float length = 0.1f;  // of springs at rest [m]
+
+// Empty space without damping.
+LiveSceneOptions in_space() {
+  LiveSceneOptions options = test::on_cpu(OceanSimple{.point_drag = 0});
+  options.configuration.damping = 0;
+  return options;
+}
+
+// Springs of material 1, which is sound, but one of material 2, whose k dt^2 is far beyond what the force solver bears.
+Robot with_bad_spring(const std::string& name, std::vector<Vec3> masses,
+                      const std::vector<std::array<std::uint16_t, 2>>& ends, std::size_t bad, float stiffness = 4e6f) {
+  Robot robot{.name = name, .masses = std::move(masses)};
+  robot.materials = {{}, {.stiffness = 50}, {.stiffness = stiffness}};
+  robot.material_names = {"air", "sound", "brittle"};
+  for (const auto& [a, b] : ends)
+    robot.springs.push_back({a, b, static_cast<MaterialId>(robot.springs.size() == bad ? 2 : 1), length});
+  return robot;
+}
+
+// Masses on a line, a little farther apart than their springs want.
+Robot chain(std::size_t bad, float stiffness = 4e6f) {
+  std::vector<Vec3> masses;
+  std::vector<std::array<std::uint16_t, 2>> ends;
+  for (std::uint16_t i = 0; i < 8; ++i) {
+    masses.push_back({1.01f * length * static_cast<float>(i), 0, 0});
+    if (i > 0) ends.push_back({static_cast<std::uint16_t>(i - 1), i});
+  }
+  return with_bad_spring("chain", masses, ends, bad, stiffness);
+}
+
+void explode(LiveScene& scene) {
+  scene.step(200);
+  scene.wait_until_done();
+}
+
+TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
+  LiveScene scene(in_space());
+  std::vector<Vec3> masses;
+  for (int pair = 0; pair < 3; ++pair)
+    for (int end = 0; end < 2; ++end)
+      masses.push_back({1.02f * length * static_cast<float>(end), static_cast<float>(pair), 0});
+  scene.add({with_bad_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
+  explode(scene);
+  const auto exploded = scene.exploded();
+  ASSERT_THAT(exploded, SizeIs(1));
+  EXPECT_EQ(exploded[0].name, "pairs");
+  EXPECT_EQ(exploded[0].robot, ids_of(scene)[0]);
+  EXPECT_EQ(exploded[0].time, scene.moment().telemetry[0].exploded_at);
+  ASSERT_TRUE(exploded[0].spring);
+  const BadSpring& spring = *exploded[0].spring;
+  EXPECT_EQ(spring.index, 2u);
+  EXPECT_EQ(spring.a, 5);
+  EXPECT_EQ(spring.b, 4);
+  EXPECT_EQ(spring.figures.material_name, "brittle");
+  EXPECT_GT(spring.figures.length, 16 * length);
+  const Eigen::Vector3f offset = scene.picture().offsets()[0];
+  EXPECT_EQ(spring.at_a, Eigen::Vector3f(eigen(scene.moment().positions_of(0)[5]) + offset));
+  EXPECT_EQ(spring.at_b, Eigen::Vector3f(eigen(scene.moment().positions_of(0)[4]) + offset));
+  EXPECT_FLOAT_EQ((spring.at_b - spring.at_a).norm(), spring.figures.length);
+  for (const Eigen::Vector3f& end : {spring.at_a, spring.at_b}) {
+    EXPECT_TRUE((end.array() > spring.surroundings.low.array()).all());
+    EXPECT_TRUE((end.array() < spring.surroundings.high.array()).all());
+  }
+}
+
+// Algorithm 1 in double precision, until a spring is longer than sixteen times the longest rest length.
+struct Blamed {
+  std::size_t spring;
+  std::vector<double> positions;
+};
+Blamed blamed_in(const Robot& robot, double dt) {
+  std::vector<double> x, v(robot.masses.size());
+  for (const Vec3 mass : robot.masses) x.push_back(static_cast<double>(mass.x));
+  for (int step = 0; step < 200; ++step) {
+    std::vector<double> force(x.size());
+    std::size_t longest = robot.springs.size();
+    double most = 16.0 * static_cast<double>(length);
+    for (std::size_t i = 0; i < robot.springs.size(); ++i) {
+      const Spring& spring = robot.springs[i];
+      const double d = x[spring.b] - x[spring.a];
+      if (std::abs(d) > most) {
+        most = std::abs(d);
+        longest = i;
+      }
+      const double k = static_cast<double>(robot.materials[spring.material].stiffness);
+      const double pull = k * (std::abs(d) - static_cast<double>(length)) * (d < 0 ? -1 : 1);
+      force[spring.a] += pull;
+      force[spring.b] -= pull;
+    }
+    if (longest < robot.springs.size()) return {longest, x};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      v[i] += dt * force[i];
+      x[i] += dt * v[i];
+    }
+  }
+  return {robot.springs.size(), x};
+}
+
+TEST(LiveExplosion, InAChainItIsTheSpringAndThePlaceThatASimpleLoopFinds) {
+  for (const std::size_t bad : {0u, 3u, 6u}) {
+    LiveScene scene(in_space());
+    const Robot robot = chain(bad);
+    scene.add({robot});
+    explode(scene);
+    const auto exploded = scene.exploded();
+    ASSERT_THAT(exploded, SizeIs(1));
+    ASSERT_TRUE(exploded[0].spring);
+    const Blamed blamed = blamed_in(robot, scene.configuration().dt);
+    ASSERT_LT(blamed.spring, robot.springs.size());
+    const BadSpring& spring = *exploded[0].spring;
+    EXPECT_EQ(spring.index, blamed.spring) << bad;
+    const float expected = static_cast<float>(blamed.positions[spring.b] - blamed.positions[spring.a]);
+    EXPECT_NEAR((spring.at_b - spring.at_a).x(), expected, 0.02f * std::abs(expected)) << bad;
+  }
+}
+
+TEST(LiveExplosion, EachOfSeveralIsShownInItsTileTheEarliestFirst) {
+  LiveScene scene(in_space());
+  // The less stiff one takes longer.
+  scene.add({chain(2, 2.2e6f), chain(4, 1), chain(5, 2e7f), chain(1, 6e6f)});
+  explode(scene);
+  const auto exploded = scene.exploded();
+  ASSERT_THAT(exploded, SizeIs(3));
+  const auto ids = ids_of(scene);
+  EXPECT_EQ(exploded[0].robot, ids[2]);
+  EXPECT_EQ(exploded[1].robot, ids[3]);
+  EXPECT_EQ(exploded[2].robot, ids[0]);
+  EXPECT_LT(exploded[0].time, exploded[2].time);
+  for (const ExplodedRobot& one : exploded) {
+    ASSERT_TRUE(one.spring);
+    const Eigen::Vector3f offset = scene.picture().offsets()[one.index];
+    EXPECT_EQ(Eigen::Vector3f(one.spring->at_a - offset).y(), 0) << "the chain lies on a line";
+    EXPECT_TRUE(scene.picture().scene().placements[one.index].faulty);
+  }
+  scene.set_hidden(ids[3], true);
+  EXPECT_THAT(scene.exploded(), SizeIs(2));
+}
+
+TEST(LiveExplosion, IsThereAtOnceWhenEditsAreTakenBackAndDoesNotPause) {
+  LiveScene scene(in_space());
+  scene.pause_on_explosion(false);
+  scene.add({chain(3), chain(1, 1)});
+  explode(scene);
+  const auto before = scene.exploded();
+  ASSERT_THAT(before, SizeIs(1));
+  const auto ids = ids_of(scene);
+  scene.pause_on_explosion(true);
+  scene.remove({ids[0]});
+  scene.wait_until_done();
+  EXPECT_THAT(scene.exploded(), IsEmpty());
+  // A time step that had been changed in between does not move what has been.
+  Configuration finer = scene.configuration();
+  finer.dt /= 8;
+  ASSERT_TRUE(scene.set_configuration(finer));
+  scene.end_edit();
+  scene.undo();
+  scene.undo();
+  scene.wait_until_done();
+  const auto stops = scene.moment().stops;
+  const auto after = scene.exploded();
+  ASSERT_THAT(after, SizeIs(1)) << "no step was made since";
+  EXPECT_EQ(after[0].robot, ids[0]);
+  EXPECT_EQ(after[0].time, before[0].time);
+  ASSERT_TRUE(after[0].spring);
+  EXPECT_EQ(after[0].spring->index, before[0].spring->index);
+  EXPECT_EQ(after[0].spring->at_a, before[0].spring->at_a);
+  EXPECT_TRUE(scene.picture().scene().placements[after[0].index].faulty);
+  EXPECT_TRUE(scene.entries()[0].exploded);
+  EXPECT_EQ(stops, 0u) << "it exploded before, not now";
+  scene.redo();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.exploded(), IsEmpty());
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.exploded(), SizeIs(1));
+  // A copy is a new robot at rest; a reset heals.
+  scene.duplicate({ids[0]});
+  scene.wait_until_done();
+  EXPECT_THAT(scene.exploded(), SizeIs(1));
+  scene.reset();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.exploded(), IsEmpty());
+  EXPECT_FALSE(scene.picture().scene().placements[0].faulty);
+}
+
+}  // namespace
+}  // namespace mercury

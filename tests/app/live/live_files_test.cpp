@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of the window: robots opened and saved, commands that make the scene again, repro files, what is remembered.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "app/live/remembered.h"
+#include "app/options/robot_options.h"
+#include "app/options/simulation_options.h"
+#include "app/options/view_options.h"
+#include "live_scene_bodies.h"
+#include "mercury/robot_file.h"
+#include "program.h"
+
+namespace mercury {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// As the program writes hashes.
+std::string hash_text(std::uint64_t hash) {
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill(static_cast<char>(48)) << hash;
+  return text.str();
+}
+
+class LiveFiles : public test::FolderTest {
+ protected:
+  // The words of a line as the shell takes them.
+  static std::vector<std::string> words_of(const std::string& line) {
+    const test::Outcome outcome = test::run_program("sh", {"-c", "printf '%s\\0' " + line});
+    std::vector<std::string> words;
+    std::istringstream text(outcome.output);
+    for (std::string word; std::getline(text, word, '\0');) words.push_back(word);
+    return words;
+  }
+
+  struct Parsed {
+    std::vector<Robot> robots;
+    Configuration configuration;
+    ViewSettings view;
+  };
+  // What the program's own options make of the words after `mercury view`.
+  static Parsed parsed(const std::string& line) {
+    std::vector<std::string> words = words_of(line);
+    EXPECT_THAT(std::vector(words.begin(), words.begin() + 2), ElementsAre("mercury", "view"));
+    words.erase(words.begin(), words.begin() + 2);
+    CLI::App app;
+    RobotOptions robots;
+    SimulationOptions simulation;
+    ViewOptions view;
+    robots.add_to(app);
+    simulation.add_to(app);
+    view.add_to(app);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    return {robots.load(), simulation.configuration(), view.settings()};
+  }
+};
+
+TEST_F(LiveFiles, OpensWhatCanBeReadAndTellsOfTheRest) {
+  save_robot(path("b.json"), random_voxel_robot({}, 1, 0));
+  save_robot(path("a.cbor"), random_voxel_robot({}, 1, 1));
+  write("broken.json", "{");
+  write("run.h5", "");
+  LiveScene scene(test::on_cpu());
+  scene.open({folder_, path("missing.json"), path("run.h5")});
+  scene.wait_until_done();
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-1", "voxel-1-0"));
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+  EXPECT_EQ(scene.entries()[1].file, path("b.json"));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(3));
+  EXPECT_THAT(messages[0].text, HasSubstr("broken.json"));
+  EXPECT_THAT(messages[1].text, HasSubstr("missing.json"));
+  EXPECT_THAT(messages[2].text, HasSubstr("run.h5"));
+}
+
+TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
+  const test::Outcome run = test::mercury(
+      {"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
+  ASSERT_EQ(run.status, 0) << run.messages;
+  LiveScene scene(test::on_cpu());
+  scene.open({path("swim.h5")});
+  scene.wait_until_done();
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
+  EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(0), random_voxel_robot({}, 5, 0).masses));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(1));
+  EXPECT_EQ(messages[0].severity, Severity::note);
+  EXPECT_THAT(messages[0].text, HasSubstr("2 robots, at rest"));
+}
+
+TEST_F(LiveFiles, WhatIsDroppedInOneGoLoadsWhereItCanAndTheRestIsTold) {
+  // As a drop hands it over: files of all kinds, folders, names with anything in them.
+  save_robot(path("a b%20\xc3\xa9 '#?.json"), random_voxel_robot({}, 1, 0));
+  std::filesystem::create_directories(folder_ / "many" / "inner");
+  std::filesystem::create_directories(folder_ / "empty");
+  save_robot(path("many/one.json"), random_voxel_robot({}, 1, 1));
+  save_robot(path("many/two.cbor"), random_voxel_robot({}, 1, 2));
+  write("picture.png", "\x89PNG");
+  write("scene.toml", "dt = 0.01\n");
+  write("cut.cbor", read("many/two.cbor").substr(0, 100));
+  LiveScene scene(test::on_cpu());
+  scene.open({path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"),
+              path("scene.toml"), path("cut.cbor")});
+  scene.wait_until_done();
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-0", "voxel-1-1", "voxel-1-2"));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(4));
+  EXPECT_THAT(messages[0].text, HasSubstr("empty: the folder holds no robot"));
+  EXPECT_THAT(messages[1].text, HasSubstr("picture.png"));
+  EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: holds options, not robots; give it to mercury view --config"));
+  EXPECT_THAT(messages[3].text, HasSubstr("cut.cbor"));
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.entries(), IsEmpty()) << "one drop is one edit";
+}
+
+TEST_F(LiveFiles, ManyFilesThatCannotBeUsedMakeFewMessages) {
+  for (int i = 0; i < 30; ++i) write("broken-" + std::to_string(i) + ".json", "{");
+  LiveScene scene(test::on_cpu());
+  scene.open({folder_});
+  scene.wait_until_done();
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(4));
+  EXPECT_EQ(messages[3].text, "and 27 more files cannot be used");
+}
+
+TEST_F(LiveFiles, SavesWhatIsThereAndNeverReplacesUnasked) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  const auto ids = test::ids_of(scene);
+  scene.scale_materials({ids[0]}, {.stiffness = 2});
+  scene.rename(ids[0], "strong/one");
+  EXPECT_TRUE(scene.save(ids[0], path("robot.json")).ok());
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+  const Robot saved = load_robot(path("robot.json"));
+  EXPECT_EQ(saved.name, "strong/one");
+  EXPECT_EQ(saved.materials[1].stiffness, 2 * default_materials()[1].stiffness);
+  EXPECT_EQ(saved.springs, random_voxel_robot({}, 5, 0).springs);
+  scene.scale_materials({ids[0]}, {});
+  EXPECT_TRUE(scene.entries()[0].unsaved);
+  const std::string before = read("robot.json");
+  const SaveResult again = scene.save(ids[0], path("robot.json"));
+  EXPECT_EQ(again.outcome, SaveResult::Outcome::exists);
+  EXPECT_EQ(read("robot.json"), before);
+  EXPECT_TRUE(scene.save(ids[0], path("robot.json"), true).ok());
+  EXPECT_NE(read("robot.json"), before);
+  // All or nothing.
+  write("voxel-5-1.cbor", "mine");
+  const SaveResult all = scene.save_all(ids, folder_, RobotFormat::cbor);
+  EXPECT_EQ(all.outcome, SaveResult::Outcome::exists);
+  EXPECT_THAT(all.files, ElementsAre(folder_ / "voxel-5-1.cbor"));
+  EXPECT_THAT(listing(), ElementsAre("robot.json", "voxel-5-1.cbor"));
+  EXPECT_EQ(read("voxel-5-1.cbor"), "mine");
+  EXPECT_TRUE(scene.save_all(ids, folder_, RobotFormat::cbor, true).ok());
+  EXPECT_EQ(load_robot(path("voxel-5-1.cbor")), random_voxel_robot({}, 5, 1));
+  EXPECT_EQ(scene.save(ids[0], path("robot.txt")).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(scene.save(ids[0], folder_).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(scene.save(99, path("x.json")).outcome, SaveResult::Outcome::failed);
+}
+
+TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
+  save_robot(path("it's $HOME.json"), random_voxel_robot({}, 1, 0));
+  LiveSceneOptions options = test::on_cpu(Ocean{.density = 900.5f, .flow = {-0.1f, 0, 2}, .gravity = {0, 0, -1}});
+  options.configuration.dt = 5e-4;
+  options.configuration.solver = Solver::xpbd;
+  options.view.color = ColorBy::strain;
+  options.view.scale = {-7.5f, 7.5f};
+  options.view.shown.springs = options.view.shown.arrows.drag = options.view.shown.labels = true;
+  options.view.theme = render::Theme::light;
+  options.view.cut = render::CutPlane{.normal = {0, -1, 0}, .offset = -0.25f};
+  options.view.camera.azimuth = 1.25f;
+  LiveScene scene(options);
+  scene.open({path("it's $HOME.json")});
+  Generation generation{.count = 3, .seed = 8, .first = 2};
+  generation.voxel = {.smallest = {3, 2, 2}, .largest = {3, 2, 2}, .air = 0.125, .mirror = Mirror::none};
+  scene.generate(generation);
+  scene.wait_until_done();
+  scene.remove({test::ids_of(scene)[2]});
+  generation.seed = 9;
+  generation.count = 1;
+  scene.generate(generation);
+  scene.wait_until_done();
+  const CommandText command = scene.command();
+  EXPECT_THAT(command.notes, IsEmpty());
+  const Parsed same = parsed(command.text);
+  ASSERT_EQ(same.robots.size(), scene.document().robots.size()) << command.text;
+  for (std::size_t i = 0; i < same.robots.size(); ++i)
+    EXPECT_EQ(same.robots[i], *scene.document().robots[i].body.robot) << i;
+  EXPECT_EQ(same.configuration, scene.configuration());
+  EXPECT_EQ(same.view.color, options.view.color);
+  EXPECT_EQ(same.view.scale, options.view.scale);
+  EXPECT_EQ(same.view.theme, options.view.theme);
+  EXPECT_TRUE(same.view.shown.springs && same.view.shown.arrows.drag && same.view.shown.labels &&
+              same.view.shown.clock);
+  EXPECT_FALSE(same.view.shown.legend);
+  ASSERT_TRUE(same.view.cut);
+  EXPECT_EQ(same.view.cut->normal, options.view.cut->normal);
+  EXPECT_FLOAT_EQ(same.view.cut->offset, options.view.cut->offset);
+  EXPECT_FLOAT_EQ(same.view.camera.azimuth.value(), 1.25f);
+  EXPECT_THAT(scene.command("render").text, HasSubstr(" -o scene.mp4"));
+}
+
+TEST_F(LiveFiles, TheCommandSaysWhatItCannotSay) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.mutate({test::ids_of(scene)[0]}, {});
+  scene.wait_until_done();
+  scene.scale_materials({test::ids_of(scene)[1]}, {.frequency = 2});
+  EXPECT_THAT(scene.command().notes, SizeIs(2));
+  ASSERT_TRUE(scene.save_all(test::ids_of(scene), folder_, RobotFormat::json).ok());
+  const CommandText command = scene.command();
+  EXPECT_THAT(command.notes, IsEmpty());
+  const Parsed same = parsed(command.text);
+  ASSERT_EQ(same.robots.size(), 3u);
+  EXPECT_EQ(same.robots[1].materials[1].frequency, 2 * default_materials()[1].frequency);
+}
+
+TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.step(700);
+  scene.wait_until_done();
+  const test::Outcome run =
+      test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.7", "--device", "cpu", "--json", "--quiet"});
+  const auto report = nlohmann::json::parse(run.output);
+  Simulation same(test::on_cpu().configuration, random_voxel_robots({}, 5, 2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto positions = scene.moment().positions_of(i), velocities = scene.moment().velocities_of(i);
+    same.set_state(i, positions, velocities);
+    EXPECT_EQ(report["robots"][i]["hash"], hash_text(same.hash(i)));
+  }
+}
+
+TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
+  Messages messages;
+  const auto file = folder_ / "mercury" / "scene.toml";
+  EXPECT_EQ(load_remembered(file, messages).generation.count, Generation{}.count);
+  Remembered remembered{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
+  remembered.view.color = ColorBy::force;
+  remembered.view.shown = {.skin = false, .springs = true, .scale_bar = true};
+  remembered.view.theme = render::Theme::light;
+  remembered.view.layout = Layout::race;
+  remembered.generation = {.kind = Generation::Kind::network, .count = 7, .seed = 1234567890123456789u};
+  remembered.generation.network.points = 100;
+  remembered.generation.voxel.air = 0.001;
+  save_remembered(file, remembered, messages);
+  const Remembered back = load_remembered(file, messages);
+  EXPECT_THAT(messages.take(), IsEmpty());
+  EXPECT_EQ(back.view.color, ColorBy::force);
+  EXPECT_FALSE(back.view.shown.skin);
+  EXPECT_TRUE(back.view.shown.springs && back.view.shown.scale_bar && back.view.shown.clock);
+  EXPECT_EQ(back.view.theme, render::Theme::light);
+  EXPECT_EQ(back.view.layout, Layout::race);
+  EXPECT_TRUE(back.pause_on_explosion);
+  EXPECT_EQ(back.folder, remembered.folder);
+  EXPECT_EQ(back.generation.kind, Generation::Kind::network);
+  EXPECT_EQ(back.generation.count, 7u);
+  EXPECT_EQ(back.generation.seed, remembered.generation.seed);
+  EXPECT_EQ(back.generation.network.points, 100u);
+  EXPECT_EQ(back.generation.voxel.air, 0.001);
+  write("mercury/scene.toml", "color = \"tartan\"\n");
+  EXPECT_EQ(load_remembered(file, messages).view.color, ColorBy::material);
+  EXPECT_THAT(messages.take(), SizeIs(1));
+  EXPECT_EQ(read("mercury/scene.toml.broken"), "color = \"tartan\"\n");
+  save_remembered(folder_ / "mercury" / "scene.toml.broken" / "x.toml", remembered, messages);
+  EXPECT_THAT(messages.take(), SizeIs(1));
+}
+
+TEST(FileName, HoldsNothingThatAFilesNameMayNot) {
+  EXPECT_EQ(file_name_of("a/b\\c"), "a_b_c");
+  EXPECT_EQ(file_name_of("../.."), "_..");
+  EXPECT_EQ(file_name_of(""), "robot");
+  EXPECT_EQ(file_name_of("-rf"), "rf");
+}
+
+}  // namespace
+}  // namespace mercury

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever is asked for in whatever order: nothing throws, nothing hangs, and the moments hold together.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "live_scene_bodies.h"
+#include "mercury/random.h"
+#include "program.h"
+
+namespace mercury {
+namespace {
+
+class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std::uint64_t> {
+ protected:
+  Random random{GetParam()};
+  LiveScene scene{test::on_cpu()};
+
+  std::uint64_t below(std::uint64_t n) { return random.below(n); }
+  float number() {
+    constexpr float odd[] = {0, -1, 1e-20f, 1e20f, NAN, INFINITY, -INFINITY, 1, 0.5f};
+    return below(3) == 0 ? odd[below(std::size(odd))] : static_cast<float>(random.uniform(-3, 3));
+  }
+  RobotId robot() {
+    const auto ids = test::ids_of(scene);
+    return ids.empty() || below(20) == 0 ? below(50) : ids[below(ids.size())];
+  }
+  std::vector<RobotId> some() { return below(8) == 0 ? test::ids_of(scene) : std::vector{robot(), robot()}; }
+  std::string file() {
+    constexpr const char* names[] = {"a.json", "b.json", "c.cbor", "d.cbor"};
+    return path(names[below(std::size(names))]);
+  }
+
+  Configuration configuration() {
+    Configuration wanted = scene.configuration();
+    switch (below(6)) {
+      case 0:
+        wanted.environment = Ocean{.density = number(), .flow = {number(), 0, 0}};
+        break;
+      case 1:
+        wanted.environment = Land{.friction = number()};
+        break;
+      case 2:
+        wanted.environment = OceanSimple{.point_drag = number()};
+        break;
+      case 3:
+        wanted.dt = below(2) ? 1e-3 : static_cast<double>(number());
+        break;
+      case 4:
+        wanted.solver = below(2) ? Solver::force : Solver::xpbd;
+        break;
+      default:
+        wanted.damping = number();
+    }
+    return wanted;
+  }
+  ViewSettings view() {
+    ViewSettings wanted;
+    wanted.color = static_cast<ColorBy>(below(8));
+    wanted.shown = {.skin = below(2) == 0,
+                    .springs = below(2) == 0,
+                    .path = below(2) == 0,
+                    .labels = below(2) == 0,
+                    .legend = below(2) == 0};
+    wanted.shown.arrows = {.drag = below(2) == 0, .velocity = below(2) == 0};
+    if (below(4) == 0) wanted.grid = Grid{2, 1};
+    if (below(4) == 0) wanted.layout = Layout::race;
+    return wanted;
+  }
+  render::Ray ray() {
+    return {.origin = {number(), number(), 3}, .direction = Eigen::Vector3f(number(), number(), -1).normalized()};
+  }
+
+  void act() {
+    switch (below(30)) {
+      case 0:
+        scene.play();
+        break;
+      case 1:
+        scene.pause();
+        break;
+      case 2:
+        scene.step(static_cast<std::int64_t>(below(20)));
+        break;
+      case 3:
+        scene.reset();
+        break;
+      case 4:
+        scene.set_speed(number());
+        break;
+      case 5:
+        scene.change_speed(static_cast<int>(below(5)) - 2);
+        break;
+      case 6:
+        if (test::ids_of(scene).size() < 8) scene.generate({.count = below(3), .seed = below(9)}, below(6) == 0);
+        break;
+      case 7:
+        scene.remove(some());
+        break;
+      case 8:
+        if (test::ids_of(scene).size() < 8) scene.duplicate(some());
+        break;
+      case 9:
+        if (test::ids_of(scene).size() < 8) scene.mutate(some(), {.seed = below(99)}, below(2) == 0);
+        break;
+      case 10:
+        scene.undo();
+        break;
+      case 11:
+        scene.redo();
+        break;
+      case 12:
+        scene.select(robot(), below(2) == 0);
+        break;
+      case 13:
+        scene.set_configuration(configuration());
+        break;
+      case 14:
+        scene.set_view(view());
+        break;
+      case 15:
+        scene.scale_materials(some(), {number(), number(), number(), number()});
+        break;
+      case 16:
+        scene.set_material(some(), static_cast<MaterialId>(below(256)), {number(), number(), number(), number()});
+        break;
+      case 17:
+        scene.reset_materials(some());
+        break;
+      case 18:
+        if (const auto hit = scene.pick(ray())) scene.begin_pull(*hit, number());
+        break;
+      case 19:
+        scene.move_pull({number(), number(), number()});
+        break;
+      case 20:
+        scene.end_pull();
+        break;
+      case 21:
+        scene.set_hidden(robot(), below(2) == 0);
+        break;
+      case 22:
+        scene.save(robot(), file(), below(2) == 0);
+        break;
+      case 23:
+        if (test::ids_of(scene).size() < 8) scene.open({file()});
+        break;
+      case 24:
+        scene.pause_on_explosion(below(2) == 0);
+        break;
+      case 25:
+        scene.reset_configuration();
+        break;
+      case 26:
+        scene.rename(robot(), below(2) ? "eel" : "");
+        break;
+      case 27:
+        scene.begin_pull({.robot = robot(), .mass = static_cast<std::uint16_t>(below(70000))}, number());
+        break;
+      case 28:
+        scene.describe({.robot = robot(),
+                        .mass = static_cast<std::uint16_t>(below(70000)),
+                        .spring = static_cast<std::uint32_t>(below(1u << 20))});
+        break;
+      default:
+        scene.save_repro(robot(), folder_ / "repro", below(2) == 0);
+    }
+  }
+
+  void look() {
+    scene.frame(number());
+    const Moment& moment = scene.moment();
+    ASSERT_EQ(moment.telemetry.size(), moment.robots->size());
+    ASSERT_EQ(moment.positions.size(), moment.robots->mass_offsets.back());
+    ASSERT_EQ(scene.picture().offsets().size(), moment.robots->size());
+    ASSERT_EQ(scene.picture().scene().placements.size(), moment.robots->size());
+    if (!moment.details.values.mass.empty()) {
+      ASSERT_EQ(moment.details.values.mass.size(), moment.positions.size());
+    }
+    scene.pull();
+    scene.ranking();
+    scene.csv(test::ids_of(scene));
+    scene.command();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, LiveFuzz, testing::Values(1, 2, 3));
+
+TEST_P(LiveFuzz, AnythingInAnyOrder) {
+  for (int i = 0; i < 1500; ++i) {
+    ASSERT_NO_THROW(act()) << i;
+    if (below(3) == 0) look();
+    if (HasFatalFailure()) return;
+  }
+  scene.pause();
+  scene.wait_until_done();
+  // What is left is the scene that was asked for.
+  ASSERT_EQ(scene.moment().robots->size(), scene.document().robots.size());
+  for (std::size_t i = 0; i < scene.document().robots.size(); ++i)
+    EXPECT_EQ(scene.moment().robots->robots[i].id, scene.document().robots[i].body.id);
+  EXPECT_EQ(scene.moment().configuration, scene.configuration());
+}
+
+}  // namespace
+}  // namespace mercury

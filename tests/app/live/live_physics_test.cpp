@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window's physics: on its own thread, and yet step by step what the simulation alone gives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "app/live/physics.h"
+#include "mercury/random_voxel.h"
+
+namespace mercury {
+namespace {
+
+Configuration on_cpu(Environment environment = Ocean{}) {
+  return {.environment = environment, .device = {.kind = DeviceKind::cpu, .threads = 1}};
+}
+
+std::vector<LiveRobot> some_robots(std::size_t count) {
+  std::vector<LiveRobot> live;
+  for (Robot& robot : random_voxel_robots({}, 5, count)) {
+    std::string name = robot.name;
+    live.push_back(
+        {.id = live.size() + 1, .name = std::move(name), .robot = std::make_shared<const Robot>(std::move(robot))});
+  }
+  return live;
+}
+
+// A simulation of the same robots, for comparison.
+Simulation alone(const std::vector<LiveRobot>& live, const Configuration& configuration) {
+  std::vector<Robot> robots;
+  for (const LiveRobot& robot : live) robots.push_back(*robot.robot);
+  return Simulation(configuration, robots);
+}
+
+std::vector<Vec3> positions_of(const Simulation& simulation) {
+  std::vector<Vec3> positions(simulation.mass_count());
+  simulation.read_positions(positions);
+  return positions;
+}
+
+TEST(LivePhysics, StepsGiveWhatTheSimulationAloneGives) {
+  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+    Messages messages;
+    Physics physics(on_cpu(environment), messages);
+    const auto robots = some_robots(3);
+    physics.set_scene(robots, on_cpu(environment));
+    physics.step(500);
+    physics.step(137);
+    physics.wait_until_done();
+    Simulation simulation = alone(robots, on_cpu(environment));
+    simulation.step(637);
+    const auto moment = physics.newest();
+    EXPECT_EQ(moment->steps, 637);
+    EXPECT_EQ(moment->time, simulation.time());
+    EXPECT_EQ(moment->positions, positions_of(simulation));
+    EXPECT_EQ(moment->telemetry[1].kinetic_energy, simulation.telemetry(1).kinetic_energy);
+    EXPECT_TRUE(messages.take().empty());
+  }
+}
+
+TEST(LivePhysics, WhatPlayedUntilPausedIsWhatSoManyStepsGive) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  const auto robots = some_robots(2);
+  physics.set_scene(robots, on_cpu());
+  physics.set_speed(unlimited_speed);
+  physics.play();
+  while (physics.newest()->steps < 300) std::this_thread::yield();
+  physics.pause();
+  physics.wait_until_done();
+  const auto moment = physics.newest();
+  EXPECT_FALSE(moment->playing);
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(moment->steps);
+  EXPECT_EQ(moment->positions, positions_of(simulation));
+}
+
+TEST(LivePhysics, ResetGoesBackToRestAtTimeZero) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  const auto robots = some_robots(2);
+  physics.set_scene(robots, on_cpu());
+  physics.wait_until_done();
+  const auto start = physics.newest();
+  physics.step(50);
+  physics.wait_until_done();
+  EXPECT_NE(physics.newest()->positions, start->positions);
+  physics.reset();
+  physics.wait_until_done();
+  EXPECT_EQ(physics.newest()->positions, start->positions);
+  EXPECT_EQ(physics.newest()->steps, 0);
+  EXPECT_EQ(physics.newest()->resets, start->resets + 1);
+}
+
+TEST(LivePhysics, RobotsThatStayGoOnWhenOthersComeAndGo) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  const auto robots = some_robots(3);
+  physics.set_scene({robots[0], robots[1]}, on_cpu());
+  physics.step(40);
+  physics.wait_until_done();
+  physics.set_scene({robots[2], robots[1]}, on_cpu());
+  physics.step(60);
+  physics.wait_until_done();
+  const auto moment = physics.newest();
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(100);
+  const auto expected = simulation.positions(1);
+  EXPECT_TRUE(std::ranges::equal(moment->positions_of(1), expected));
+  EXPECT_EQ(moment->robots->robots[0].id, robots[2].id);
+  // The first one comes back as it left, at step 40.
+  physics.set_scene(robots, on_cpu());
+  physics.wait_until_done();
+  Simulation until_40 = alone(robots, on_cpu());
+  until_40.step(40);
+  EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(0), until_40.positions(0)));
+  EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(1), expected));
+}
+
+TEST(LivePhysics, APullMovesTheCentreOfMassAsItsForceSays) {
+  // Empty space without damping: the only outer force is k (target - x) on one mass.
+  Configuration space = on_cpu(OceanSimple{.point_drag = 0});
+  space.damping = 0;
+  Messages messages;
+  Physics physics(space, messages);
+  Robot point{.name = "point", .masses = {{0, 0, 0}}};
+  physics.set_scene({{.id = 7, .robot = std::make_shared<const Robot>(point)}}, space);
+  physics.set_pulls({{.robot = 7, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}, {.robot = 8, .mass = 3}});
+  physics.step(1);
+  physics.wait_until_done();
+  // One kilogram, 20 N for 1 ms.
+  EXPECT_NEAR(physics.newest()->velocities[0].x, 0.02, 1e-6);
+  ASSERT_EQ(physics.newest()->pulls.size(), 1u) << "a pull on a robot that is not there is left out";
+  physics.step(249);
+  physics.wait_until_done();
+  // x = 1 - cos(omega t), omega = sqrt(20); the integrator's positions are half a step ahead.
+  EXPECT_NEAR(physics.newest()->positions[0].x, 1 - std::cos(std::sqrt(20.0) * 0.2505), 1e-4);
+}
+
+TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
+  Configuration wild = on_cpu();
+  wild.dt = 1;
+  Messages messages;
+  Physics physics(wild, messages);
+  const auto robots = some_robots(1);
+  physics.pause_on_explosion(true);
+  physics.set_scene(robots, wild);
+  physics.set_speed(unlimited_speed);
+  physics.play();
+  physics.wait_until_done();
+  while (physics.newest()->stops == 0) std::this_thread::yield();
+  physics.wait_until_done();
+  const auto moment = physics.newest();
+  EXPECT_FALSE(moment->playing);
+  EXPECT_TRUE(moment->telemetry[0].exploded);
+  const auto explosions = physics.take_explosions();
+  ASSERT_EQ(explosions.size(), 1u);
+  EXPECT_EQ(explosions[0].robot, robots[0].id);
+  EXPECT_EQ(explosions[0].time, moment->telemetry[0].exploded_at);
+  EXPECT_LT(explosions[0].first_bad_spring, robots[0].robot->springs.size());
+  physics.step(5);
+  physics.wait_until_done();
+  EXPECT_TRUE(physics.take_explosions().empty());
+  // After a reset it can explode again.
+  physics.reset();
+  physics.step(200);
+  physics.wait_until_done();
+  EXPECT_EQ(physics.take_explosions().size(), 1u);
+}
+
+TEST(LivePhysics, RobotsThatCannotBeSimulatedAreToldAndTheNextSceneIsSimulated) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  auto robots = some_robots(2);
+  physics.set_scene(robots, on_cpu());
+  physics.step(5);
+  physics.wait_until_done();
+  const LiveRobot impossible{.id = 9, .robot = std::make_shared<const Robot>()};
+  physics.set_scene({robots[0], impossible}, on_cpu());
+  physics.wait_until_done();
+  EXPECT_EQ(messages.take().size(), 1u);
+  EXPECT_EQ(physics.newest()->robots->size(), 0u);
+  EXPECT_TRUE(physics.newest()->positions.empty());
+  physics.set_scene(robots, on_cpu());
+  physics.step(5);
+  physics.wait_until_done();
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(5);
+  EXPECT_EQ(physics.newest()->positions, positions_of(simulation));
+  EXPECT_TRUE(messages.take().empty());
+}
+
+TEST(LivePhysics, ViewsThatTheEnvironmentLacksAreLeftOut) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  ViewSettings view{.color = ColorBy::pressure};
+  view.shown.arrows.drag = true;
+  physics.set_view(view);
+  physics.set_scene(some_robots(1), on_cpu());
+  physics.step(3);
+  physics.wait_until_done();
+  EXPECT_EQ(physics.newest()->color, ColorBy::pressure);
+  EXPECT_FALSE(physics.newest()->details.values.face.empty());
+  physics.set_scene(some_robots(1), on_cpu(Land{}));
+  physics.wait_until_done();
+  EXPECT_EQ(physics.newest()->color, ColorBy::material);
+  EXPECT_TRUE(physics.newest()->details.arrows.empty());
+  physics.set_scene(some_robots(1), on_cpu());
+  physics.wait_until_done();
+  EXPECT_EQ(physics.newest()->color, ColorBy::pressure);
+  EXPECT_TRUE(messages.take().empty());
+}
+
+}  // namespace
+}  // namespace mercury

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a ray meets, against independent calculations.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+#include "app/scene/eigen_vec3.h"
+#include "live_scene_bodies.h"
+#include "mercury/random.h"
+
+namespace mercury {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+// A triangle's crossing by solving for barycentric coordinates and distance, in double precision.
+std::optional<double> crossing(const render::Ray& ray, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  Eigen::Matrix3d columns;
+  columns << b - a, c - a, -ray.direction.cast<double>();
+  const Vector3d right = ray.origin.cast<double>() - a;
+  const double determinant = columns.determinant();
+  if (std::abs(determinant) < 1e-12) return std::nullopt;
+  Vector3d solution;
+  for (int i = 0; i < 3; ++i) {  // Cramer's rule
+    Eigen::Matrix3d replaced = columns;
+    replaced.col(i) = right;
+    solution[i] = replaced.determinant() / determinant;
+  }
+  if (solution[0] < 0 || solution[1] < 0 || solution[0] + solution[1] > 1 || solution[2] <= 0) return std::nullopt;
+  return solution[2];
+}
+
+TEST(LivePicking, MeetsTheFaceThatBruteForceFinds) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 6);
+  scene.step(200);
+  scene.wait_until_done();
+  const Moment& moment = scene.moment();
+  Random random(1);
+  int met = 0;
+  for (int shot = 0; shot < 400; ++shot) {
+    const std::size_t aim = random.below(moment.robots->size());
+    const Vector3f target =
+        eigen(moment.positions_of(aim)[random.below(moment.positions_of(aim).size())]) + scene.picture().offsets()[aim];
+    render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)),
+                               static_cast<float>(random.uniform(-5, 5))}};
+    const Vector3f jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
+                          static_cast<float>(random.uniform(-0.2, 0.2)));
+    ray.direction = (target + jitter - ray.origin).normalized();
+    double nearest = INFINITY, second = INFINITY;
+    std::size_t robot = 0;
+    std::uint32_t face = 0;
+    for (std::size_t i = 0; i < moment.robots->size(); ++i) {
+      const auto& faces = moment.robots->robots[i].robot->faces;
+      const auto place = [&](std::uint16_t mass) -> Vector3d {
+        return (eigen(moment.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>();
+      };
+      for (std::uint32_t f = 0; f < faces.size(); ++f) {
+        const auto t = crossing(ray, place(faces[f].a), place(faces[f].b), place(faces[f].c));
+        if (!t) continue;
+        if (*t < nearest) {
+          second = nearest;
+          nearest = *t;
+          robot = i;
+          face = f;
+        } else {
+          second = std::min(second, *t);
+        }
+      }
+    }
+    const auto hit = scene.pick(ray);
+    if (std::isinf(nearest)) {
+      EXPECT_FALSE(hit) << shot;
+      continue;
+    }
+    ++met;
+    ASSERT_TRUE(hit) << shot;
+    EXPECT_NEAR(hit->distance, nearest, 1e-3);
+    if (second - nearest < 1e-3) continue;  // two faces at their common edge
+    EXPECT_EQ(hit->index, robot);
+    EXPECT_EQ(hit->face, face);
+    EXPECT_LT((hit->point - (ray.origin + static_cast<float>(nearest) * ray.direction)).norm(), 1e-3f);
+  }
+  EXPECT_GT(met, 150);
+}
+
+Robot two_springs() {
+  Robot robot{.name = "pair", .masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+  robot.springs = {{0, 1, 21, 0.8f}, {0, 2, 1, 1}};
+  return robot;
+}
+
+TEST(LivePicking, MeetsSpringsWithinTheRadiusAndTellsTheirForce) {
+  LiveScene scene(test::on_cpu(OceanSimple{.stiffness_scale = 3}));
+  scene.add({two_springs()});
+  scene.wait_until_done();
+  const Vector3f offset = scene.picture().offsets()[0];
+  const auto from_above = [&](float x, float y) {
+    return render::Ray{.origin = offset + Vector3f(x, y, 2), .direction = {0, 0, -1}};
+  };
+  const auto hit = pick(scene.moment(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->spring, 0u);
+  EXPECT_EQ(hit->mass, 1);
+  EXPECT_NEAR(hit->distance, 2, 1e-5f);
+  EXPECT_FALSE(pick(scene.moment(), scene.picture().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
+  const HitFigures figures = scene.describe(*hit);
+  ASSERT_TRUE(figures.spring);
+  EXPECT_EQ(figures.robot, "pair");
+  EXPECT_EQ(figures.spring->material_name, "tissue");
+  // Hooke: 40 N/m times the environment's 3, 1 m long where 0.8 m is rest.
+  EXPECT_NEAR(figures.spring->force, 3 * 40 * 0.2f, 1e-4f);
+  EXPECT_NEAR(figures.spring->strain, 0.25f, 1e-6f);
+  EXPECT_EQ(figures.mass.springs, 1u);
+  EXPECT_EQ(figures.mass.speed, 0);
+}
+
+TEST(LivePicking, WhatIsHiddenOrCutAwayIsNotMet) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  const render::Bounds box = scene.picture().bounds()[0];
+  const render::Ray ray{.origin = box.center() + Vector3f(0, 0, 5), .direction = {0, 0, -1}};
+  const auto hit = scene.pick(ray);
+  ASSERT_TRUE(hit);
+  ViewSettings view = scene.view();
+  view.cut = render::CutPlane{.normal = {0, 0, 1}, .offset = hit->point.z() - 1e-3f};
+  scene.set_view(view);
+  const auto deeper = scene.pick(ray);
+  EXPECT_TRUE(!deeper || deeper->distance > hit->distance);
+  scene.set_hidden(test::ids_of(scene)[0], true);
+  EXPECT_FALSE(scene.pick(ray));
+}
+
+}  // namespace
+}  // namespace mercury

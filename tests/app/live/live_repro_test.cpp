@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// An explosion seen in the window happens again from its repro: by the program, and in the window.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <iomanip>
+#include <sstream>
+
+#include "app/live/histories.h"
+#include "app/recording/repro.h"
+#include "live_scene_bodies.h"
+#include "mercury/error.h"
+#include "mercury/random_voxel.h"
+#include "program.h"
+
+namespace mercury {
+namespace {
+
+using test::ids_of;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class LiveRepro : public test::FolderTest {
+ protected:
+  // All that a user can do on the way, then a time step that tears the robot.
+  static void torment(LiveScene& scene, RobotId robot) {
+    const auto step = [&](std::int64_t count) {
+      scene.step(count);
+      scene.wait_until_done();
+    };
+    step(40);
+    const std::size_t index = *scene.moment().robots->index_of(robot);
+    scene.begin_pull({.robot = robot, .index = index, .mass = 3}, 40);
+    for (int i = 0; i < 5; ++i) {
+      scene.move_pull(scene.pull()->at + Eigen::Vector3f(0.1f * static_cast<float>(i), 0.2f, 0));
+      step(7);
+    }
+    Material muscle = scene.materials(robot)[2];
+    muscle.frequency *= 3;
+    muscle.phase = 0.7f;
+    scene.set_material({robot}, 2, muscle);
+    step(33);
+    scene.scale_materials({robot}, {.stiffness = 1.5f});
+    Configuration configuration = scene.configuration();
+    configuration.damping = 0.4;
+    configuration.dt = 7e-4;
+    scene.set_configuration(configuration);
+    step(50);
+    scene.set_pull_stiffness(90);
+    configuration.dt = 0.3;
+    scene.set_configuration(configuration);
+    step(300);
+  }
+  // But for the step by which the explosion was noticed, which depends on how steps fall into slices.
+  nlohmann::json content(const std::string& file) {
+    auto document = nlohmann::json::parse(read(file));
+    document["exploded"].erase("last_step");
+    return document;
+  }
+  static std::string hash_of(const LiveScene& scene, RobotId robot) {
+    const std::size_t index = *scene.moment().robots->index_of(robot);
+    Simulation same({.device = {.kind = DeviceKind::cpu}},
+                    std::span(scene.moment().robots->robots[index].robot.get(), 1));
+    same.set_state(0, scene.moment().positions_of(index), scene.moment().velocities_of(index));
+    std::ostringstream text;
+    text << std::hex << std::setw(16) << std::setfill('0') << same.hash(0);
+    return text.str();
+  }
+};
+
+TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
+  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+    LiveScene scene(test::on_cpu(environment));
+    test::make_robots(scene, 1);
+    scene.step(25);
+    scene.wait_until_done();
+    test::make_robots(scene, 2, 9);  // comes when time has begun already
+    const RobotId robot = ids_of(scene)[1];
+    torment(scene, robot);
+    const auto exploded = scene.exploded();
+    const auto it = std::ranges::find(exploded, robot, &ExplodedRobot::robot);
+    ASSERT_NE(it, exploded.end());
+    const std::string folder = std::string("repro-") + std::string(name_of(environment));
+    const SaveResult saved = scene.save_repro(robot, folder_ / folder);
+    ASSERT_TRUE(saved.ok()) << saved.message;
+    EXPECT_EQ(scene.save_repro(robot, folder_ / folder).outcome, SaveResult::Outcome::exists);
+
+    const std::string file = path(folder + "/voxel-9-0.repro");
+    const test::Outcome run = test::mercury({"run", file, "--device", "cpu", "--threads", "1", "--json", "--quiet"});
+    ASSERT_EQ(run.status, 0) << run.messages;
+    const auto told = nlohmann::json::parse(run.output)["robots"][0];
+    EXPECT_TRUE(told["exploded"]);
+    EXPECT_EQ(told["exploded_at"].get<double>(), it->time);
+    EXPECT_EQ(told["first_bad_spring"], it->spring->index);
+    EXPECT_EQ(told["hash"], hash_of(scene, robot)) << "frozen in the same state";
+
+    // In the window; twice, since a reset goes back to the repro's start.
+    LiveScene again(test::on_cpu());
+    test::make_robots(again, 1);
+    again.step(10);
+    again.open({file});
+    again.wait_until_done();
+    EXPECT_EQ(test::names_of(again), std::vector<std::string>{"voxel-9-0"});
+    EXPECT_NEAR(again.moment().time, 0.025, 1e-12);
+    for (int round = 0; round < 2; ++round) {
+      again.step(scene.moment().steps - again.moment().steps);
+      again.wait_until_done();
+      ASSERT_THAT(again.exploded(), SizeIs(1));
+      EXPECT_EQ(again.exploded()[0].time, it->time);
+      EXPECT_EQ(again.exploded()[0].spring->index, it->spring->index);
+      EXPECT_EQ(hash_of(again, again.exploded()[0].robot), hash_of(scene, robot));
+      // It can be saved again, and is the same.
+      ASSERT_TRUE(again.save_repro(ids_of(again)[0], folder_ / "again", true).ok());
+      EXPECT_TRUE(content("again/voxel-9-0.repro") == content(folder + "/voxel-9-0.repro"));
+      again.reset();
+      again.wait_until_done();
+      EXPECT_NEAR(again.moment().time, 0.025, 1e-12);
+      EXPECT_THAT(again.exploded(), IsEmpty());
+    }
+  }
+}
+
+TEST_F(LiveRepro, AChangeInTheWindowEndsTheReplay) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  torment(scene, ids_of(scene)[0]);
+  ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
+  LiveScene again(test::on_cpu());
+  again.open({path("voxel-5-0.repro")});
+  again.wait_until_done();
+  EXPECT_FALSE(again.entries()[0].unsaved);
+  again.scale_materials(ids_of(again), {.stiffness = 0.5f});
+  again.step(400);
+  again.wait_until_done();
+  EXPECT_THAT(again.exploded(), IsEmpty()) << "the time step stays what it was";
+  EXPECT_EQ(again.moment().configuration.dt, 1e-3);
+  EXPECT_EQ(again.save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
+  // With other files it cannot be opened, and they can.
+  save_robot(path("one.json"), random_voxel_robot({}, 1, 0));
+  again.take_messages();
+  again.open({path("voxel-5-0.repro"), path("one.json")});
+  again.wait_until_done();
+  EXPECT_THAT(again.entries(), SizeIs(2));
+  const auto messages = again.take_messages();
+  ASSERT_THAT(messages, SizeIs(1));
+  EXPECT_THAT(messages[0].text, HasSubstr("open it alone"));
+}
+
+TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
+  const auto robot = std::make_shared<const Robot>(random_voxel_robot({}, 5, 0));
+  const Configuration configuration = test::on_cpu().configuration;
+  Simulation simulation(configuration, std::span(robot.get(), 1));
+  LiveRobots robots{.robots = {{.id = 4, .name = "it", .robot = robot}}, .mass_offsets = {0, robot->masses.size()}};
+  Histories histories;
+  histories.follow(simulation, robots, {});
+  for (int i = 0; i < 5; ++i) {
+    simulation.step(100);
+    const std::vector<LivePull> pulls{
+        {.robot = 4, .mass = 1, .target = {0.1f * static_cast<float>(i), 0, 1}, .stiffness = 20}};
+    simulation.set_pulls(std::vector<Pull>{{.mass = 1, .target = pulls[0].target, .stiffness = 20}});
+    histories.follow(simulation, robots, pulls);
+    simulation.step(100);
+    histories.stepped(6, simulation, robots);
+  }
+  simulation.step(50);
+  const Repro repro = histories.repro(simulation, robots, 0, simulation.telemetry(0))();
+  EXPECT_EQ(repro.clock.step, 800);
+  EXPECT_THAT(repro.changes, SizeIs(1));
+  const Repro read = parse_repro(serialize_repro(repro));
+  Simulation same = start_of(read, configuration.device);
+  ReproChanges changes(read);
+  while (same.steps() < repro.last_step) {
+    changes.make(same);
+    same.step(std::min(repro.last_step, changes.next_step()) - same.steps());
+  }
+  EXPECT_EQ(same.hash(0), simulation.hash(0));
+}
+
+TEST_F(LiveRepro, WhatIsNoReproIsToldInOneLine) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  torment(scene, ids_of(scene)[0]);
+  ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
+  const std::string whole = read("voxel-5-0.repro");
+  const auto refused = [](const std::string& document) {
+    try {
+      parse_repro(document);
+    } catch (const InputError& error) {
+      return std::string(error.what()).find('\n') == std::string::npos;
+    }
+    return false;
+  };
+  for (std::size_t size = 0; size + 2 < whole.size(); size += whole.size() / 40)
+    EXPECT_TRUE(refused(whole.substr(0, size))) << size;
+  const auto document = nlohmann::json::parse(whole);
+  for (const auto& [name, member] : document.items()) {
+    if (name == "device_name") continue;
+    auto changed = document;
+    changed.erase(name);
+    EXPECT_TRUE(refused(changed.dump())) << name;
+    for (const auto& odd : {nlohmann::json(), nlohmann::json(-1), nlohmann::json("x"), nlohmann::json::array({1}),
+                            nlohmann::json{{"step", -5}}}) {
+      if (name == "changes" && odd.is_null()) continue;          // none
+      if (name == "configuration" && odd.is_object()) continue;  // what is missing has its default
+      changed[name] = odd;
+      EXPECT_TRUE(refused(changed.dump())) << name << " " << odd;
+    }
+  }
+  for (const auto& [name, member] : document["start"].items()) {
+    auto changed = document;
+    changed["start"].erase(name);
+    EXPECT_TRUE(refused(changed.dump())) << name;
+    changed["start"][name] = "x";
+    EXPECT_TRUE(refused(changed.dump())) << name;
+  }
+  write("bad.repro", "{}");
+  const test::Outcome run = test::mercury({"run", path("bad.repro")});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.messages, HasSubstr("bad.repro: is not a repro"));
+  EXPECT_EQ(test::mercury({"run", path("voxel-5-0.repro"), "--dt", "0.01"}).status, 2);
+  EXPECT_EQ(test::mercury({"run", path("voxel-5-0.repro"), "--random", "voxel:2"}).status, 2);
+  EXPECT_EQ(test::mercury({"render", path("voxel-5-0.repro"), "-o", path("x.mp4")}).status, 2);
+}
+
+}  // namespace
+}  // namespace mercury

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window's scene: robots, edits and taking them back, selection, tuning.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "live_scene_bodies.h"
+#include "mercury/random_voxel.h"
+
+namespace mercury {
+namespace {
+
+using test::ids_of;
+using test::make_robots;
+using test::names_of;
+using test::on_cpu;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 3);
+  EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-5-2"));
+  EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
+  EXPECT_EQ(scene.moment().robots->size(), 3u);
+  EXPECT_TRUE(scene.entries()[0].unsaved);
+  EXPECT_THAT(scene.take_messages(), IsEmpty());
+}
+
+TEST(LiveScene, UndoAndRedoGiveBackWhatWasThereBitForBit) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 3);
+  scene.step(50);
+  scene.wait_until_done();
+  const auto before = scene.hold_moment();
+  scene.remove({ids_of(scene)[1]});
+  scene.wait_until_done();
+  EXPECT_EQ(scene.moment().robots->size(), 2u);
+  EXPECT_EQ(scene.undo_name(), "remove 1 robot");
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.moment().positions, before->positions);
+  EXPECT_EQ(scene.moment().velocities, before->velocities);
+  EXPECT_EQ(scene.moment().time, before->time);
+  scene.redo();
+  scene.wait_until_done();
+  EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-2"));
+  scene.undo();
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(scene.entries(), IsEmpty());
+  EXPECT_FALSE(scene.can_undo());
+  EXPECT_TRUE(scene.can_redo());
+}
+
+TEST(LiveScene, ADuplicateStartsAtRestWithANameOfItsOwn) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 1);
+  scene.step(80);
+  scene.wait_until_done();
+  scene.duplicate(ids_of(scene));
+  scene.wait_until_done();
+  EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-0-2"));
+  const Robot& robot = *scene.document().robots[0].body.robot;
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(1), robot.masses));
+  EXPECT_FALSE(std::ranges::equal(scene.moment().positions_of(0), robot.masses));
+}
+
+TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 1);
+  Mutation mutation{.seed = 3};
+  mutation.voxel.flip = 0.2;
+  scene.mutate(ids_of(scene), mutation);
+  scene.wait_until_done();
+  ASSERT_THAT(scene.entries(), SizeIs(2));
+  const VoxelGrid parent = voxel_grid_of(*scene.document().robots[0].body.robot).value();
+  const VoxelGrid child = voxel_grid_of(*scene.document().robots[1].body.robot).value();
+  EXPECT_NE(parent.cells, child.cells);
+  for (int z = 0; z < child.nz; ++z)
+    for (int y = 0; y < child.ny; ++y)
+      for (int x = 0; x < child.nx; ++x) ASSERT_EQ(child.at(x, y, z), child.at(x, child.ny - 1 - y, z));
+  // In its parent's place.
+  scene.mutate({ids_of(scene)[0]}, mutation, true);
+  scene.wait_until_done();
+  ASSERT_THAT(scene.entries(), SizeIs(2));
+  EXPECT_EQ(names_of(scene)[1], "voxel-5-0-child");
+  EXPECT_EQ(scene.undo_name(), "mutate 1 robot");
+}
+
+TEST(LiveScene, RobotsThatKnowNotWhatTheyWereMadeOfCannotBeMutated) {
+  LiveScene scene(on_cpu());
+  scene.add({Robot{.name = "point", .masses = {{0, 0, 0}}}});
+  const auto ids = ids_of(scene);
+  EXPECT_FALSE(scene.can_mutate(ids[0]));
+  scene.mutate(ids, {});
+  scene.wait_until_done();
+  EXPECT_THAT(scene.entries(), SizeIs(1));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(1));
+  EXPECT_THAT(messages[0].text, HasSubstr("point: cannot be mutated"));
+}
+
+TEST(LiveScene, ARobotThatBreaksARuleIsToldAndLeftOut) {
+  LiveScene scene(on_cpu());
+  scene.add({Robot{.name = "empty"}, Robot{.name = "point", .masses = {{0, 0, 0}}}});
+  scene.wait_until_done();
+  EXPECT_THAT(names_of(scene), ElementsAre("point"));
+  EXPECT_THAT(scene.take_messages(), SizeIs(1));
+}
+
+TEST(LiveScene, RobotsThatAreKeptElsewhereAreUnsavedOnlyOnceTheyChange) {
+  LiveScene scene(on_cpu());
+  scene.add({random_voxel_robot({}, 1, 0)}, false);
+  scene.add({random_voxel_robot({}, 1, 1)});
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+  EXPECT_TRUE(scene.entries()[1].unsaved);
+  EXPECT_EQ(scene.entries()[0].file, "");
+  EXPECT_THAT(scene.command().notes, SizeIs(2));
+  scene.scale_materials({ids_of(scene)[0]}, {.stiffness = 2});
+  EXPECT_TRUE(scene.entries()[0].unsaved);
+  scene.undo();
+  EXPECT_FALSE(scene.entries()[0].unsaved);
+}
+
+TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 1);
+  Configuration configuration = scene.configuration();
+  for (int i = 1; i <= 10; ++i) {
+    configuration.damping = 0.1 * i;
+    EXPECT_TRUE(scene.set_configuration(configuration));
+  }
+  scene.end_edit();
+  configuration.solver = Solver::xpbd;
+  EXPECT_TRUE(scene.set_configuration(configuration));
+  scene.wait_until_done();
+  EXPECT_EQ(scene.moment().configuration, configuration);
+  scene.undo();
+  EXPECT_EQ(scene.configuration().solver, Solver::force);
+  EXPECT_DOUBLE_EQ(scene.configuration().damping, 1.0);
+  scene.undo();
+  EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
+  configuration.dt = -1;
+  EXPECT_FALSE(scene.set_configuration(configuration));
+  const auto messages = scene.take_messages();
+  ASSERT_THAT(messages, SizeIs(1));
+  EXPECT_EQ(messages[0].text, "--dt: -1 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
+}
+
+TEST(LiveScene, TunedMaterialsMoveTheRobotAsTheSimulationSays) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 2);
+  const auto ids = ids_of(scene);
+  scene.scale_materials({ids[0]}, {.stiffness = 2, .amplitude = 0.5f, .frequency = 3, .phase = 0.1f});
+  Material material = scene.materials(ids[0])[1];
+  EXPECT_EQ(material.stiffness, 2 * default_materials()[1].stiffness);
+  material.phase = 1;
+  EXPECT_TRUE(scene.set_material({ids[0]}, 1, material));
+  scene.step(100);
+  scene.wait_until_done();
+  Simulation simulation(on_cpu().configuration, random_voxel_robots({}, 5, 2));
+  const auto table = scene.materials(ids[0]);
+  for (std::size_t id = 1; id < table.size(); ++id) simulation.set_material(0, static_cast<MaterialId>(id), table[id]);
+  simulation.step(100);
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(0), simulation.positions(0)));
+  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(1), simulation.positions(1)));
+  EXPECT_FALSE(scene.set_material(ids, 1, {.stiffness = -1}));
+  EXPECT_FALSE(scene.scale_materials(ids, {.stiffness = NAN}));
+  EXPECT_THAT(scene.take_messages(), SizeIs(2));
+  scene.reset_materials(ids);
+  EXPECT_FALSE(scene.entries()[0].tuned);
+  EXPECT_TRUE(std::ranges::equal(scene.materials(ids[0]), default_materials()));
+}
+
+TEST(LiveScene, SelectionKeepsItsOrderAndForgetsWhoLeft) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 3);
+  const auto ids = ids_of(scene);
+  scene.select(ids[2]);
+  scene.select(ids[0], false);
+  EXPECT_THAT(scene.selection(), ElementsAre(ids[0], ids[2]));
+  EXPECT_EQ(scene.current(), ids[0]);
+  scene.remove({ids[0]});
+  scene.frame();
+  EXPECT_EQ(scene.current(), ids[2]);
+  scene.toggle_selected(ids[2]);
+  EXPECT_EQ(scene.current(), std::nullopt);
+  scene.select_all();
+  EXPECT_THAT(scene.selection(), ElementsAre(ids[1], ids[2]));
+  scene.wait_until_done();
+  EXPECT_TRUE(scene.picture().scene().placements[0].selected);
+}
+
+TEST(LiveScene, SpeedGoesThroughOneTwoFiveToNoLimit) {
+  LiveScene scene(on_cpu());
+  scene.change_speed(1);
+  EXPECT_EQ(scene.speed(), 2);
+  scene.change_speed(-3);
+  EXPECT_EQ(scene.speed(), 0.2);
+  scene.change_speed(100);
+  EXPECT_EQ(scene.speed(), unlimited_speed);
+  scene.change_speed(-1);
+  EXPECT_EQ(scene.speed(), 100);
+  scene.set_speed(0);
+  EXPECT_EQ(scene.speed(), 1e-3);
+  scene.set_speed(NAN);
+  EXPECT_EQ(scene.speed(), 1e-3);
+}
+
+TEST(LiveScene, APullShowsTheForceOfItsSpring) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 4);
+  const std::size_t last = 3;
+  const RobotId id = ids_of(scene)[last];
+  const Eigen::Vector3f offset = scene.picture().offsets()[last];
+  EXPECT_GT(offset.norm(), 0.1f) << "the robots stand side by side";
+  scene.begin_pull({.robot = id, .index = last, .mass = 2}, 30);
+  ASSERT_TRUE(scene.pull());
+  EXPECT_EQ(scene.pull()->force, 0);
+  const Eigen::Vector3f target = scene.pull()->at + Eigen::Vector3f(0, 0.3f, 0.4f);
+  scene.move_pull(target);
+  EXPECT_NEAR(scene.pull()->force, 30 * 0.5f, 1e-4f);
+  EXPECT_LT((scene.pull()->target - target).norm(), 1e-6f);
+  // Momentum after n steps is what the hand and nothing else gave: water takes some, so little time is looked at.
+  scene.step(2);
+  scene.wait_until_done();
+  Vec3 momentum;
+  for (const Vec3 v : scene.moment().velocities_of(last)) momentum += v;
+  EXPECT_NEAR(momentum.y, 2e-3f * 30 * 0.3f, 1e-3f);
+  EXPECT_NEAR(momentum.z, 2e-3f * 30 * 0.4f, 1e-3f);
+  scene.remove({id});
+  scene.frame();
+  EXPECT_FALSE(scene.pull());
+}
+
+TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 2);
+  const auto revision = scene.picture().bodies_revision();
+  scene.step(10);
+  ViewSettings view = scene.view();
+  view.color = ColorBy::strain;
+  view.shown.arrows.drag = view.shown.legend = view.shown.labels = true;
+  scene.set_view(view);
+  scene.scale_materials(ids_of(scene), {.stiffness = 2});
+  scene.wait_until_done();
+  EXPECT_EQ(scene.picture().bodies_revision(), revision);
+  const render::Scene& drawn = scene.picture().scene();
+  EXPECT_EQ(drawn.positions.size(), 3 * scene.moment().positions.size());
+  EXPECT_EQ(drawn.mass_values.size(), scene.moment().positions.size());
+  EXPECT_FALSE(drawn.arrows.empty());
+  ASSERT_TRUE(drawn.legend);
+  EXPECT_EQ(drawn.legend->title, "strain");
+  EXPECT_EQ(drawn.labels.size(), 2u);
+  scene.duplicate({ids_of(scene)[0]});
+  scene.wait_until_done();
+  EXPECT_GT(scene.picture().bodies_revision(), revision);
+  EXPECT_EQ(scene.picture().bounds().size(), 3u);
+}
+
+TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 120);
+  const auto ids = ids_of(scene);
+  scene.step(300);
+  scene.wait_until_done();
+  const auto revision = scene.picture().bodies_revision();
+  const render::Scene& drawn = scene.picture().scene();
+  // By the law of a muscle: +1 where it is shortest.
+  const auto activation = [&](std::size_t robot, MaterialId id) {
+    return drawn.looks[drawn.placements[robot].first_look + id].activation;
+  };
+  const auto expected = [&](const Material& material) {
+    return -std::sin(static_cast<double>(material.frequency) * scene.moment().time +
+                     static_cast<double>(material.phase));
+  };
+  scene.scale_materials({ids[7], ids[110]}, {.frequency = 3});
+  scene.scale_materials({ids[60]}, {.phase = 1});
+  scene.wait_until_done();
+  for (const std::size_t robot : {0u, 7u, 60u, 110u, 119u})
+    for (const MaterialId id : {MaterialId{1}, MaterialId{6}, MaterialId{20}})
+      EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5)
+          << robot << ", material " << int{id};
+  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look)
+      << "those that are the same are kept once";
+  EXPECT_EQ(drawn.placements[0].first_look, drawn.placements[119].first_look);
+  const auto looks = drawn.looks.size();
+  for (int i = 0; i < 50; ++i) {
+    scene.scale_materials({ids[7]},
+                          {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
+    scene.wait_until_done();
+  }
+  EXPECT_LE(drawn.looks.size(), looks + 2 * 254) << "a slider leaves nothing behind";
+  scene.reset_materials(ids);
+  scene.wait_until_done();
+  for (const std::size_t robot : {7u, 60u, 110u})
+    EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
+  EXPECT_EQ(scene.picture().bodies_revision(), revision) << "no body was given anew";
+}
+
+TEST(LiveScene, AnEditMakesNoShapesOfRobotsThatWereThere) {
+  LiveScene scene(on_cpu());
+  make_robots(scene, 3);
+  const auto before = scene.hold_moment();
+  scene.duplicate({ids_of(scene)[1]});
+  scene.remove({ids_of(scene)[0]});
+  scene.wait_until_done();
+  const LiveRobots& after = *scene.moment().robots;
+  ASSERT_EQ(after.shapes.size(), 3u);
+  EXPECT_EQ(after.shapes[0], before->robots->shapes[1]);
+  EXPECT_EQ(after.shapes[1], before->robots->shapes[2]);
+  EXPECT_EQ(after.shapes[2], before->robots->shapes[1]) << "the copy's shape is its original's";
+  EXPECT_EQ(after.bodies->mass_offsets.back(), scene.moment().positions.size());
+}
+
+TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
+  EditHistory history(10);
+  SceneDocument document;
+  const auto robot = [](std::size_t springs) {
+    return DocumentRobot{
+        .body = {.robot = std::make_shared<const Robot>(Robot{.springs = std::vector<Spring>(springs)})}};
+  };
+  for (int i = 0; i < 20; ++i) {
+    history.before_change(document, "make");
+    document.robots = {robot(4)};
+  }
+  int undone = 0;
+  for (; history.can_undo(); ++undone) history.undo(document);
+  EXPECT_GE(undone, 2);
+  EXPECT_LE(undone, 4);
+  // Robots that stay cost nothing.
+  EditHistory slider(10);
+  for (int i = 0; i < 300; ++i) slider.before_change(document, "change");
+  for (undone = 0; slider.can_undo(); ++undone) slider.undo(document);
+  EXPECT_EQ(undone, 200);
+}
+
+TEST(LiveScene, ClosesWhileItPlaysAndWorks) {
+  LiveScene scene(on_cpu());
+  scene.generate({.count = 200});
+  scene.set_speed(unlimited_speed);
+  scene.play();
+  scene.frame();
+}
+
+}  // namespace
+}  // namespace mercury

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests of recordings record: small bodies, and a file of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/recording/recorder.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
+
+namespace mercury::test {
+
+// Two masses on a muscle.
+inline Robot pair(const std::string& name) {
+  Robot robot;
+  robot.name = name;
+  robot.masses = {{0, 0, 0}, {0.1f, 0, 0}};
+  robot.springs = {{0, 1, 1, 0.1f}};
+  return robot;
+}
+
+// Small, with a skin and an origin.
+inline Robot small_voxel_robot(std::uint64_t index) {
+  return random_voxel_robot({.smallest = {2, 2, 1}, .largest = {3, 2, 2}}, 7, index);
+}
+
+// A robot with its own materials, named.
+inline Robot own_materials(const std::string& name) {
+  Robot robot = pair(name);
+  robot.materials = {{}, {30, 0.2f, 3, 0.5f}, {70, 0, 0, 0}};
+  robot.material_names = {"air", "fast muscle", "cord"};
+  return robot;
+}
+
+inline Configuration on_cpu() {
+  Configuration configuration;
+  configuration.device.kind = DeviceKind::cpu;
+  return configuration;
+}
+
+// Steps a simulation to `last` and records every `every` steps.
+inline void record(Simulation& simulation, const std::filesystem::path& path, std::int64_t last, std::int64_t every,
+                   RecordingOptions options = {}) {
+  options.every = every;
+  options.last_step = last;
+  Recorder recorder(simulation, path, options);
+  while (simulation.steps() < last) {
+    simulation.step(std::min(last, recorder.next_step()) - simulation.steps());
+    recorder.observe();
+  }
+  recorder.finish();
+}
+
+}  // namespace mercury::test

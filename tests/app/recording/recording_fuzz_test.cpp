@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// Damaged recordings: a trajectory whose robots are valid, or an InputError of one line; never a crash, never memory
+// taken for what a file merely announces.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <functional>
+
+#include "app/recording/trajectory_reader.h"
+#include "mercury/error.h"
+#include "mercury/random.h"
+#include "program.h"
+#include "recording_bodies.h"
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool sanitized = true;
+// HDF5 itself loses memory over damaged files.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+#else
+constexpr bool sanitized = false;
+#endif
+
+namespace mercury::test {
+namespace {
+
+using hdf5::checked;
+using hdf5::Handle;
+
+class RecordingFuzz : public FolderTest {
+ protected:
+  RecordingFuzz() {
+    Robot robot = small_voxel_robot(0);
+    Simulation simulation(on_cpu(), std::vector{robot, own_materials("own")});
+    record(simulation, path("sound.h5"), 8, 1, {.seed = 3});
+    sound_ = read("sound.h5");
+  }
+
+  // Reads all there is. Returns the refusal; empty = none.
+  std::string refusal(const std::string& name) const {
+    try {
+      TrajectoryReader reader(path(name));
+      for (const RecordedRobot& recorded : reader.robots()) validate(recorded.robot);
+      validate(reader.configuration());
+      for (std::size_t frame = 0; frame < reader.frames(); ++frame) {
+        reader.positions(frame);
+        reader.velocities(frame);
+      }
+      return "";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      return error.what();
+    }
+  }
+
+  void expect_modest_memory() const {
+    if (sanitized) return;  // keeps what was freed
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    EXPECT_LT(usage.ru_maxrss, 600 * 1024) << "kB";
+  }
+
+  std::string sound_;
+};
+
+std::string mutated(std::string bytes, Random& random) {
+  const auto edits = 1 + random.below(4);
+  for (std::uint64_t edit = 0; edit < edits && !bytes.empty(); ++edit) {
+    const auto at = static_cast<std::size_t>(random.below(bytes.size()));
+    const auto length = static_cast<std::size_t>(random.below(16)) + 1;
+    switch (random.below(6)) {
+      case 0:
+        bytes[at] = static_cast<char>(random.below(256));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
+        break;
+      case 2:
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\xff');
+        break;
+      case 3:
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(length, bytes.size() - at), '\0');
+        break;
+      case 4:
+        bytes.erase(at, length);
+        break;
+      default:
+        bytes.resize(at);
+        break;
+    }
+  }
+  return bytes;
+}
+
+TEST_F(RecordingFuzz, DamagedBytesGiveATrajectoryOrALine) {
+  int refused = 0;
+  constexpr int files = 1500;
+  for (std::uint64_t seed = 0; seed < files; ++seed) {
+    Random random(seed);
+    write("damaged.h5", mutated(sound_, random));
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    refused += !refusal("damaged.h5").empty();
+  }
+  // Most of a file is checksummed.
+  EXPECT_GT(refused, files / 2);
+  EXPECT_EQ(refusal("sound.h5"), "");
+  expect_modest_memory();
+}
+
+// All objects of a file by their paths, and the attributes of each.
+struct Contents {
+  std::vector<std::string> groups, datasets;
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+Contents contents_of(const std::string& path) {
+  Contents contents;
+  const std::function<void(hid_t, const std::string&)> visit = [&](hid_t group, const std::string& name) {
+    for (const std::string& member : hdf5::members(group)) {
+      const std::string below = name + "/" + member;
+      const Handle object(H5Oopen(group, member.c_str(), H5P_DEFAULT));
+      const auto count = static_cast<unsigned>(checked(H5Aget_num_attrs(object)));
+      for (unsigned i = 0; i < count; ++i) {
+        const Handle attribute(H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
+        std::string text(256, '\0');
+        text.resize(static_cast<std::size_t>(checked(H5Aget_name(attribute, text.size(), text.data()))));
+        contents.attributes.emplace_back(below, text);
+      }
+      if (H5Iget_type(object) == H5I_GROUP) {
+        contents.groups.push_back(below);
+        visit(object, below);
+      } else {
+        contents.datasets.push_back(below);
+      }
+    }
+  };
+  hdf5::prepare();
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  visit(file, "");
+  return contents;
+}
+
+class RecordingChanged : public RecordingFuzz {
+ protected:
+  // The sound file with one change.
+  template <class Change>
+  std::string refusal_after(const Change& change) {
+    std::filesystem::remove(path("changed.h5"));
+    std::filesystem::copy_file(path("sound.h5"), path("changed.h5"));
+    {
+      const Handle file(H5Fopen(path("changed.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+      change(file);
+    }
+    return refusal("changed.h5");
+  }
+
+  Contents contents_ = contents_of(path("sound.h5"));
+};
+
+void remove(hid_t file, const std::string& object) { checked(H5Ldelete(file, object.c_str(), H5P_DEFAULT)); }
+
+void put_dataset(hid_t file, const std::string& name, hid_t type, const hdf5::Extent& extent) {
+  remove(file, name);
+  const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
+  const Handle dataset(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+}
+
+// Chunks that are nowhere: any extent, no room taken.
+void put_announced(hid_t file, const std::string& name, hid_t type, const hdf5::Extent& extent) {
+  remove(file, name);
+  const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE));
+  checked(H5Pset_chunk(properties, static_cast<int>(extent.size()), hdf5::Extent(extent.size(), 1).data()));
+  const Handle dataset(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+}
+
+// Whether the reader needs the dataset. The rest is there for other programs: the tables under /connectivity, and the
+// time axes that every element has of its own and that are links to one.
+bool is_read(const std::string& name) {
+  const std::string last = name.substr(name.rfind('/') + 1);
+  if (last == "step" || last == "time") return name.starts_with("/parameters/");
+  return name.starts_with("/particles/") && last != "mass";
+}
+
+TEST_F(RecordingChanged, EveryMissingPartIsToldOrNotNeeded) {
+  int refused = 0;
+  for (const auto* objects : {&contents_.groups, &contents_.datasets})
+    for (const std::string& object : *objects) {
+      SCOPED_TRACE(object);
+      refused += !refusal_after([&](hid_t file) { remove(file, object); }).empty();
+    }
+  for (const auto& [object, name] : contents_.attributes) {
+    SCOPED_TRACE(object + " " + name);
+    refused += !refusal_after([&, &object = object, &name = name](hid_t file) {
+                  checked(H5Adelete_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT));
+                }).empty();
+  }
+  EXPECT_GT(refused, 40);
+}
+
+TEST_F(RecordingChanged, DatasetsOfOtherShapesAndTypesAreToldOrUsable) {
+  const Handle text(H5Tcopy(H5T_C_S1));
+  checked(H5Tset_size(text, H5T_VARIABLE));
+  for (const std::string& name : contents_.datasets) {
+    SCOPED_TRACE(name);
+    for (const hdf5::Extent& extent : {hdf5::Extent{}, {0}, {3}, {2, 2}, {9, 3}, {2, 2, 2, 2}})
+      for (const hid_t type : {H5T_NATIVE_DOUBLE, H5T_STD_I8BE, hid_t{text}})
+        refusal_after([&](hid_t file) { put_dataset(file, name, type, extent); });
+  }
+  expect_modest_memory();
+}
+
+TEST_F(RecordingChanged, AnnouncedExtentsTakeNoMemory) {
+  constexpr hsize_t huge = hsize_t{1} << 40;
+  for (const std::string& name : contents_.datasets) {
+    SCOPED_TRACE(name);
+    for (const hdf5::Extent& extent : {hdf5::Extent{huge}, {huge, 2}, {huge, 3}, {9, huge, 3}, {huge, 2, 3}}) {
+      const std::string refused =
+          refusal_after([&](hid_t file) { put_announced(file, name, H5T_NATIVE_FLOAT, extent); });
+      EXPECT_EQ(!refused.empty(), is_read(name)) << refused;
+    }
+  }
+  expect_modest_memory();
+}
+
+TEST_F(RecordingChanged, AttributesOfOtherKindsAreToldOrUsable) {
+  for (const auto& [object, name] : contents_.attributes) {
+    SCOPED_TRACE(object + " " + name);
+    const auto put = [&, &object = object, &name = name](hid_t type, const hdf5::Extent& extent, const void* content) {
+      return refusal_after([&](hid_t file) {
+        const Handle owner(H5Oopen(file, object.c_str(), H5P_DEFAULT));
+        checked(H5Adelete(owner, name.c_str()));
+        const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
+        const Handle attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
+        checked(H5Awrite(attribute, type, content));
+      });
+    };
+    const double numbers[] = {std::numeric_limits<double>::quiet_NaN(), -1e300, 7};
+    put(H5T_NATIVE_DOUBLE, {}, numbers);
+    put(H5T_NATIVE_DOUBLE, {1}, numbers + 1);
+    put(H5T_NATIVE_DOUBLE, {3}, numbers);
+    const Handle text(H5Tcopy(H5T_C_S1));
+    put(text, {}, "x");
+    checked(H5Tset_size(text, H5T_VARIABLE));
+    const char* word = "neither this nor that";
+    put(text, {}, &word);
+  }
+}
+
+TEST_F(RecordingChanged, TextsOfVariableLengthAsPythonWritesThemAreRead) {
+  EXPECT_EQ(refusal_after([&](hid_t file) {
+              const Handle parameters = hdf5::open_group(file, "parameters");
+              checked(H5Adelete(parameters, "solver"));
+              hdf5::write_unit(parameters, "xpbd", "solver");
+            }),
+            "");
+  EXPECT_EQ(TrajectoryReader(path("changed.h5")).configuration().solver, Solver::xpbd);
+}
+
+TEST_F(RecordingChanged, ARobotThatBreaksARuleIsNamedWithTheRule) {
+  const std::string refused = refusal_after([&](hid_t file) {
+    const Handle dataset(H5Dopen2(file, "/particles/own/springs", H5P_DEFAULT));
+    const std::uint16_t ends[] = {0, 912};
+    checked(H5Dwrite(dataset, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends));
+  });
+  EXPECT_EQ(refused, path("changed.h5") + ": /particles/own: /springs/0: mass 912 is out of range, the robot has 2");
+}
+
+}  // namespace
+}  // namespace mercury::test

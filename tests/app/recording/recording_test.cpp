@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is recorded is what was simulated, bit for bit, and enough to simulate it again.
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "app/recording/trajectory_playback.h"
+#include "app/recording/trajectory_reader.h"
+#include "mercury/error.h"
+#include "program.h"
+#include "recording_bodies.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+std::vector<Vec3> all_positions(const Simulation& simulation) {
+  std::vector<Vec3> all(simulation.mass_count());
+  simulation.read_positions(all);
+  return all;
+}
+
+std::vector<Vec3> all_velocities(const Simulation& simulation) {
+  std::vector<Vec3> all(simulation.mass_count());
+  simulation.read_velocities(all);
+  return all;
+}
+
+std::vector<Robot> robots_of(const TrajectoryReader& reader) {
+  std::vector<Robot> robots;
+  for (const RecordedRobot& recorded : reader.robots()) robots.push_back(recorded.robot);
+  return robots;
+}
+
+class Recording : public FolderTest {
+ protected:
+  std::string file() const { return path("a.h5"); }
+};
+
+TEST_F(Recording, FramesAreThoseOfTheSimulation) {
+  const std::vector<Robot> robots{small_voxel_robot(0), small_voxel_robot(1), pair("pair")};
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 200, 20);
+
+  TrajectoryReader reader(file());
+  Simulation again(on_cpu(), robots);
+  ASSERT_EQ(reader.frames(), 11u);
+  ASSERT_EQ(reader.mass_count(), again.mass_count());
+  for (std::size_t frame = 0; frame < reader.frames(); ++frame) {
+    EXPECT_EQ(reader.step(frame), again.steps());
+    EXPECT_EQ(reader.time(frame), again.time());
+    EXPECT_TRUE(same_bits(reader.positions(frame), all_positions(again))) << frame;
+    EXPECT_TRUE(same_bits(reader.velocities(frame), all_velocities(again))) << frame;
+    again.step(20);
+  }
+}
+
+TEST_F(Recording, HoldsTheRobotsAsTheyWere) {
+  const std::vector<Robot> robots{own_materials("own"), small_voxel_robot(3), pair("pair")};
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 1, 1, {.seed = 0xfedcba9876543210u});
+  const TrajectoryReader reader(file());
+  EXPECT_EQ(robots_of(reader), robots);
+  EXPECT_EQ(reader.seed(), 0xfedcba9876543210u);
+  EXPECT_EQ(reader.every(), 1);
+  EXPECT_EQ(reader.device_name(), simulation.device_name());
+  EXPECT_THAT(reader.program(), testing::StartsWith("mercury "));
+}
+
+class RecordedConfiguration : public Recording, public testing::WithParamInterface<Environment> {};
+
+TEST_P(RecordedConfiguration, IsReadBackWhole) {
+  Configuration configuration{.dt = 1.25e-3, .damping = 0.3, .solver = Solver::xpbd, .environment = GetParam()};
+  configuration.device = {.kind = DeviceKind::cpu, .threads = 2};
+  Simulation simulation(configuration, std::vector{pair("pair")});
+  record(simulation, file(), 1, 1);
+  EXPECT_EQ(TrajectoryReader(file()).configuration(), configuration);
+}
+
+// No value is a default, so that none is read back by chance.
+INSTANTIATE_TEST_SUITE_P(EveryEnvironment, RecordedConfiguration,
+                         testing::Values(Environment(Ocean{
+                                             998.2f, 1.1f, 0.3f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                                         Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                                         Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150})));
+
+TEST_F(Recording, SimulatesAgainFromTheFileAlone) {
+  Configuration configuration = on_cpu();
+  configuration.environment = Land{};
+  const std::vector<Robot> robots{small_voxel_robot(4), own_materials("own")};
+  Simulation simulation(configuration, robots);
+  record(simulation, file(), 300, 300);
+
+  TrajectoryReader reader(file());
+  Simulation again(reader.configuration(), robots_of(reader));
+  EXPECT_TRUE(same_bits(reader.positions(0), all_positions(again)));  // set down on the ground
+  again.step(reader.step(1));
+  EXPECT_TRUE(same_bits(reader.positions(1), all_positions(again)));
+}
+
+TEST_F(Recording, MaterialsAreThoseOfTheSimulation) {
+  Simulation simulation(on_cpu(), std::vector{pair("pair"), pair("other")});
+  simulation.set_material(0, 1, {80, 0.1f, 2, 1});
+  record(simulation, file(), 50, 50);
+  TrajectoryReader reader(file());
+  Simulation again(reader.configuration(), robots_of(reader));
+  again.step(50);
+  EXPECT_EQ(again.material(0, 1), (Material{80, 0.1f, 2, 1}));
+  EXPECT_EQ(reader.robots()[1].robot, pair("other"));
+  EXPECT_TRUE(same_bits(reader.positions(1), all_positions(again)));
+}
+
+TEST_F(Recording, AnyFrameInAnyOrderWhereThereAreMoreThanMemoryHolds) {
+  Simulation simulation(on_cpu(), std::vector{pair("a"), small_voxel_robot(0)});
+  std::vector<std::vector<Vec3>> expected;
+  {
+    Recorder recorder(simulation, file(), {.every = 1});  // its end not known
+    expected.push_back(all_positions(simulation));
+    for (int step = 0; step < 150; ++step) {
+      simulation.step();
+      recorder.observe();
+      expected.push_back(all_positions(simulation));
+    }
+    recorder.finish();
+  }
+  TrajectoryReader reader(file());
+  ASSERT_EQ(reader.frames(), 151u);
+  for (const std::size_t frame : {150u, 0u, 63u, 64u, 65u, 127u, 128u, 1u})
+    EXPECT_TRUE(same_bits(reader.positions(frame), expected[frame])) << frame;
+  EXPECT_THROW(reader.positions(151), std::out_of_range);
+}
+
+TEST_F(Recording, CompressionLosesNothing) {
+  for (const int deflate : {0, 1}) {
+    Simulation simulation(on_cpu(), std::vector{small_voxel_robot(0)});
+    record(simulation, path("deflate" + std::to_string(deflate) + ".h5"), 100, 10, {.deflate = deflate});
+  }
+  TrajectoryReader plain(path("deflate0.h5")), packed(path("deflate1.h5"));
+  for (std::size_t frame = 0; frame < plain.frames(); ++frame)
+    EXPECT_TRUE(same_bits(plain.velocities(frame), packed.velocities(frame)));
+  EXPECT_LT(std::filesystem::file_size(path("deflate1.h5")), std::filesystem::file_size(path("deflate0.h5")));
+}
+
+TEST_F(Recording, FrameAtATimeIsTheLastOneBefore) {
+  Simulation simulation(on_cpu(), std::vector{pair("pair")});
+  record(simulation, file(), 30, 10);
+  const TrajectoryReader reader(file());
+  EXPECT_EQ(reader.frame_at(-1), 0u);
+  EXPECT_EQ(reader.frame_at(0.0199), 1u);
+  EXPECT_EQ(reader.frame_at(reader.time(2)), 2u);
+  EXPECT_EQ(reader.frame_at(1e9), 3u);
+}
+
+TEST_F(Recording, ExplodedRobotsAreNotedAndWhatIsNotFiniteIsKept) {
+  Configuration configuration = on_cpu();
+  configuration.dt = 1;  // omega = sqrt(2 k / m) = 10 rad/s is unstable beyond 0.2 s
+  Robot calm = pair("calm");
+  calm.springs[0].material = 2;
+  calm.materials = {{}, {}, {0.1f, 0, 0, 0}};
+  Simulation simulation(configuration, std::vector{pair("wild"), calm});
+  record(simulation, file(), 40, 1);
+  const Telemetry wild = simulation.telemetry(0);
+  ASSERT_TRUE(wild.exploded);
+
+  TrajectoryReader reader(file());
+  EXPECT_EQ(reader.robots()[0].exploded_at, wild.exploded_at);
+  EXPECT_EQ(reader.robots()[0].first_bad_spring, wild.first_bad_spring);
+  EXPECT_EQ(reader.robots()[1].exploded_at, std::nullopt);
+  EXPECT_TRUE(same_bits(reader.positions(40), all_positions(simulation)));
+}
+
+TEST_F(Recording, RobotsOfAnyNameHaveGroupsOfTheirOwn) {
+  const std::vector<std::string> names{"eel",
+                                       "eel",
+                                       "eel-2",
+                                       "a/b",
+                                       "",
+                                       ".",
+                                       "..",
+                                       "tab\there",
+                                       "\xff\xfe",
+                                       "Größe \xe2\x82\xac",
+                                       std::string(100'000, 'x'),
+                                       std::string("nul\0inside", 10)};
+  std::vector<Robot> robots;
+  for (const std::string& name : names) robots.push_back(pair(name));
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 1, 1);
+  const TrajectoryReader reader(file());
+  EXPECT_EQ(robots_of(reader), robots);  // in their order, by their own names
+  std::vector<std::string> groups;
+  for (const RecordedRobot& recorded : reader.robots()) groups.push_back(recorded.group);
+  EXPECT_THAT(groups, ElementsAre("eel", "eel-3", "eel-2", "a_b", "robot", "robot-2", "robot-3", "tab_here", "__",
+                                  "Größe \xe2\x82\xac", std::string(200, 'x'), "nul_inside"));
+}
+
+TEST_F(Recording, HundredsOfRobots) {
+  std::vector<Robot> robots(500, pair("pair"));
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 4, 2);
+  TrajectoryReader reader(file());
+  EXPECT_EQ(reader.robots().size(), 500u);
+  EXPECT_EQ(reader.robots()[499].group, "pair-500");
+  EXPECT_TRUE(same_bits(reader.positions(2), all_positions(simulation)));
+}
+
+TEST_F(Recording, IsThereOnlyWhenItIsWhole) {
+  write("a.h5", "as it was");
+  Simulation simulation(on_cpu(), std::vector{pair("pair")});
+  {
+    Recorder recorder(simulation, file(), {.every = 1});
+    simulation.step();
+    recorder.observe();
+    EXPECT_EQ(listing().size(), 2u);
+  }
+  EXPECT_THAT(listing(), ElementsAre("a.h5"));
+  EXPECT_EQ(read("a.h5"), "as it was");
+  record(simulation, file(), 2, 1);
+  EXPECT_THAT(listing(), ElementsAre("a.h5"));
+  EXPECT_EQ(TrajectoryReader(file()).frames(), 2u);
+}
+
+TEST_F(Recording, PlayedBackItIsTheSimulationAgain) {
+  Configuration configuration = on_cpu();
+  configuration.environment = Land{};
+  const std::vector<Robot> robots{small_voxel_robot(1), own_materials("own")};
+  Simulation simulation(configuration, robots);
+  record(simulation, file(), 100, 20);
+
+  Simulation again(configuration, robots), played = playback(std::make_shared<TrajectoryReader>(file()));
+  ASSERT_EQ(played.size(), again.size());
+  for (int frame = 0; frame <= 5; ++frame) {
+    EXPECT_EQ(played.time(), again.time());
+    EXPECT_TRUE(same_bits(all_positions(played), all_positions(again))) << frame;
+    EXPECT_EQ(played.hash(0), again.hash(0));
+    EXPECT_EQ(played.telemetry(1).elastic_energy, again.telemetry(1).elastic_energy);
+    again.step(20);
+    played.step(7);
+    played.step(13);
+  }
+  played.step(1000);  // after the end nothing moves
+  EXPECT_TRUE(same_bits(all_positions(played), all_positions(simulation)));
+  played.reset();
+  EXPECT_TRUE(same_bits(all_positions(played), all_positions(Simulation(configuration, robots))));
+}
+
+TEST_F(Recording, PlayedBackBetweenFramesItIsBetweenThem) {
+  Simulation simulation(on_cpu(), std::vector{pair("pair")});
+  record(simulation, file(), 100, 100);
+  Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
+  const std::vector<Vec3> first = all_positions(played), last = all_positions(simulation);
+  ASSERT_NE(first, last);
+  played.step(25);
+  const std::vector<Vec3> between = all_positions(played);
+  for (std::size_t i = 0; i < between.size(); ++i)
+    EXPECT_NEAR(between[i].x, 0.75f * first[i].x + 0.25f * last[i].x, 1e-7f);
+}
+
+TEST_F(Recording, PlayedBackARobotExplodesWhenItDid) {
+  Configuration configuration = on_cpu();
+  configuration.dt = 1;
+  Simulation simulation(configuration, std::vector{pair("wild")});
+  record(simulation, file(), 60, 1);
+  const Telemetry end = simulation.telemetry(0);
+  ASSERT_TRUE(end.exploded);
+  Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
+  while (played.time() < end.exploded_at) {
+    EXPECT_FALSE(played.telemetry(0).exploded) << played.time();
+    played.step();
+  }
+  EXPECT_TRUE(played.telemetry(0).exploded);
+  EXPECT_EQ(played.telemetry(0).exploded_at, end.exploded_at);
+  EXPECT_EQ(played.telemetry(0).first_bad_spring, end.first_bad_spring);
+}
+
+std::string refusal(const std::string& path) {
+  try {
+    TrajectoryReader reader(path);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST_F(Recording, WhatIsNoTrajectoryIsToldSo) {
+  EXPECT_EQ(refusal(path("none.h5")), path("none.h5") + ": No such file or directory");
+  EXPECT_EQ(refusal(folder_.string()), folder_.string() + ": is a folder, not a trajectory");
+  write("text.h5", "not HDF5 at all");
+  EXPECT_EQ(refusal(path("text.h5")), path("text.h5") + ": is not an HDF5 file");
+  write("empty.h5", "");
+  EXPECT_EQ(refusal(path("empty.h5")), path("empty.h5") + ": is not an HDF5 file");
+  hdf5::prepare();
+  { const hdf5::Handle other(H5Fcreate(path("other.h5").c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT)); }
+  EXPECT_EQ(refusal(path("other.h5")), path("other.h5") + ": is not a trajectory that mercury recorded");
+}
+
+}  // namespace
+}  // namespace mercury::test

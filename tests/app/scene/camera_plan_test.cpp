@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/scene/camera_plan.h"
+
+#include <gmock/gmock.h>
+
+#include "mercury/error.h"
+#include "program.h"
+
+namespace mercury::test {
+namespace {
+
+class CameraFile : public FolderTest {};
+
+TEST_F(CameraFile, ComesBackAsItWasSaved) {
+  const CameraPlan plan{.mode = CameraMode::still,
+                        .robot = "eel",
+                        .azimuth = 0.1f,
+                        .elevation = -0.25f,
+                        .zoom = 2,
+                        .field_of_view = 0.4f,
+                        .period = 8,
+                        .target = Eigen::Vector3f(1, -2, 0.3f),
+                        .distance = 7};
+  save_camera(path("a.json"), plan);
+  const CameraPlan loaded = load_camera(path("a.json"));
+  EXPECT_EQ(loaded.mode, plan.mode);
+  EXPECT_EQ(loaded.robot, plan.robot);
+  EXPECT_EQ(loaded.azimuth, plan.azimuth);
+  EXPECT_EQ(loaded.elevation, plan.elevation);
+  EXPECT_EQ(loaded.zoom, plan.zoom);
+  EXPECT_EQ(loaded.field_of_view, plan.field_of_view);
+  EXPECT_EQ(loaded.period, plan.period);
+  EXPECT_EQ(loaded.target, plan.target);
+  EXPECT_EQ(loaded.distance, plan.distance);
+}
+
+TEST_F(CameraFile, WhatIsMissingIsAsByDefault) {
+  write("a.json", R"({"format": "mercury-camera", "version": 1})");
+  EXPECT_EQ(load_camera(path("a.json")).mode, CameraMode::group);
+  EXPECT_FALSE(load_camera(path("a.json")).azimuth.has_value());
+}
+
+TEST_F(CameraFile, ErrorsSayWhere) {
+  const auto message = [&](const std::string& text) -> std::string {
+    write("a.json", text);
+    try {
+      load_camera(path("a.json"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string file = path("a.json");
+  const std::string start = R"({"format": "mercury-camera", "version": 1, )";
+  EXPECT_EQ(message("no json"), file + ": is not a camera file; its \"format\" must be \"mercury-camera\"");
+  EXPECT_EQ(message("[1, 2]"), file + ": is not a camera file; its \"format\" must be \"mercury-camera\"");
+  EXPECT_EQ(message(R"({"format": "mercury-camera", "version": 2})"), file + ": /version must be 1");
+  EXPECT_EQ(message(start + R"("mode": "drone"})"),
+            file + ": /mode must be one of group, follow, turntable, top, still");
+  EXPECT_EQ(message(start + R"("zoom": 0})"), file + ": /zoom must be above 0");
+  EXPECT_EQ(message(start + R"("azimuth": "west"})"), file + ": /azimuth is not a number");
+  EXPECT_EQ(message(start + R"("target": [1, 2]})"), file + ": /target is not a list of three numbers");
+}
+
+TEST(CameraNamed, KnowsModesAndWhoToFollow) {
+  EXPECT_EQ(camera_named("turntable").mode, CameraMode::turntable);
+  EXPECT_EQ(camera_named("follow").robot, "");
+  EXPECT_EQ(camera_named("follow:eel").robot, "eel");
+  EXPECT_THROW(camera_named("top:eel"), InputError);
+  EXPECT_THROW(camera_named("drone"), InputError);
+  EXPECT_THROW(camera_named("missing.json"), InputError);
+}
+
+}  // namespace
+}  // namespace mercury::test

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera sees what its plan says, as large as fits.
+#include "app/scene/cameraman.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "mercury/error.h"
+
+namespace mercury::test {
+namespace {
+
+using render::Bounds;
+
+constexpr int width = 1280, height = 720;
+constexpr double tick = 1.0 / 30;
+
+Bounds box(Eigen::Vector3f middle, float half) {
+  Bounds bounds;
+  bounds.extend(middle - Eigen::Vector3f::Constant(half));
+  bounds.extend(middle + Eigen::Vector3f::Constant(half));
+  return bounds;
+}
+
+std::vector<Bounds> scattered(unsigned seed, float spread) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> place(-spread, spread), size(0.05f, 0.5f);
+  std::vector<Bounds> boxes;
+  for (int i = 0; i < 9; ++i) boxes.push_back(box({place(random), place(random), 0.3f * place(random)}, size(random)));
+  return boxes;
+}
+
+// The farthest corner from the picture's middle, over the distance of the border: 1 touches it, above 1 is cut off.
+float fill_of(const render::Camera& camera, const std::vector<Bounds>& boxes) {
+  float fill = 0;
+  for (const Bounds& b : boxes)
+    for (int i = 0; i < 8 && !b.empty(); ++i) {
+      const Eigen::Vector3f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(),
+                                   i & 4 ? b.high.z() : b.low.z());
+      const Eigen::Vector3f pixel = camera.project(corner, width, height);
+      EXPECT_GT(pixel.z(), 0) << "behind the eye";
+      fill = std::max({fill, std::abs(pixel.x() / width * 2 - 1), std::abs(1 - pixel.y() / height * 2)});
+    }
+  return fill;
+}
+
+class GroupInView : public testing::TestWithParam<CameraMode> {};
+
+TEST_P(GroupInView, FirstFrameFillsThePicture) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const std::vector<Bounds> boxes = scattered(seed, 3);
+    Cameraman camera({.mode = GetParam()}, {}, {});
+    const float fill = fill_of(camera.at(boxes, tick), boxes);
+    EXPECT_LE(fill, 1.0f);
+    EXPECT_GE(fill, 0.8f);
+  }
+}
+
+TEST_P(GroupInView, RobotsThatRunAreNeverCutOff) {
+  std::vector<Bounds> boxes = scattered(1, 2);
+  Cameraman camera({.mode = GetParam()}, {}, {});
+  for (int frame = 0; frame < 200; ++frame) {
+    EXPECT_LE(fill_of(camera.at(boxes, tick), boxes), 1.0f) << frame;
+    boxes[0] = boxes[0].moved({0.2f, 0, 0});  // 6 m/s
+    boxes[1] = boxes[1].moved({0, 0.05f, 0.1f});
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameraman, GroupInView, testing::Values(CameraMode::group, CameraMode::top),
+                         [](const auto& tested) { return std::string(name_of(tested.param)); });
+
+TEST(Cameraman, MovesWithoutJerks) {
+  std::vector<Bounds> boxes = scattered(2, 2);
+  Cameraman camera({}, {}, {});
+  Eigen::Vector3f before = camera.at(boxes, tick).eye;
+  boxes[0] = boxes[0].moved({0.05f, 0, 0});  // less than the margin, so that nothing must be caught up with at once
+  for (int frame = 0; frame < 100; ++frame) {
+    const Eigen::Vector3f eye = camera.at(boxes, tick).eye;
+    EXPECT_LT((eye - before).norm(), 0.02f);
+    before = eye;
+  }
+  Cameraman there({}, {}, {});
+  EXPECT_LT((there.at(boxes, 0).eye - before).norm(), 0.02f);
+}
+
+TEST(Cameraman, EmptyBoxesAreLeftOut) {
+  std::vector<Bounds> boxes = scattered(3, 2);
+  Cameraman without({}, {}, {}), with({}, {}, {});
+  const Eigen::Vector3f eye = without.at(boxes, 0).eye;
+  boxes.push_back({});
+  EXPECT_EQ(with.at(boxes, 0).eye, eye);
+}
+
+TEST(Cameraman, TopLooksStraightDown) {
+  Cameraman camera({.mode = CameraMode::top}, {}, {});
+  const render::Camera view = camera.at(scattered(4, 2), 0);
+  EXPECT_NEAR((view.eye - view.target).normalized().z(), 1, 1e-5);
+}
+
+TEST(Cameraman, FollowKeepsItsDistanceToTheRobot) {
+  const std::vector<std::string> names{"ray", "eel", "squid"};
+  std::vector<Bounds> boxes{box({0, 0, 0}, 0.2f), box({2, 0, 0}, 0.3f), box({4, 1, 0}, 0.2f)};
+  Cameraman camera({.mode = CameraMode::follow, .robot = "eel"}, {}, names);
+  const render::Camera first = camera.at(boxes, tick);
+  EXPECT_LT((first.target - boxes[1].center()).norm(), 1e-5);
+  for (int frame = 0; frame < 300; ++frame) {
+    boxes[1] = boxes[1].moved({0, 0.01f, 0});
+    camera.at(boxes, tick);
+  }
+  // At 0.3 m/s a lag of 0.8 s is 0.24 m.
+  const render::Camera last = camera.at(boxes, tick);
+  EXPECT_NEAR((last.target - boxes[1].center()).norm(), 0.24, 0.02);
+  EXPECT_NEAR((last.eye - last.target).norm(), (first.eye - first.target).norm(), 1e-4);
+}
+
+TEST(Cameraman, RobotToFollowMustBeThere) {
+  const std::vector<std::string> names{"ray", "eel"};
+  EXPECT_NO_THROW(Cameraman({.mode = CameraMode::follow, .robot = "1"}, {}, names));
+  EXPECT_THROW(Cameraman({.mode = CameraMode::follow, .robot = "2"}, {}, names), InputError);
+  EXPECT_THROW(Cameraman({.mode = CameraMode::follow, .robot = "cod"}, {}, names), InputError);
+}
+
+TEST(Cameraman, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
+  const std::vector<Bounds> boxes = scattered(5, 1);
+  Cameraman camera({.mode = CameraMode::turntable, .period = 2}, {}, {});
+  const Eigen::Vector3f start = camera.at(boxes, 0.1).eye;
+  float farthest = 0;
+  for (int frame = 0; frame < 19; ++frame) {
+    const render::Camera view = camera.at(boxes, 0.1);
+    EXPECT_LE(fill_of(view, boxes), 1.0f);
+    farthest = std::max(farthest, (view.eye - start).norm());
+  }
+  EXPECT_GT(farthest, 1);
+  EXPECT_LT((camera.at(boxes, 0.1).eye - start).norm(), 0.01f);
+}
+
+TEST(Cameraman, StillStaysWhereItWasTold) {
+  Cameraman camera(
+      {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5}, {},
+      {});
+  std::vector<Bounds> boxes = scattered(6, 1);
+  for (int frame = 0; frame < 3; ++frame) {
+    EXPECT_LT((camera.at(boxes, tick).eye - Eigen::Vector3f(6, 2, 3)).norm(), 1e-5);
+    boxes[0] = boxes[0].moved({1, 0, 0});
+  }
+}
+
+TEST(Cameraman, ZoomBringsCloser) {
+  const std::vector<Bounds> boxes = scattered(7, 1);
+  Cameraman far({}, {}, {}), near({.zoom = 2}, {}, {});
+  const render::Camera a = far.at(boxes, tick), b = near.at(boxes, tick);
+  EXPECT_NEAR((a.eye - a.target).norm() / (b.eye - b.target).norm(), 2, 0.1);
+}
+
+}  // namespace
+}  // namespace mercury::test

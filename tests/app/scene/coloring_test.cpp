@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers that robots are coloured by.
+#include "app/scene/coloring.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/scene/arrows.h"
+#include "app/scene/face_forces.h"
+#include "app/scene/floor_forces.h"
+#include "mercury/error.h"
+
+namespace mercury::test {
+namespace {
+
+// Two masses 1 m apart on a muscle of 50 N/m that is 10 % longer at t = 0 (phase pi/2), and a triangle of three.
+Robot pair() {
+  return {.name = "pair",
+          .materials = {{}, {50, 0.1f, 1, static_cast<float>(M_PI / 2)}},
+          .masses = {{0, 0, 0}, {1, 0, 0}},
+          .springs = {{0, 1, 1, 1}}};
+}
+
+// An equilateral triangle would do; this one has an area of 2 m2 and faces +z.
+Robot plate() {
+  return {.name = "plate",
+          .masses = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}},
+          .springs = {{0, 1, 21, 2}, {1, 2, 21, 2.828427f}, {2, 0, 21, 2}},
+          .faces = {{0, 1, 2}}};
+}
+
+GroupState state(std::vector<Vec3> positions, Vec3 velocity) {
+  const std::size_t count = positions.size();
+  return {.time = 0, .positions = std::move(positions), .velocities = std::vector<Vec3>(count, velocity)};
+}
+
+const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
+
+TEST(Coloring, StrainIsTheChangeOfLength) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  const ColorValues values = Coloring(simulation, ColorBy::strain).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  ASSERT_EQ(values.spring.size(), 1u);
+  EXPECT_NEAR(values.spring[0], 25, 1e-4);
+  EXPECT_NEAR(values.mass[0], 25, 1e-4);  // of a mass: the mean of its springs
+  EXPECT_TRUE(values.face.empty());
+}
+
+TEST(Coloring, ForceFollowsHooksLawFromThePresentRestLength) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  const ColorValues values = Coloring(simulation, ColorBy::force).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  EXPECT_NEAR(values.spring[0], 50 * (1.25 - 1.1), 1e-4);
+}
+
+TEST(Coloring, EnergyIsThatOfHookesLaw) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  const ColorValues values = Coloring(simulation, ColorBy::energy).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  EXPECT_NEAR(values.spring[0], 1000 * 50 * 0.15 * 0.15 / 2, 1e-2);
+  EXPECT_EQ(values.mass, (std::vector<float>(2, values.spring[0])));  // the mean of its springs
+}
+
+TEST(Coloring, StiffnessIsTheMaterialsTimesThatOfTheEnvironment) {
+  const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device},
+                              std::vector<Robot>{pair()});
+  EXPECT_NEAR(Coloring(simulation, ColorBy::stiffness).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], 150, 1e-4);
+}
+
+TEST(Coloring, ActivationIsTheContraction) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  EXPECT_NEAR(Coloring(simulation, ColorBy::activation).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], -10, 1e-4);
+}
+
+TEST(Coloring, SpeedIsThatOfTheMass) {
+  const Simulation simulation(cpu, std::vector<Robot>{pair()});
+  const ColorValues values = Coloring(simulation, ColorBy::speed).values(state({{0, 0, 0}, {1, 0, 0}}, {0, 3, 4}));
+  EXPECT_EQ(values.mass, (std::vector<float>{5, 5}));
+}
+
+// Moved face on, all of equation 1 lies along the flow: F = rho A / 2 C_D v^2.
+TEST(Coloring, PressureOfAFaceMovedHeadOn) {
+  const Simulation simulation(cpu, std::vector<Robot>{plate()});
+  const ColorValues values = Coloring(simulation, ColorBy::pressure).values(state(plate().masses, {0, 0, 0.5f}));
+  ASSERT_EQ(values.face.size(), 1u);
+  EXPECT_NEAR(values.face[0], 1000.0 / 2 * 1 * 0.25, 0.01);
+}
+
+TEST(Coloring, EnvironmentMustKnowTheQuantity) {
+  const Simulation simulation({.environment = Land{}, .device = cpu.device}, std::vector<Robot>{plate()});
+  EXPECT_THROW(Coloring(simulation, ColorBy::pressure), InputError);
+  EXPECT_THROW(Arrows(simulation, {.drag = true}), InputError);
+  EXPECT_NO_THROW(Coloring(simulation, ColorBy::speed));
+}
+
+TEST(FaceForce, DragOpposesMotionAndLiftLiesAcrossIt) {
+  const std::vector<Vec3> velocities(3, {0.3f, 0, 0.4f});
+  const FaceForce force = face_force(Ocean{}, plate().faces[0], plate().masses, velocities);
+  EXPECT_NEAR(force.area, 2, 1e-6);
+  EXPECT_LT(dot(force.drag, velocities[0]), 0);
+  EXPECT_NEAR(dot(force.lift, velocities[0]), 0, 1e-3);
+  // Equation 1 by hand: u = -v, u.n = -0.4, n flipped to (0,0,-1), so u.n = 0.4;
+  // F = 1000 * 2 / 2 * (0.8 * 0.4 * (-0.3, 0, -0.4) + 0.2 * 0.25 * (0, 0, -1)).
+  const Vec3 sum = force.drag + force.lift;
+  EXPECT_NEAR(sum.x, -96, 0.01);
+  EXPECT_NEAR(sum.y, 0, 0.01);
+  EXPECT_NEAR(sum.z, -178, 0.01);
+}
+
+// Springs at rest: the floor carries each mass's own weight.
+TEST(FloorForces, MassesAtRestAreCarried) {
+  Robot flat = plate();
+  for (Vec3& mass : flat.masses) mass.z = 0;
+  const Simulation simulation({.environment = Land{}, .device = cpu.device}, std::vector<Robot>{flat});
+  const auto forces = floor_forces(simulation, 0, state(flat.masses, {0, 0, 0}));
+  ASSERT_EQ(forces.size(), flat.masses.size());
+  for (const FloorForce& contact : forces) {
+    EXPECT_NEAR(contact.force.z, 9.81, 1e-3);
+    EXPECT_NEAR(contact.force.x, 0, 1e-3);
+  }
+}
+
+// Coulomb's law: it slides, so friction is mu N against its motion.
+TEST(FloorForces, FrictionOfWhatSlidesIsItsShareOfThePush) {
+  Robot flat = plate();
+  for (Vec3& mass : flat.masses) mass.z = 0;
+  const Simulation simulation({.environment = Land{.friction = 0.5f}, .device = cpu.device}, std::vector<Robot>{flat});
+  for (const FloorForce& contact : floor_forces(simulation, 0, state(flat.masses, {2, 0, 0}))) {
+    EXPECT_NEAR(contact.force.x, -0.5 * 9.81, 1e-3);
+    EXPECT_NEAR(contact.force.z, 9.81, 1e-3);
+  }
+}
+
+// A robot that has come to rest weighs on the floor with all of its masses.
+TEST(FloorForces, CarryTheWholeWeightOfARobotAtRest) {
+  Robot tower{.name = "tower"};
+  for (int i = 0; i < 3; ++i) tower.masses.push_back({0, 0, static_cast<float>(i)});
+  for (std::uint16_t i = 0; i < 2; ++i)
+    tower.springs.push_back({.a = i, .b = static_cast<std::uint16_t>(i + 1), .material = 22, .rest_length = 1});
+  Simulation simulation({.damping = 20, .environment = Land{}, .device = cpu.device}, std::vector<Robot>{tower});
+  simulation.step(20000);
+  const auto forces = floor_forces(simulation, 0, read_state(simulation));
+  ASSERT_EQ(forces.size(), 1u);
+  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.1);  // a last digit of the positions is 0.005 N to these springs
+}
+
+TEST(FloorForces, WaterHasNone) {
+  const Simulation simulation(cpu, std::vector<Robot>{plate()});
+  EXPECT_TRUE(floor_forces(simulation, 0, state(plate().masses, {0, 0, -1})).empty());
+  EXPECT_THROW(Arrows(simulation, {.contact = true}), InputError);
+}
+
+TEST(Arrows, LongestIsHalfARobotAndKeepsItsScale) {
+  const Simulation simulation(cpu, std::vector<Robot>{plate()});
+  Arrows arrows(simulation, {.drag = true});
+  const std::vector<Telemetry> telemetry = simulation.telemetry();
+  const auto fast = arrows.at(state(plate().masses, {0, 0, -1}), telemetry);
+  ASSERT_EQ(fast.size(), 1u);
+  // 1000 N, a round number; the diagonal of the plate is sqrt(8) m.
+  EXPECT_NEAR(fast[0].vector.norm(), 0.5 * std::sqrt(8.0), 1e-3);
+  EXPECT_GT(fast[0].vector.z(), 0);
+  const auto slow = arrows.at(state(plate().masses, {0, 0, -0.5f}), telemetry);
+  EXPECT_NEAR(slow[0].vector.norm() / fast[0].vector.norm(), 0.25, 1e-4);
+  EXPECT_EQ(arrows.key(), "drag: 1.4 m = 1000 N");
+}
+
+// Drag grows with the square of speed: the third plate's is 100 times the others'.
+TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
+  const Simulation simulation(cpu, std::vector<Robot>(3, plate()));
+  Arrows arrows(simulation, {.drag = true});
+  GroupState group;
+  for (const float speed : {1.0f, 1.0f, 10.0f})
+    for (const Vec3 x : plate().masses) {
+      group.positions.push_back(x);
+      group.velocities.push_back({0, 0, -speed});
+    }
+  const auto all = arrows.at(group, simulation.telemetry());
+  ASSERT_EQ(all.size(), 3u);
+  const double half_a_robot = 0.5 * std::sqrt(8.0);
+  EXPECT_NEAR(all[0].vector.norm(), half_a_robot, 1e-3);
+  EXPECT_NEAR(all[1].vector.norm(), half_a_robot, 1e-3);
+  EXPECT_NEAR(all[2].vector.norm(), 2 * half_a_robot, 2e-3);
+}
+
+TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
+  GrowingScale scale(ColorBy::force, std::nullopt);
+  scale.fit({.spring = {3, -4}});
+  EXPECT_FLOAT_EQ(scale.scale().high, 5);
+  EXPECT_FLOAT_EQ(scale.scale().low, -5);
+  scale.fit({.spring = {0.1f, NAN}});
+  EXPECT_FLOAT_EQ(scale.scale().high, 5);
+  EXPECT_EQ(scale.legend().unit, "N");
+}
+
+TEST(GrowingScale, StaysWhereTheUserPutIt) {
+  GrowingScale scale(ColorBy::speed, std::pair(0.5f, 2.0f));
+  scale.fit({.mass = {100}});
+  EXPECT_EQ(scale.scale().low, 0.5f);
+  EXPECT_EQ(scale.scale().high, 2.0f);
+}
+
+TEST(RoundUp, GivesOneTwoFive) {
+  EXPECT_FLOAT_EQ(round_up(1), 1);
+  EXPECT_FLOAT_EQ(round_up(1.1f), 2);
+  EXPECT_FLOAT_EQ(round_up(0.03f), 0.05f);
+  EXPECT_FLOAT_EQ(round_up(700), 1000);
+}
+
+}  // namespace
+}  // namespace mercury::test

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/position_bridge.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/scene/group_scene.h"
+#include "app/video/studio.h"
+#include "mercury/random_voxel.h"
+#include "mercury/simulation.h"
+#include "render/readback.h"
+
+namespace mercury::test {
+namespace {
+
+// Some robots that swim, and a renderer that has their bodies.
+class PositionBridgeTest : public testing::Test {
+ protected:
+  void set_up(DeviceKind device) {
+    try {
+      context_ = render::make_context({.cuda_device = device == DeviceKind::cuda ? 0 : -1});
+    } catch (const render::ContextError& error) {
+      GTEST_SKIP() << "no OpenGL here: " << error.what();
+    }
+    context_->take_messages();
+    simulation_.emplace(Configuration{.device = {.kind = device}}, random_voxel_robots({}, 1, 5));
+    renderer_.emplace(*context_, render::RendererOptions{.width = 320, .height = 180});
+    offsets_.resize(simulation_->size());
+    for (std::size_t i = 0; i < offsets_.size(); ++i) offsets_[i] = {1.0f * static_cast<float>(i), 0, 0};
+    scene_.emplace(*simulation_, offsets_, ViewSettings{});
+    scene_->set_bodies(*renderer_);
+  }
+  void TearDown() override {
+    if (!context_) return;
+    for (const std::string& message : context_->take_messages()) ADD_FAILURE() << "OpenGL says: " << message;
+    renderer_.reset();
+  }
+
+  render::Image picture(PositionBridge& bridge, const PositionSnapshot& snapshot) {
+    bridge.show(snapshot, *renderer_, scene_->scene());
+    renderer_->draw(scene_->scene(), render::Orbit{.target = {2, 0, 0}, .distance = 8}.camera());
+    return render::read(*renderer_);
+  }
+
+  std::unique_ptr<render::Context> context_;
+  std::optional<Simulation> simulation_;
+  std::optional<render::Renderer> renderer_;
+  std::optional<GroupScene> scene_;
+  std::vector<Eigen::Vector3f> offsets_;
+};
+
+TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirMoment) {
+  ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
+  if (IsSkipped()) return;
+  const auto bridge = make_host_bridge();
+  simulation_->step(200);
+  const auto early = bridge->take(*simulation_);
+  const render::Image before = picture(*bridge, *early);
+  simulation_->step(800);
+  const auto late = bridge->take(*simulation_);
+  EXPECT_NE(picture(*bridge, *late).bytes, before.bytes);
+  EXPECT_EQ(picture(*bridge, *early).bytes, before.bytes);
+}
+
+TEST_F(PositionBridgeTest, RobotsOnTheProcessorGoThroughTheHostAndThatIsNothingToTell) {
+  ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
+  if (IsSkipped()) return;
+  const ChosenBridge chosen = choose_bridge(*simulation_, *renderer_, true);
+  EXPECT_FALSE(chosen.on_card);
+  EXPECT_EQ(chosen.note, "");
+  EXPECT_THROW(make_cuda_bridge(*simulation_, *renderer_), NoInterop);
+}
+
+TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
+  if (IsSkipped()) return;
+  const ChosenBridge card = choose_bridge(*simulation_, *renderer_, true);
+  if (!card.on_card) GTEST_SKIP() << card.note;
+  const ChosenBridge host = choose_bridge(*simulation_, *renderer_, false);
+  EXPECT_FALSE(host.on_card);
+  EXPECT_EQ(host.note, "");
+  for (int moment = 0; moment < 4; ++moment) {
+    simulation_->step(250);
+    const auto on_card = card.bridge->take(*simulation_), on_host = host.bridge->take(*simulation_);
+    simulation_->step(50);  // neither snapshot follows
+    const render::Image drawn = picture(*card.bridge, *on_card);
+    EXPECT_EQ(drawn.bytes, picture(*host.bridge, *on_host).bytes) << moment;
+  }
+}
+
+TEST_F(PositionBridgeTest, SnapshotsOfAnotherThreadAreShownInOrder) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
+  if (IsSkipped()) return;
+  const ChosenBridge card = choose_bridge(*simulation_, *renderer_, true);
+  if (!card.on_card) GTEST_SKIP() << card.note;
+  const auto host = make_host_bridge();
+  std::vector<std::unique_ptr<PositionSnapshot>> on_card, on_host;
+  std::thread([&] {
+    for (int moment = 0; moment < 6; ++moment) {
+      simulation_->step(100);
+      on_card.push_back(card.bridge->take(*simulation_));
+      on_host.push_back(host->take(*simulation_));
+    }
+  }).join();
+  for (std::size_t moment = 0; moment < on_card.size(); ++moment) {
+    const render::Image drawn = picture(*card.bridge, *on_card[moment]);
+    EXPECT_EQ(drawn.bytes, picture(*host, *on_host[moment]).bytes) << moment;
+  }
+}
+
+}  // namespace
+}  // namespace mercury::test

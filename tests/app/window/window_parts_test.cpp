@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of the window that need no display.
+#include <gmock/gmock.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cstdlib>
+
+#include "app/window/dialogs/folder_view.h"
+#include "app/window/toolkit/window.h"
+#include "tests/app/program.h"
+
+namespace mercury::window {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Kind = InputEvent::Kind;
+
+std::vector<std::string> names(const std::vector<FolderItem>& items) {
+  std::vector<std::string> names;
+  for (const FolderItem& item : items) names.push_back(item.name);
+  return names;
+}
+
+class FolderViewTest : public test::FolderTest {
+ protected:
+  void write(const std::string& name, std::size_t bytes = 1) { std::ofstream(path(name)) << std::string(bytes, 'x'); }
+  void SetUp() override {
+    std::filesystem::create_directories(path("zoo/deep"));
+    for (const char* name : {"eel.json", "Fish.JSON", "ray.cbor", "notes.txt", ".hidden.json"}) write(name);
+  }
+  FolderView view_{{".json", ".cbor"}};
+};
+
+TEST_F(FolderViewTest, FoldersComeFirstAndOtherFilesNotAtAll) {
+  ASSERT_TRUE(view_.enter(folder_));
+  EXPECT_THAT(names(view_.items()), ElementsAre("zoo", "eel.json", "Fish.JSON", "ray.cbor"));
+  EXPECT_EQ(view_.file_count(), 3u);
+}
+
+TEST_F(FolderViewTest, WhatCannotBeReadIsToldAndChangesNothing) {
+  ASSERT_TRUE(view_.enter(folder_));
+  EXPECT_FALSE(view_.enter(folder_ / "nowhere"));
+  EXPECT_THAT(view_.error(), HasSubstr("nowhere"));
+  EXPECT_EQ(view_.folder(), folder_);
+  EXPECT_EQ(view_.items().size(), 4u);
+}
+
+TEST_F(FolderViewTest, GoingUpMarksTheFolderThatWasLeft) {
+  ASSERT_TRUE(view_.enter(folder_ / "zoo" / ""));
+  ASSERT_TRUE(view_.up());
+  EXPECT_EQ(view_.folder(), folder_);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("zoo"));
+  ASSERT_TRUE(view_.enter("/"));
+  EXPECT_FALSE(view_.up());
+}
+
+TEST_F(FolderViewTest, FilterLooksAtNamesInAnyCase) {
+  view_.enter(folder_);
+  view_.mark(1);
+  view_.set_filter("FI");
+  EXPECT_THAT(names(view_.items()), ElementsAre("Fish.JSON"));
+  EXPECT_THAT(view_.marked(), IsEmpty());
+  view_.set_filter("");
+  EXPECT_EQ(view_.items().size(), 4u);
+}
+
+TEST_F(FolderViewTest, SortingKeepsFoldersAboveAndMarksWhereTheyAre) {
+  write("ray.cbor", 900);
+  write("eel.json", 20);
+  view_.enter(folder_);
+  view_.mark(3);
+  view_.sort(FolderView::Order::size, true);
+  EXPECT_THAT(names(view_.items()), ElementsAre("zoo", "ray.cbor", "eel.json", "Fish.JSON"));
+  EXPECT_THAT(names(view_.marked()), ElementsAre("ray.cbor"));
+  EXPECT_EQ(view_.cursor(), 1u);
+}
+
+TEST_F(FolderViewTest, MarksFollowKeysAndClicks) {
+  view_.enter(folder_);
+  view_.move(1);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("zoo"));
+  view_.move(2);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("Fish.JSON"));
+  view_.move(100);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("ray.cbor"));
+  view_.mark_to(1);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("eel.json", "Fish.JSON", "ray.cbor"));
+  view_.toggle(2);
+  EXPECT_THAT(names(view_.marked()), ElementsAre("eel.json", "ray.cbor"));
+  view_.mark(99);  // a row that is no more
+  EXPECT_THAT(view_.marked(), IsEmpty());
+}
+
+TEST(TypedPath, IsTakenAsAShellTakesIt) {
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  EXPECT_EQ(typed_path("/robots", "eel.json"), "/robots/eel.json");
+  EXPECT_EQ(typed_path("/robots", "  ../eel.json "), "/eel.json");
+  EXPECT_EQ(typed_path("/robots", "/a/b"), "/a/b");
+  EXPECT_EQ(typed_path("/robots", "~/a"), home.empty() ? "/robots/~/a" : home + "/a");
+  EXPECT_EQ(typed_path("/robots", "   "), "");
+}
+
+InputEvent moved(double x) { return {.kind = Kind::move, .x = x}; }
+InputEvent button(int action) { return {.kind = Kind::button, .code = GLFW_MOUSE_BUTTON_LEFT, .action = action}; }
+InputEvent key(int code, int action, bool types) {
+  return {.kind = Kind::key, .code = code, .action = action, .types = types};
+}
+InputEvent letter(char32_t c) { return {.kind = Kind::character, .code = static_cast<int>(c)}; }
+
+TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
+  InputQueue queue;
+  for (const InputEvent& event :
+       {moved(1), moved(2), button(GLFW_PRESS), moved(3), moved(4), button(GLFW_RELEASE), moved(5)})
+    queue.push(event);
+  const std::vector<InputEvent> down = queue.take();
+  ASSERT_EQ(down.size(), 2u);
+  EXPECT_EQ(down[0].x, 2);
+  EXPECT_EQ(down[1].action, GLFW_PRESS);
+  EXPECT_TRUE(queue.behind());
+  const std::vector<InputEvent> up = queue.take();
+  ASSERT_EQ(up.size(), 2u);
+  EXPECT_EQ(up[0].x, 4);
+  EXPECT_EQ(up[1].action, GLFW_RELEASE);
+  ASSERT_EQ(queue.take().size(), 1u);
+  EXPECT_FALSE(queue.behind());
+  EXPECT_EQ(queue.taken(), 1u);
+}
+
+TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
+  InputQueue queue;
+  for (const InputEvent& event :
+       {moved(1), InputEvent{.kind = Kind::scroll, .y = 1}, InputEvent{.kind = Kind::scroll, .y = 1}, moved(2)})
+    queue.push(event);
+  const std::vector<InputEvent> turned = queue.take();
+  ASSERT_EQ(turned.size(), 3u);
+  EXPECT_EQ(turned[0].x, 1);
+  EXPECT_EQ(queue.take().size(), 1u);
+}
+
+TEST(InputQueue, WordsComeAtOnceButWhatFollowsACommandWaitsForIt) {
+  InputQueue queue;
+  for (const char32_t c : {U'e', U'e', U'l'}) {
+    queue.push(key(static_cast<int>(c), GLFW_PRESS, true));
+    queue.push(letter(c));
+    queue.push(key(static_cast<int>(c), GLFW_RELEASE, true));
+  }
+  queue.push(key(GLFW_KEY_ENTER, GLFW_PRESS, false));
+  queue.push(key(GLFW_KEY_ENTER, GLFW_RELEASE, false));
+  queue.push(letter(U'x'));
+  queue.push(button(GLFW_PRESS));
+  EXPECT_EQ(queue.take().size(), 10u);
+  EXPECT_EQ(queue.take().size(), 2u);  // the button is not pressed before the letter is in
+  EXPECT_EQ(queue.take().size(), 1u);
+  EXPECT_EQ(queue.taken(), 5u);
+}
+
+TEST(Presses, AreCharactersWhereKeysTypeThemAndKeysElsewhere) {
+  InputEvent control = key(GLFW_KEY_S, GLFW_PRESS, false);
+  control.mods = GLFW_MOD_CONTROL;
+  control.name = U's';
+  const std::vector<Press> presses =
+      presses_of({key(GLFW_KEY_D, GLFW_PRESS, true), letter(U'd'), key(GLFW_KEY_D, GLFW_RELEASE, true),
+                  key(GLFW_KEY_F1, GLFW_PRESS, false), key(GLFW_KEY_F1, GLFW_RELEASE, false), control});
+  ASSERT_EQ(presses.size(), 3u);
+  EXPECT_EQ(presses[0].character, U'd');
+  EXPECT_EQ(presses[1].key, GLFW_KEY_F1);
+  EXPECT_EQ(presses[1].character, 0u);
+  EXPECT_TRUE(presses[2].control);
+  EXPECT_EQ(presses[2].character, U's');
+}
+
+}  // namespace
+}  // namespace mercury::window

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Finds words that docs/glossary.md replaces. Prints one line per finding; exit status 1 if there is one.
+
+    word_rules.py [PATH...]        files and folders; without one, the whole repository
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+READ = {".h", ".cpp", ".cu", ".cuh", ".in", ".py", ".md", ".txt", ".cmake", ".glsl", ".vert", ".frag", ".comp", ".sh", ""}
+EXEMPT = {"tests/house/word_rules.py", "tests/house/word_rules_test.py", "docs/glossary.md", "LICENSE"}
+
+# (pattern, what to write instead). A pattern matches whole words of prose and whole parts of an identifier:
+# "seat" matches seat, seat_ and first_seat, not "seated by" in another word.
+WORDS = [
+    # Plain English
+    ("told|tells?|telling", "reports, returns, says, prints"),
+    ("anew", "again, from scratch, recomputed"),
+    ("so many", "that many, or the number"),
+    ("stand[- ]?ins?|empty[ _]places?", "padding, placeholder, substitute"),
+    ("of before", "previous"),
+    ("built alike", "same topology"),
+    ("(springs|steps|pictures|frames|robots) a second", "per second"),
+    (r"(one|two|three|four|a line|a task|a thread) an? (robot|mass|spring|face|step|core|thread|lane|warp|block|frame|file|line)",
+     "per robot, per spring"),
+    ("be it", "whether"),
+    ("save (that|where|when|for)", "except"),
+    ("nought|naught", "0"),
+    # Simulator
+    ("part(y|ies)", "lockstep group"),
+    ("sitters?", "member"),
+    ("seats?|seating|seated", "index_map, thread_context"),
+    ("assembl(y|ies)", "merged_topology"),
+    ("hardness|hardnesses", "compliance, stiffness"),
+    ("laws?", "SpringParameters, muscle_curve; a law of physics keeps its name by 'Hooke's law', 'muscle law'"),
+    ("excess", "constraint_ratio"),
+    ("arrivals?", "incoming_count"),
+    ("calm", "still_water"),
+    ("hooks", "EnvironmentModel"),
+    ("culprits?", "culprit_spring"),
+    ("first[ _]bad[ _]spring", "culprit_spring"),
+    ("to[ _]blame", "culprit"),
+    ("bundles?", "face_tile"),
+    # Program and window
+    ("cameram[ae]n", "CameraController"),
+    ("camera[ _]hand", "OrbitController"),
+    ("desks?", "PanelContext"),
+    ("studios?", "VideoPipeline"),
+    ("shel(f|ves)", "Pool"),
+    ("histories", "ReplayLog"),
+    ("orders_", "PendingCommands"),
+    ("remembered", "SessionSettings"),
+]
+# Where an old word is the right one: (pattern of the path, pattern of the line).
+ALLOWED = [
+    ("", r"Hooke's law|muscle law|Coulomb's law|law of|assembly language|the assembler|__asm__|inline assembly"),
+    ("", r"third[- ]part(y|ies)"),
+    ("", r"culprit_?spring|CulpritSpring|culprit spring"),
+    ("", r"first_bad_spring.*(HDF5|JSON|key|attribute|column)|\"first_bad_spring\"|'first_bad_spring'|`first_bad_spring`"),
+]
+
+
+def rules():
+    for words, instead in WORDS:
+        yield re.compile(rf"(?<![A-Za-z])({words})(?![A-Za-z])", re.IGNORECASE), instead
+
+
+RULES = list(rules())
+EXCEPTIONS = [(re.compile(path), re.compile(line, re.IGNORECASE)) for path, line in ALLOWED]
+
+
+def findings_of_text(path, text):
+    """(line, what is wrong) of one file."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if any(p.search(path) and exception.search(line) for p, exception in EXCEPTIONS):
+            continue
+        for pattern, instead in RULES:
+            found = pattern.search(line)
+            if found:
+                yield number, f"'{found.group()}': write {instead}"
+
+
+def tracked(paths):
+    command = ["git", "-C", str(ROOT), "ls-files", "--", *[str(Path(p).resolve()) for p in paths]]
+    for name in subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines():
+        if Path(name).suffix in READ and name not in EXEMPT and not name.startswith("robots/library/"):
+            yield name
+
+
+def main():
+    count = 0
+    for name in tracked(sys.argv[1:] or [ROOT]):
+        text = (ROOT / name).read_text(encoding="utf-8", errors="ignore")
+        for number, what in findings_of_text(name, text):
+            print(f"{name}:{number}: {what}")
+            count += 1
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
