@@ -2,7 +2,7 @@
 // mercury info: about files, and about the machine.
 #include <gmock/gmock.h>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

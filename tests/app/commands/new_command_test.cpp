@@ -5,7 +5,7 @@
 #include "mercury/origin.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

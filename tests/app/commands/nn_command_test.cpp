@@ -4,7 +4,7 @@
 
 #include "mercury/nn_robot.h"
 #include "mercury/robot_file.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

@@ -2,7 +2,7 @@
 // What the program says to input that it cannot use: one line, and exit status 2.
 #include <gmock/gmock.h>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

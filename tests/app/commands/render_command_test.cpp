@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "program.h"
 #include "render/png.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "app/recording/repro.h"
-#include "live_scene_bodies.h"
 #include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_bodies.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "app/scene/eigen_vec3.h"
-#include "live_scene_bodies.h"
 #include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_bodies.h"
 
 namespace mercury {
 namespace {

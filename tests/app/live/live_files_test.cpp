@@ -13,9 +13,9 @@
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
-#include "live_scene_bodies.h"
 #include "mercury/robot_file.h"
-#include "program.h"
+#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/program.h"
 
 namespace mercury {
 namespace {

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "app/live/screen_recording.h"
-#include "live_scene_bodies.h"
-#include "program.h"
+#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/program.h"
 
 namespace mercury {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "live_scene_bodies.h"
 #include "mercury/random.h"
-#include "program.h"
+#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/program.h"
 
 namespace mercury {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "app/live/pace.h"
-#include "live_scene_bodies.h"
+#include "tests/app/live/live_scene_bodies.h"
 
 namespace mercury {
 namespace {

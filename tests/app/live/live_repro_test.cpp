@@ -8,10 +8,10 @@
 
 #include "app/live/histories.h"
 #include "app/recording/repro.h"
-#include "live_scene_bodies.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
-#include "program.h"
+#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/program.h"
 
 namespace mercury {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "live_scene_bodies.h"
 #include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_bodies.h"
 
 namespace mercury {
 namespace {

@@ -7,7 +7,7 @@
 #include "app/options/config_file.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

@@ -9,8 +9,8 @@
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "program.h"
-#include "recording_bodies.h"
+#include "tests/app/program.h"
+#include "tests/app/recording/recording_bodies.h"
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool sanitized = true;

@@ -7,7 +7,7 @@
 
 #include "app/recording/trajectory_reader.h"
 #include "mercury/simulation.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

@@ -7,8 +7,8 @@
 #include "app/recording/trajectory_playback.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
-#include "program.h"
-#include "recording_bodies.h"
+#include "tests/app/program.h"
+#include "tests/app/recording/recording_bodies.h"
 
 namespace mercury::test {
 namespace {

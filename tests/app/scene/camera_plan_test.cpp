@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "mercury/error.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {

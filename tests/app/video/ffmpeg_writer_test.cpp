@@ -8,8 +8,8 @@
 #include "app/video/ffmpeg_writer.h"
 #include "app/video/frame_writer.h"
 #include "mercury/error.h"
-#include "program.h"
 #include "render/png.h"
+#include "tests/app/program.h"
 
 namespace mercury::test {
 namespace {
