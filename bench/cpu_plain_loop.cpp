@@ -33,7 +33,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
   neighbours_.resize(masses);
   heads_.resize(std::bit_ceil(2 * masses));
   links_.resize(masses);
-  const std::vector<std::uint32_t> at = springs_at_masses(robot);
+  const std::vector<std::uint32_t> at = valences(robot);
   for (const Spring& spring : robot.springs) {
     splits_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
     neighbours_[spring.a].push_back(spring.b);
@@ -90,14 +90,14 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
 }
 
 // A third of each face's force to each of its masses. False, and the lowest mass noted, if a force is out of range.
-template <class Hooks>
-bool PlainLoop::add_face_forces(const Hooks& hooks) {
-  const auto [drag, lift] = hooks.of_sums(scale_.force);
+template <class EnvironmentModel>
+bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
+  const auto [drag, lift] = model.of_sums(scale_.force);
   bool fit = true;
   for (const auto& [a, b, c, d] : faces_) {
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
-    const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - hooks.thrice_flow;
-    const auto on_face = [&](Vec3 normal, Vec3 sum) { return hooks.on_face(normal, sum, inner(sum, sum), drag, lift); };
+    const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - model.thrice_flow;
+    const auto on_face = [&](Vec3 normal, Vec3 sum) { return model.on_face(normal, sum, inner(sum, sum), drag, lift); };
     const Vec3 first = on_face(cross(to_c, x[b] - x[a]), common + v[b]);
     const Vec3 second = on_face(cross(x[d] - x[a], to_c), common + v[d]);
     if (!fits(first) || !fits(second)) {
@@ -151,18 +151,19 @@ void PlainLoop::add_contacts() {
   }
 }
 
-void PlainLoop::add_pulls() {
-  for (const Pull& pull : pulls_) {
-    const Vec3 units = pull.stiffness * scale_.force * (pull.target - state_.positions[pull.mass]);
-    if (fits(units)) add(pull.mass, units);
+void PlainLoop::add_perturbations() {
+  for (const Perturbation& perturbation : perturbations_) {
+    const Vec3 units =
+        perturbation.stiffness * scale_.force * (perturbation.target - state_.positions[perturbation.mass]);
+    if (fits(units)) add(perturbation.mass, units);
   }
 }
 
-template <class Hooks>
-bool PlainLoop::add_environment(const Hooks& hooks) {
-  add_pulls();
-  if constexpr (Hooks::has_contacts) add_contacts();
-  if constexpr (Hooks::has_faces) return add_face_forces(hooks);
+template <class EnvironmentModel>
+bool PlainLoop::add_environment(const EnvironmentModel& model) {
+  add_perturbations();
+  if constexpr (EnvironmentModel::has_contacts) add_contacts();
+  if constexpr (EnvironmentModel::has_faces) return add_face_forces(model);
   return true;
 }
 
@@ -185,29 +186,29 @@ bool PlainLoop::keep(std::size_t mass, Vec3 x, Vec3 v) {
 }
 
 // Algorithm 1.
-template <class Hooks>
-bool PlainLoop::step_force(const Hooks& hooks) {
-  if (!add_environment(hooks) || !add_spring_forces()) return false;
+template <class EnvironmentModel>
+bool PlainLoop::step_force(const EnvironmentModel& model) {
+  if (!add_environment(model) || !add_spring_forces()) return false;
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     Vec3 v = state_.velocities[i];
-    const Vec3 force = take(i, 1 / scale_.force) + hooks.on_mass(v);
+    const Vec3 force = take(i, 1 / scale_.force) + model.on_mass(v);
     v = accelerated(v, force, constants_);
     Vec3 x = multiply_add(constants_.dt, v, state_.positions[i]);
-    end_step(x, v, hooks, constants_);
+    end_step(x, v, model, constants_);
     finite &= keep(i, x, v);
   }
   return finite;
 }
 
 // Algorithm 2. Between prediction and correction the state holds the prediction and the accelerated velocity.
-template <class Hooks>
-bool PlainLoop::step_xpbd(const Hooks& hooks) {
-  if (!add_environment(hooks)) return false;
+template <class EnvironmentModel>
+bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
+  if (!add_environment(model)) return false;
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Vec3 v = state_.velocities[i];
-    const Vec3 predicted = accelerated(v, take(i, 1 / scale_.force) + hooks.on_mass(v), constants_);
+    const Vec3 predicted = accelerated(v, take(i, 1 / scale_.force) + model.on_mass(v), constants_);
     finite &= keep(i, multiply_add(constants_.dt, predicted, state_.positions[i]), predicted);
   }
   if (!finite || !add_spring_corrections()) return false;
@@ -215,7 +216,7 @@ bool PlainLoop::step_xpbd(const Hooks& hooks) {
     const Vec3 correction = take(i, 1 / scale_.correction);
     Vec3 x = state_.positions[i] + correction;
     Vec3 v = multiply_add(constants_.inverse_dt, correction, state_.velocities[i]);
-    end_step(x, v, hooks, constants_);
+    end_step(x, v, model, constants_);
     finite &= keep(i, x, v);
   }
   return finite;
@@ -223,8 +224,8 @@ bool PlainLoop::step_xpbd(const Hooks& hooks) {
 
 void PlainLoop::step(std::int64_t steps) {
   const auto step_once = [&](const auto& kind) {
-    const auto hooks = hooks_of(kind);
-    return configuration_.solver == Solver::force ? step_force(hooks) : step_xpbd(hooks);
+    const auto model = model_of(kind);
+    return configuration_.solver == Solver::force ? step_force(model) : step_xpbd(model);
   };
   for (std::int64_t n = 0; n < steps && exploded_step_ < 0; ++n, ++now_) {
     update_muscles();

@@ -25,7 +25,9 @@ class PlainLoop {
 
   void set_state(const State& state) { state_ = state; }
   const State& state() const { return state_; }
-  void set_pulls(std::span<const Pull> pulls) { pulls_.assign(pulls.begin(), pulls.end()); }
+  void set_perturbations(std::span<const Perturbation> perturbations) {
+    perturbations_.assign(perturbations.begin(), perturbations.end());
+  }
 
   // Advances unless the robot has exploded.
   void step(std::int64_t steps);
@@ -43,17 +45,17 @@ class PlainLoop {
   bool add_springs(const Law& law);
   bool add_spring_forces();
   bool add_spring_corrections();
-  template <class Hooks>
-  bool add_face_forces(const Hooks& hooks);
+  template <class EnvironmentModel>
+  bool add_face_forces(const EnvironmentModel& model);
   void add_contacts();
   void add_contact(std::uint16_t i, std::uint16_t j, float distance);
-  void add_pulls();
-  template <class Hooks>
-  bool add_environment(const Hooks& hooks);
-  template <class Hooks>
-  bool step_force(const Hooks& hooks);
-  template <class Hooks>
-  bool step_xpbd(const Hooks& hooks);
+  void add_perturbations();
+  template <class EnvironmentModel>
+  bool add_environment(const EnvironmentModel& model);
+  template <class EnvironmentModel>
+  bool step_force(const EnvironmentModel& model);
+  template <class EnvironmentModel>
+  bool step_xpbd(const EnvironmentModel& model);
   void add(std::size_t mass, Vec3 units);
   Vec3 take(std::size_t mass, float inverse_scale);
   bool keep(std::size_t mass, Vec3 x, Vec3 v);
@@ -73,7 +75,7 @@ class PlainLoop {
   std::vector<FacePair> faces_;
   std::vector<std::vector<std::uint16_t>> neighbours_;
   std::vector<std::uint16_t> heads_, links_;  // buckets of the contact grid, masses
-  std::vector<Pull> pulls_;
+  std::vector<Perturbation> perturbations_;
   std::int64_t now_ = 0, exploded_step_ = -1;
   std::uint32_t bad_mass_ = 0xffffffffu;
 };

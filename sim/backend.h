@@ -63,7 +63,7 @@ class Backend {
   virtual void write_materials(std::span<const Material> tables) = 0;
   virtual void write_materials(std::size_t robot, std::span<const Material> table) = 0;
 
-  virtual void set_pulls(std::span<const Pull> pulls) = 0;
+  virtual void set_perturbations(std::span<const Perturbation> perturbations) = 0;
   // One element a robot; of its telemetry all but what follows from its status.
   virtual void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const = 0;
 };

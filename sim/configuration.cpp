@@ -28,19 +28,19 @@ void require_finite(const char* option, Vec3 value, const char* unit) {
                                  " is not accepted; give three finite numbers" + unit);
 }
 
-void validate_hooks(const Ocean& ocean) {
+void validate_environment(const Ocean& ocean) {
   require_at_least_zero("--density", ocean.density, " kg/m3");
   require_at_least_zero("--drag-coefficient", ocean.drag_coefficient, "");
   require_at_least_zero("--lift-coefficient", ocean.lift_coefficient, "");
   require_finite("--flow", ocean.flow, " of m/s");
 }
 
-void validate_hooks(const OceanSimple& ocean) {
+void validate_environment(const OceanSimple& ocean) {
   require_at_least_zero("--point-drag", ocean.point_drag, " N s/m");
   require_finite("--flow", ocean.flow, " of m/s");
 }
 
-void validate_hooks(const Land& land) {
+void validate_environment(const Land& land) {
   require_at_least_zero("--friction", land.friction, "");
   require_at_least_zero("--contact-stiffness", land.contact_stiffness, " N/m");
 }
@@ -111,7 +111,7 @@ void validate(const Configuration& configuration) {
   require_at_least_zero("--stiffness-scale", stiffness_scale_of(configuration.environment), "");
   if (configuration.device.threads < 0)
     throw InputError("--threads", std::to_string(configuration.device.threads) + " is not accepted; give 0 or more");
-  std::visit([](const auto& kind) { validate_hooks(kind); }, configuration.environment);
+  std::visit([](const auto& kind) { validate_environment(kind); }, configuration.environment);
 }
 
 }  // namespace mercury

@@ -62,7 +62,7 @@ struct Snapshot {
 struct KnownExplosion {
   std::int64_t step = -1;  // of the status that it belongs to; -1 = none is known
   double at = 0;           // [s]
-  std::uint32_t first_bad_spring = no_spring;
+  std::uint32_t culprit_spring = no_spring;
 };
 
 }  // namespace
@@ -137,8 +137,8 @@ struct Simulation::Parts {
     Clock clock_then = clock;
     clock_then.step = status.exploded_step;
     const State frozen = state(robot);
-    const std::uint32_t bad_mass = mass_to_blame(*robots[robot], frozen, status.bad_mass);
-    known = {status.exploded_step, time_of(clock_then), first_bad_spring(*robots[robot], frozen.positions, bad_mass)};
+    const std::uint32_t bad_mass = culprit_mass(*robots[robot], frozen, status.bad_mass);
+    known = {status.exploded_step, time_of(clock_then), culprit_spring(*robots[robot], frozen.positions, bad_mass)};
     return known;
   }
 
@@ -147,7 +147,7 @@ struct Simulation::Parts {
     const KnownExplosion& known = explosion(robot, status);
     told.exploded = true;
     told.exploded_at = known.at;
-    told.first_bad_spring = known.first_bad_spring;
+    told.culprit_spring = known.culprit_spring;
   }
 
   // Steps of before are told by the clock of before.
@@ -203,7 +203,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
     if (kept[i]) throw std::invalid_argument("a robot can be kept only once");
     kept[i] = true;
   }
-  parts_->backend->set_pulls({});
+  parts_->backend->set_perturbations({});
   if (robots.size() == size() && std::ranges::is_sorted(robots)) return;
   Snapshot after;
   std::vector<std::unique_ptr<Robot>> bodies;
@@ -320,7 +320,7 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
 void Simulation::set_state(std::size_t robot, const State& state) {
   set_state(robot, state.positions, state.velocities);
   if (!state.exploded) return;
-  parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.first_bad_spring};
+  parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
   parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
 }
 
@@ -368,12 +368,13 @@ void Simulation::set_materials(std::span<const Material> tables) {
 
 std::vector<Material> Simulation::materials() const { return parts_->materials; }
 
-void Simulation::set_pulls(std::span<const Pull> pulls) {
-  for (const Pull& pull : pulls) {
-    parts_->require(pull.robot);
-    if (pull.mass >= parts_->masses(pull.robot)) throw std::out_of_range("a pull on a mass that the robot lacks");
+void Simulation::set_perturbations(std::span<const Perturbation> perturbations) {
+  for (const Perturbation& perturbation : perturbations) {
+    parts_->require(perturbation.robot);
+    if (perturbation.mass >= parts_->masses(perturbation.robot))
+      throw std::out_of_range("a pull on a mass that the robot lacks");
   }
-  parts_->backend->set_pulls(pulls);
+  parts_->backend->set_perturbations(perturbations);
 }
 
 }  // namespace mercury

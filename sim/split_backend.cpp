@@ -98,14 +98,14 @@ class SplitBackend final : public Backend {
     part_of(robot).write_materials(place_of(robot), table);
   }
 
-  void set_pulls(std::span<const Pull> pulls) override {
-    std::vector<std::vector<Pull>> shares(parts_.size());
-    for (Pull pull : pulls) {
-      const std::size_t p = index_of(pull.robot);
-      pull.robot -= first_robot_[p];
-      shares[p].push_back(pull);
+  void set_perturbations(std::span<const Perturbation> perturbations) override {
+    std::vector<std::vector<Perturbation>> shares(parts_.size());
+    for (Perturbation perturbation : perturbations) {
+      const std::size_t p = index_of(perturbation.robot);
+      perturbation.robot -= first_robot_[p];
+      shares[p].push_back(perturbation);
     }
-    for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_pulls(shares[p]);
+    for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_perturbations(shares[p]);
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {

@@ -65,7 +65,7 @@ class Observer {
                          .largest_strain = strain_[i],
                          .exploded = now.exploded,
                          .exploded_at = now.exploded_at,
-                         .first_bad_spring = now.first_bad_spring,
+                         .culprit_spring = now.culprit_spring,
                          .hash = simulation_.hash(i)});
     }
     return results;

@@ -25,7 +25,7 @@ render::Bounds surroundings_of(const BadSpring& spring, const Robot& robot, cons
 
 std::optional<BadSpring> bad_spring_of(const Moment& moment, std::size_t index, const Eigen::Vector3f& offset) {
   const Robot& robot = *moment.robots->robots[index].robot;
-  const std::uint32_t place = moment.telemetry[index].first_bad_spring;
+  const std::uint32_t place = moment.telemetry[index].culprit_spring;
   if (place >= robot.springs.size()) return std::nullopt;
   const Spring& spring = robot.springs[place];
   const auto positions = moment.positions_of(index);

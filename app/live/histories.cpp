@@ -9,14 +9,16 @@
 namespace mercury {
 namespace {
 
-std::vector<Pull> pulls_of(RobotId robot, const std::vector<LivePull>& all) {
-  std::vector<Pull> pulls;
-  for (const LivePull& pull : all)
-    if (pull.robot == robot) pulls.push_back({.mass = pull.mass, .target = pull.target, .stiffness = pull.stiffness});
-  return pulls;
+std::vector<Perturbation> perturbations_of(RobotId robot, const std::vector<LivePerturbation>& all) {
+  std::vector<Perturbation> perturbations;
+  for (const LivePerturbation& perturbation : all)
+    if (perturbation.robot == robot)
+      perturbations.push_back(
+          {.mass = perturbation.mass, .target = perturbation.target, .stiffness = perturbation.stiffness});
+  return perturbations;
 }
 
-bool same(const Pull& a, const Pull& b) {
+bool same(const Perturbation& a, const Perturbation& b) {
   return a.mass == b.mass && a.target == b.target && a.stiffness == b.stiffness;
 }
 
@@ -37,7 +39,7 @@ void Histories::add(Event event) {
     Event& last = events_.back();
     const bool same_kind =
         last.configuration.has_value() == event.configuration.has_value() &&
-        last.pulls.has_value() == event.pulls.has_value() &&
+        last.perturbations.has_value() == event.perturbations.has_value() &&
         (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
     if (last.step == event.step && same_kind && !event.configuration) {
       last = std::move(event);
@@ -47,7 +49,8 @@ void Histories::add(Event event) {
   events_.push_back(std::move(event));
 }
 
-void Histories::follow(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePull>& pulls) {
+void Histories::follow(const Simulation& simulation, const LiveRobots& robots,
+                       const std::vector<LivePerturbation>& perturbations) {
   const std::int64_t step = simulation.steps();
   if (!tracks_.empty() && simulation.configuration() != configuration_)
     add({.step = step, .configuration = simulation.configuration()});
@@ -68,8 +71,8 @@ void Histories::follow(const Simulation& simulation, const LiveRobots& robots, c
     track.materials = robot.materials;
   }
   tracks_ = std::move(tracks);
-  if (pulls != pulls_ && !tracks_.empty()) add({.step = step, .pulls = pulls});
-  pulls_ = pulls;
+  if (perturbations != perturbations_ && !tracks_.empty()) add({.step = step, .perturbations = perturbations});
+  perturbations_ = perturbations;
   for (const std::size_t i : fresh) {
     Track& track = tracks_.at(robots.robots[i].id);
     track.older = track.newer = start(simulation, i, track.materials);
@@ -84,7 +87,7 @@ std::shared_ptr<const Histories::Start> Histories::start(const Simulation& simul
                                              .configuration = simulation.configuration(),
                                              .materials = materials,
                                              .state = simulation.state(index),
-                                             .pulls = pulls_,
+                                             .perturbations = perturbations_,
                                              .next = first_event_ + events_.size()});
 }
 
@@ -128,12 +131,12 @@ Repro Histories::Record::repro() const {
               .configuration = start->configuration,
               .clock = start->clock,
               .state = start->state,
-              .pulls = pulls_of(robot.id, start->pulls),
+              .perturbations = perturbations_of(robot.id, start->perturbations),
               .exploded_at = telemetry.exploded_at,
-              .first_bad_spring = telemetry.first_bad_spring,
+              .culprit_spring = telemetry.culprit_spring,
               .last_step = last_step,
               .device_name = device_name};
-  std::vector<Pull> pulls = repro.pulls;
+  std::vector<Perturbation> perturbations = repro.perturbations;
   for (std::size_t i = first_event; i < events->size(); ++i) {
     const Event& event = (*events)[i];
     ReproChange change{.step = event.step, .configuration = event.configuration};
@@ -142,11 +145,11 @@ Repro Histories::Record::repro() const {
       const auto table = materials_of(then);
       change.materials.emplace(table.begin(), table.end());
     }
-    if (event.pulls) {
-      std::vector<Pull> now = pulls_of(robot.id, *event.pulls);
-      if (!std::ranges::equal(now, pulls, same)) change.pulls = pulls = std::move(now);
+    if (event.perturbations) {
+      std::vector<Perturbation> now = perturbations_of(robot.id, *event.perturbations);
+      if (!std::ranges::equal(now, perturbations, same)) change.perturbations = perturbations = std::move(now);
     }
-    if (change.configuration || change.materials || change.pulls) repro.changes.push_back(std::move(change));
+    if (change.configuration || change.materials || change.perturbations) repro.changes.push_back(std::move(change));
   }
   return repro;
 }

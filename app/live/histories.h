@@ -23,7 +23,8 @@ class Histories {
   // Time began anew.
   void restart();
   // After parameters, robots, their materials or pulls may have changed, and before the next step.
-  void follow(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePull>& pulls);
+  void follow(const Simulation& simulation, const LiveRobots& robots,
+              const std::vector<LivePerturbation>& perturbations);
   // So long was stepped since the last call [s of wall time]; no robot has exploded without repro() being asked.
   void stepped(double seconds, const Simulation& simulation, const LiveRobots& robots);
   // Of a robot that has just exploded, at that place of both; nothing if it is not known. To be put together later, on
@@ -38,7 +39,7 @@ class Histories {
     Configuration configuration;
     Materials materials;
     State state;
-    std::vector<LivePull> pulls;
+    std::vector<LivePerturbation> perturbations;
     std::uint64_t next = 0;  // number of the first event after it
   };
   struct Track {
@@ -50,7 +51,7 @@ class Histories {
     std::int64_t step = 0;
     std::optional<Configuration> configuration;
     std::optional<std::pair<RobotId, Materials>> materials;
-    std::optional<std::vector<LivePull>> pulls;
+    std::optional<std::vector<LivePerturbation>> perturbations;
   };
   static constexpr double period = 5;                    // of stepping between two states [s]
   static constexpr std::size_t most_masses = 2'000'000;  // of all robots, for new states to be kept
@@ -75,7 +76,7 @@ class Histories {
   std::uint64_t first_event_ = 0;  // number of events_[0]
   std::uint64_t sealed_ = 0;       // events before this number may not change: a start lies after them
   Configuration configuration_;
-  std::vector<LivePull> pulls_;
+  std::vector<LivePerturbation> perturbations_;
   std::shared_ptr<const std::vector<Event>> copied_;  // of all events, as long as they stay as they are
   double since_ = 0;                                  // of stepping since the last states [s]
 };

@@ -125,7 +125,7 @@ std::vector<RobotEntry> LiveScene::entries() const {
       const Telemetry& telemetry = parts.moment->telemetry[*index];
       entry.exploded = telemetry.exploded;
       entry.exploded_at = telemetry.exploded_at;
-      entry.first_bad_spring = telemetry.first_bad_spring;
+      entry.culprit_spring = telemetry.culprit_spring;
     }
     entries.push_back(std::move(entry));
   }
@@ -213,10 +213,10 @@ void LiveScene::begin_pull(const Hit& hit, float stiffness) {
   const LiveRobot& robot = parts_->moment->robots->robots[*index];
   const float suitable = suitable_stiffness(robot, parts_->document.configuration);
   const bool usable = std::isfinite(stiffness) && stiffness > 0;
-  parts_->pull = LivePull{.robot = hit.robot,
-                          .mass = hit.mass,
-                          .target = parts_->moment->positions_of(*index)[hit.mass],
-                          .stiffness = usable ? stiffness : suitable};
+  parts_->pull = LivePerturbation{.robot = hit.robot,
+                                  .mass = hit.mass,
+                                  .target = parts_->moment->positions_of(*index)[hit.mass],
+                                  .stiffness = usable ? stiffness : suitable};
   parts_->send_pull();
 }
 
@@ -242,7 +242,7 @@ void LiveScene::end_pull() {
 
 std::optional<PullFigures> LiveScene::pull() const {
   if (!parts_->pull) return std::nullopt;
-  const LivePull& pull = *parts_->pull;
+  const LivePerturbation& pull = *parts_->pull;
   const auto index = parts_->moment->robots->index_of(pull.robot);
   if (!index || *index >= parts_->picture.offsets().size()) return std::nullopt;
   const Eigen::Vector3f offset = parts_->picture.offsets()[*index];

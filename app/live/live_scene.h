@@ -47,7 +47,7 @@ struct RobotEntry {
   bool selected = false, hidden = false, tuned = false;  // tuned: has materials of its own now
   bool exploded = false;
   double exploded_at = 0;  // [s]
-  std::uint32_t first_bad_spring = no_spring;
+  std::uint32_t culprit_spring = no_spring;
 };
 
 // For one thread. Nothing waits for physics or for files; what cannot be done is told by take_messages(), and nothing

@@ -38,7 +38,7 @@ struct LiveScene::Parts {
   bool playing = false;
   std::uint64_t stops = 0;
   double speed = 1;
-  std::optional<LivePull> pull;
+  std::optional<LivePerturbation> pull;
   mutable int described = 0;  // frames until velocities are no longer read for figures
 
   Background background;  // last: its pieces end before the rest does
@@ -74,7 +74,9 @@ struct LiveScene::Parts {
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void put_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
-  void send_pull() { physics.set_pulls(pull ? std::vector<LivePull>{*pull} : std::vector<LivePull>{}); }
+  void send_pull() {
+    physics.set_perturbations(pull ? std::vector<LivePerturbation>{*pull} : std::vector<LivePerturbation>{});
+  }
 };
 
 // "1 robot", "2 robots".

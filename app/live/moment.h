@@ -50,12 +50,12 @@ struct LiveRobots {
 };
 
 // A pull on a mass by a hand: a spring of rest length 0 to a point of the robot's own frame.
-struct LivePull {
+struct LivePerturbation {
   RobotId robot = 0;
   std::uint16_t mass = 0;
   Vec3 target;           // [m]
   float stiffness = 50;  // [N/m]
-  friend bool operator==(const LivePull&, const LivePull&) = default;
+  friend bool operator==(const LivePerturbation&, const LivePerturbation&) = default;
 };
 
 struct Moment {
@@ -70,7 +70,7 @@ struct Moment {
   std::vector<Telemetry> telemetry;  // one a robot
   SceneDetails details;
   ColorBy color = ColorBy::material;  // what details.values are values of
-  std::vector<LivePull> pulls;
+  std::vector<LivePerturbation> perturbations;
 
   bool playing = false;
   double speed = 1;               // wanted, simulated seconds a second

@@ -47,8 +47,8 @@ void Physics::set_repro(const LiveRobot& robot, const Configuration& configurati
 void Physics::set_view(const ViewSettings& settings) {
   order(*parts_, [&](Orders& orders) { orders.view = settings; });
 }
-void Physics::set_pulls(std::vector<LivePull> pulls) {
-  order(*parts_, [&](Orders& orders) { orders.pulls = std::move(pulls); });
+void Physics::set_perturbations(std::vector<LivePerturbation> perturbations) {
+  order(*parts_, [&](Orders& orders) { orders.perturbations = std::move(perturbations); });
 }
 void Physics::play() {
   order(*parts_, [](Orders& orders) {

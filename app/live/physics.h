@@ -16,8 +16,8 @@ namespace mercury {
 
 struct Explosion {
   RobotId robot = 0;
-  double time = 0;                             // [s]
-  std::uint32_t first_bad_spring = no_spring;  // index in Robot::springs
+  double time = 0;                           // [s]
+  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
 };
 
 // Steps a simulation in slices of a few milliseconds and tells of it whenever somebody looks. All members are for one
@@ -42,7 +42,8 @@ class Physics {
   // does not. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
   void set_view(const ViewSettings& settings);  // what moments hold details of
-  void set_pulls(std::vector<LivePull> pulls);  // those on masses that are not there are left out
+  void set_perturbations(
+      std::vector<LivePerturbation> perturbations);  // those on masses that are not there are left out
   void play();
   void pause();
   void set_speed(double speed);   // above 0; unlimited_speed = as fast as it goes

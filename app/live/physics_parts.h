@@ -30,7 +30,7 @@ struct Orders {
   };
   std::optional<Scene> scene;
   std::optional<ViewSettings> view;
-  std::optional<std::vector<LivePull>> pulls;
+  std::optional<std::vector<LivePerturbation>> perturbations;
   std::optional<bool> playing, pause_on_explosion;
   std::optional<double> speed;
   std::int64_t steps = 0;
@@ -38,7 +38,8 @@ struct Orders {
   std::uint64_t ticket = 0;  // of the last who waits until all is done; 0 = nobody
 
   bool any() const {
-    return scene || view || pulls || playing || pause_on_explosion || speed || steps > 0 || reset || quit || ticket > 0;
+    return scene || view || perturbations || playing || pause_on_explosion || speed || steps > 0 || reset || quit ||
+           ticket > 0;
   }
 };
 
@@ -68,7 +69,7 @@ struct Physics::Parts {
   MomentPool pool;
   ViewSettings view;
   std::optional<DetailObserver> details;
-  std::vector<LivePull> pulls;
+  std::vector<LivePerturbation> perturbations;
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
   Histories histories;

@@ -7,10 +7,13 @@
 namespace mercury {
 namespace {
 
-std::vector<LivePull> live_pulls(RobotId robot, const std::vector<Pull>& pulls) {
-  std::vector<LivePull> live;
-  for (const Pull& pull : pulls)
-    live.push_back({.robot = robot, .mass = pull.mass, .target = pull.target, .stiffness = pull.stiffness});
+std::vector<LivePerturbation> live_perturbations(RobotId robot, const std::vector<Perturbation>& perturbations) {
+  std::vector<LivePerturbation> live;
+  for (const Perturbation& perturbation : perturbations)
+    live.push_back({.robot = robot,
+                    .mass = perturbation.mass,
+                    .target = perturbation.target,
+                    .stiffness = perturbation.stiffness});
   return live;
 }
 
@@ -26,10 +29,10 @@ void Physics::Parts::begin_replay() {
   simulation.configure(configuration);
   simulation.set_clock(replayed->clock);
   simulation.set_state(0, replayed->state);
-  pulls = live_pulls(robot.id, replayed->pulls);
-  simulation.set_pulls(population.pulls_of(pulls));
+  perturbations = live_perturbations(robot.id, replayed->perturbations);
+  simulation.set_perturbations(population.perturbations_of(perturbations));
   next_change = 0;
-  histories.follow(simulation, *population.robots(), pulls);
+  histories.follow(simulation, *population.robots(), perturbations);
   watch();
   begin_pace();
 }
@@ -56,10 +59,10 @@ void Physics::Parts::make_changes() {
       robot.materials = std::make_shared<const std::vector<Material>>(*change.materials);
       population.follow({robot});
     }
-    if (change.pulls) pulls = live_pulls(robot.id, *change.pulls);
+    if (change.perturbations) perturbations = live_perturbations(robot.id, *change.perturbations);
   }
-  simulation.set_pulls(population.pulls_of(pulls));
-  histories.follow(simulation, *population.robots(), pulls);
+  simulation.set_perturbations(population.perturbations_of(perturbations));
+  histories.follow(simulation, *population.robots(), perturbations);
 }
 
 }  // namespace mercury

@@ -90,7 +90,7 @@ void Physics::Parts::note_explosions(bool now) {
     }
     const std::lock_guard lock(mutex);
     if (repro) repros[robots.robots[i].id] = std::move(repro);
-    explosions.push_back({robots.robots[i].id, telemetry[i].exploded_at, telemetry[i].first_bad_spring});
+    explosions.push_back({robots.robots[i].id, telemetry[i].exploded_at, telemetry[i].culprit_spring});
   }
 }
 

@@ -67,9 +67,10 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (taken.view) view = *taken.view;
   if (taken.view || others) watch();
   if (taken.reset || (taken.scene && replayed)) begin_time();
-  if (taken.pulls) pulls = std::move(*taken.pulls);
-  if (taken.pulls || taken.scene) simulation.set_pulls(population.pulls_of(pulls));
-  if (taken.pulls || taken.scene || taken.reset) histories.follow(simulation, *population.robots(), pulls);
+  if (taken.perturbations) perturbations = std::move(*taken.perturbations);
+  if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
+  if (taken.perturbations || taken.scene || taken.reset)
+    histories.follow(simulation, *population.robots(), perturbations);
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
@@ -104,7 +105,7 @@ bool Physics::Parts::set_scene(const Orders::Scene& scene) {
   const bool other_dt = configuration.dt != simulation.configuration().dt;
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
   simulation.configure(configuration);
-  simulation.set_pulls({});
+  simulation.set_perturbations({});
   bool changed = false;
   try {
     changed = population.follow(robots);
@@ -178,9 +179,9 @@ void Physics::Parts::tell() {
   next->telemetry = telemetry;
   next->details = details ? details->observe(telemetry) : SceneDetails{};
   next->color = details ? details->color() : ColorBy::material;
-  next->pulls.clear();
-  for (const LivePull& pull : pulls)
-    if (!population.pulls_of({&pull, 1}).empty()) next->pulls.push_back(pull);
+  next->perturbations.clear();
+  for (const LivePerturbation& perturbation : perturbations)
+    if (!population.perturbations_of({&perturbation, 1}).empty()) next->perturbations.push_back(perturbation);
   next->playing = playing;
   next->speed = speed;
   next->due_at = playing && std::isfinite(speed) ? pace.done_at() : 0;

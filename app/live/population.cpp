@@ -126,12 +126,12 @@ void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arr
   if (!tables.empty()) simulation_.set_materials(tables);
 }
 
-std::vector<Pull> Population::pulls_of(std::span<const LivePull> pulls) const {
-  std::vector<Pull> known;
-  for (const LivePull& pull : pulls) {
-    const auto index = robots_->index_of(pull.robot);
-    if (index && pull.mass < robots_->robots[*index].robot->masses.size())
-      known.push_back({*index, pull.mass, pull.target, pull.stiffness});
+std::vector<Perturbation> Population::perturbations_of(std::span<const LivePerturbation> perturbations) const {
+  std::vector<Perturbation> known;
+  for (const LivePerturbation& perturbation : perturbations) {
+    const auto index = robots_->index_of(perturbation.robot);
+    if (index && perturbation.mass < robots_->robots[*index].robot->masses.size())
+      known.push_back({*index, perturbation.mass, perturbation.target, perturbation.stiffness});
   }
   return known;
 }

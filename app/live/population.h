@@ -25,7 +25,7 @@ class Population {
   void start_over();
   const std::shared_ptr<const LiveRobots>& robots() const { return robots_; }
   // Of robots and masses that are there.
-  std::vector<Pull> pulls_of(std::span<const LivePull> pulls) const;
+  std::vector<Perturbation> perturbations_of(std::span<const LivePerturbation> perturbations) const;
 
  private:
   struct Departed {

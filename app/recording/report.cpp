@@ -29,7 +29,7 @@ nlohmann::ordered_json json_of(const RobotResult& robot) {
   if (robot.exploded) {
     json["exploded_at"] = robot.exploded_at;
     json["first_bad_spring"] =
-        robot.first_bad_spring == no_spring ? nlohmann::ordered_json() : nlohmann::ordered_json(robot.first_bad_spring);
+        robot.culprit_spring == no_spring ? nlohmann::ordered_json() : nlohmann::ordered_json(robot.culprit_spring);
   }
   return json;
 }
@@ -37,7 +37,7 @@ nlohmann::ordered_json json_of(const RobotResult& robot) {
 std::string state_of(const RobotResult& robot) {
   if (!robot.exploded) return "ok";
   std::string text = fmt::format("exploded at {:.3g} s", robot.exploded_at);
-  if (robot.first_bad_spring != no_spring) text += fmt::format(", spring {}", robot.first_bad_spring);
+  if (robot.culprit_spring != no_spring) text += fmt::format(", spring {}", robot.culprit_spring);
   return text;
 }
 
@@ -83,12 +83,11 @@ std::string csv_of(const RunReport& report) {
   std::string text =
       "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash\n";
   for (const RobotResult& robot : report.robots)
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
-                    csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),
-                    robot.exploded, robot.exploded ? csv_number(robot.exploded_at) : "",
-                    robot.exploded && robot.first_bad_spring != no_spring ? fmt::to_string(robot.first_bad_spring) : "",
-                    hash_text(robot.hash));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
+                        csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),
+                        robot.exploded, robot.exploded ? csv_number(robot.exploded_at) : "",
+                        robot.exploded && robot.culprit_spring != no_spring ? fmt::to_string(robot.culprit_spring) : "",
+                        hash_text(robot.hash));
   return text;
 }
 

@@ -19,7 +19,7 @@ struct RobotResult {
   double largest_strain = 0;  // the largest of all samples [1]
   bool exploded = false;
   double exploded_at = 0;  // [s]
-  std::uint32_t first_bad_spring = no_spring;
+  std::uint32_t culprit_spring = no_spring;
   std::uint64_t hash = 0;  // of the final positions and velocities
 };
 

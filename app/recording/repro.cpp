@@ -13,7 +13,7 @@ Simulation start_of(const Repro& repro, const Device& device) {
   Simulation simulation(configuration, std::span(&repro.robot, 1));
   simulation.set_clock(repro.clock);
   simulation.set_state(0, repro.state);
-  simulation.set_pulls(repro.pulls);
+  simulation.set_perturbations(repro.perturbations);
   return simulation;
 }
 
@@ -30,7 +30,7 @@ void ReproChanges::make(Simulation& simulation) {
       std::ranges::copy(*change.materials, table.begin());
       simulation.set_materials(table);
     }
-    if (change.pulls) simulation.set_pulls(*change.pulls);
+    if (change.perturbations) simulation.set_perturbations(*change.perturbations);
   }
 }
 

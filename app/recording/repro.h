@@ -19,19 +19,19 @@ namespace mercury {
 struct ReproChange {
   std::int64_t step = 0;
   std::optional<Configuration> configuration;
-  std::optional<std::vector<Material>> materials;  // the whole table
-  std::optional<std::vector<Pull>> pulls;          // all there are from then on
+  std::optional<std::vector<Material>> materials;          // the whole table
+  std::optional<std::vector<Perturbation>> perturbations;  // all there are from then on
 };
 
 struct Repro {
-  Robot robot;                       // with its materials as at the start
-  Configuration configuration;       // at the start
-  Clock clock;                       // the start; its dt is the configuration's
-  State state;                       // at the start
-  std::vector<Pull> pulls;           // at the start
-  std::vector<ReproChange> changes;  // in order
-  double exploded_at = 0;            // [s]
-  std::uint32_t first_bad_spring = no_spring;
+  Robot robot;                              // with its materials as at the start
+  Configuration configuration;              // at the start
+  Clock clock;                              // the start; its dt is the configuration's
+  State state;                              // at the start
+  std::vector<Perturbation> perturbations;  // at the start
+  std::vector<ReproChange> changes;         // in order
+  double exploded_at = 0;                   // [s]
+  std::uint32_t culprit_spring = no_spring;
   std::int64_t last_step = 0;  // by which it has exploded
   std::string device_name;     // what ran it: on the same kind of device it happens again bit for bit
 };

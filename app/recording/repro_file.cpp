@@ -29,10 +29,12 @@ Json json_of(std::span<const Vec3> vectors) {
   return list;
 }
 
-Json json_of(std::span<const Pull> pulls) {
+Json json_of(std::span<const Perturbation> perturbations) {
   Json list = Json::array();
-  for (const Pull& pull : pulls)
-    list.push_back({{"mass", pull.mass}, {"target", json_of(pull.target)}, {"stiffness", shortest(pull.stiffness)}});
+  for (const Perturbation& perturbation : perturbations)
+    list.push_back({{"mass", perturbation.mass},
+                    {"target", json_of(perturbation.target)},
+                    {"stiffness", shortest(perturbation.stiffness)}});
   return list;
 }
 
@@ -53,7 +55,7 @@ Json json_of(const ReproChange& change, std::vector<Material>& materials) {
     json["materials"] = changes_of(materials, *change.materials);
     materials = *change.materials;
   }
-  if (change.pulls) json["pulls"] = json_of(std::span<const Pull>(*change.pulls));
+  if (change.perturbations) json["pulls"] = json_of(std::span<const Perturbation>(*change.perturbations));
   return json;
 }
 
@@ -81,17 +83,17 @@ std::int64_t step_of(const Json& json, std::int64_t least) {
   return step;
 }
 
-std::vector<Pull> pulls_of(const Json& json, const Robot& robot) {
-  std::vector<Pull> pulls;
+std::vector<Perturbation> perturbations_of(const Json& json, const Robot& robot) {
+  std::vector<Perturbation> perturbations;
   for (const Json& one : json) {
     const std::int64_t mass = step_of(one.at("mass"), 0);
     if (mass >= static_cast<std::int64_t>(robot.masses.size()))
       throw InputError(fmt::format("mass {} is out of range, the robot has {}", mass, robot.masses.size()));
-    pulls.push_back({.mass = static_cast<std::uint16_t>(mass),
-                     .target = vector_of(one.at("target")),
-                     .stiffness = number_of(one.at("stiffness"))});
+    perturbations.push_back({.mass = static_cast<std::uint16_t>(mass),
+                             .target = vector_of(one.at("target")),
+                             .stiffness = number_of(one.at("stiffness"))});
   }
-  return pulls;
+  return perturbations;
 }
 
 void change_materials(const Json& json, std::vector<Material>& materials) {
@@ -117,7 +119,7 @@ std::vector<ReproChange> changes_from(const Json& json, const Repro& repro) {
       change_materials(one["materials"], materials);
       change.materials = materials;
     }
-    if (one.contains("pulls")) change.pulls = pulls_of(one["pulls"], repro.robot);
+    if (one.contains("pulls")) change.perturbations = perturbations_of(one["pulls"], repro.robot);
     changes.push_back(std::move(change));
   }
   return changes;
@@ -142,12 +144,12 @@ Repro repro_from(const Json& json) {
   repro.clock.step = step_of(start.at("step"), repro.clock.base_step);
   repro.state.positions = vectors_of(start.at("positions"), repro.robot.masses.size());
   repro.state.velocities = vectors_of(start.at("velocities"), repro.robot.masses.size());
-  repro.pulls = pulls_of(start.at("pulls"), repro.robot);
+  repro.perturbations = perturbations_of(start.at("pulls"), repro.robot);
   repro.changes = changes_from(json.at("changes"), repro);
   const Json& exploded = json.at("exploded");
   repro.exploded_at = exploded.at("time").get<double>();
   if (exploded.contains("first_bad_spring"))
-    repro.first_bad_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
+    repro.culprit_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
   repro.last_step = step_of(exploded.at("last_step"), repro.clock.step);
   repro.device_name = json.value("device_name", "");
   return repro;
@@ -158,13 +160,13 @@ Repro repro_from(const Json& json) {
 std::string serialize_repro(const Repro& repro) {
   Json json{{"format", format}, {"version", version}};
   json["exploded"] = {{"time", repro.exploded_at}, {"last_step", repro.last_step}};
-  if (repro.first_bad_spring != no_spring) json["exploded"]["first_bad_spring"] = repro.first_bad_spring;
+  if (repro.culprit_spring != no_spring) json["exploded"]["first_bad_spring"] = repro.culprit_spring;
   json["device_name"] = repro.device_name;
   json["configuration"] = json_of(repro.configuration);
   json["start"] = {{"step", repro.clock.step},
                    {"base_step", repro.clock.base_step},
                    {"base_time", repro.clock.base_time},
-                   {"pulls", json_of(std::span<const Pull>(repro.pulls))},
+                   {"pulls", json_of(std::span<const Perturbation>(repro.perturbations))},
                    {"positions", json_of(std::span<const Vec3>(repro.state.positions))},
                    {"velocities", json_of(std::span<const Vec3>(repro.state.velocities))}};
   const auto own = materials_of(repro.robot);
@@ -173,7 +175,7 @@ std::string serialize_repro(const Repro& repro) {
   // Changes of one step are of different kinds, which do not touch each other: told in one order, however they came.
   std::vector<ReproChange> changes = repro.changes;
   std::ranges::stable_sort(changes, {}, [](const ReproChange& c) {
-    return std::pair(c.step, c.configuration ? 2 : c.pulls ? 1 : 0);
+    return std::pair(c.step, c.configuration ? 2 : c.perturbations ? 1 : 0);
   });
   for (const ReproChange& change : changes) json["changes"].push_back(json_of(change, materials));
   json["robot"] = Json::parse(serialize_robot(repro.robot, RobotFormat::json));

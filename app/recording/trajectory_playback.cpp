@@ -44,7 +44,7 @@ class Playback final : public Backend {
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     robots_->write_materials(robot, table);
   }
-  void set_pulls(std::span<const Pull>) override {}
+  void set_perturbations(std::span<const Perturbation>) override {}
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     at_present().report(clock, telemetry, statuses);
   }

@@ -188,7 +188,7 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   validate(robot);
   if (has_attribute(group, "exploded_at")) recorded.exploded_at = read_attribute<double>(group, "exploded_at");
   if (has_attribute(group, "first_bad_spring"))
-    recorded.first_bad_spring = read_attribute<std::uint32_t>(group, "first_bad_spring");
+    recorded.culprit_spring = read_attribute<std::uint32_t>(group, "first_bad_spring");
   return recorded;
 }
 

@@ -20,7 +20,7 @@ struct RecordedRobot {
   Robot robot;
   std::string group;                  // its name in /particles
   std::optional<double> exploded_at;  // [s]
-  std::optional<std::uint32_t> first_bad_spring;
+  std::optional<std::uint32_t> culprit_spring;
 };
 
 // Holds a few frames (at most 64 MB, or one frame if that is more); memory follows what the file holds, never what it

@@ -272,8 +272,8 @@ void TrajectoryWriter::finish(std::span<const Telemetry> telemetry) {
       if (!telemetry[robot].exploded) continue;
       const Handle group = open_group(particles_, groups_[robot]);
       write_attribute(group, "exploded_at", telemetry[robot].exploded_at);
-      if (telemetry[robot].first_bad_spring != no_spring)
-        write_attribute(group, "first_bad_spring", telemetry[robot].first_bad_spring);
+      if (telemetry[robot].culprit_spring != no_spring)
+        write_attribute(group, "first_bad_spring", telemetry[robot].culprit_spring);
     }
     for (Handle* group : {&particles_, &connectivity_, &parameters_}) group->close();
     checked(H5Fflush(file_, H5F_SCOPE_LOCAL));

@@ -8,7 +8,7 @@
 namespace mercury {
 
 bool has_face_forces(const Environment& environment) {
-  return std::visit([](const auto& kind) { return decltype(hooks_of(kind))::has_faces; }, environment);
+  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_faces; }, environment);
 }
 
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
@@ -20,9 +20,9 @@ FaceForce face_force(const Environment& environment, const Face& face, std::span
   FaceForce result{.center = third * (a + b + c), .area = length(area_normal)};
   std::visit(
       [&](const auto& kind) {
-        const auto hooks = hooks_of(kind);
-        if constexpr (decltype(hooks)::has_faces) {
-          const Vec3 force = hooks.on_face(area_normal, velocity);
+        const auto model = model_of(kind);
+        if constexpr (decltype(model)::has_faces) {
+          const Vec3 force = model.on_face(area_normal, velocity);
           const Vec3 flow = kind.flow - velocity;
           const float squared = dot(flow, flow);
           result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};

@@ -123,9 +123,10 @@ class CpuBackend final : public Backend {
     for (Pack& pack : packs_) pack.laws_are_stale = true;
   }
 
-  void set_pulls(std::span<const Pull> pulls) override {
-    for (Body& body : bodies_) body.pulls.clear();
-    for (const Pull& pull : pulls) bodies_[pull.robot].pulls.push_back(pull);
+  void set_perturbations(std::span<const Perturbation> perturbations) override {
+    for (Body& body : bodies_) body.perturbations.clear();
+    for (const Perturbation& perturbation : perturbations)
+      bodies_[perturbation.robot].perturbations.push_back(perturbation);
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {

@@ -58,7 +58,7 @@ void update_laws(Body& body, const Configuration& configuration) {
   }
   of_material[air] = force ? 0 : std::numeric_limits<float>::infinity();
 
-  const std::vector<std::uint32_t> at = springs_at_masses(robot);
+  const std::vector<std::uint32_t> at = valences(robot);
   const float per_scale = 1 / body.scale.correction;
   body.hardness.resize(robot.springs.size());
   for (std::size_t s = 0; s < robot.springs.size(); ++s) {

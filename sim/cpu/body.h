@@ -81,7 +81,7 @@ struct Body {
   bool rows_are_current = false;  // x_rows and v_rows
   bool written = true;            // the state came from outside and may be anything
   RobotStatus status;
-  std::vector<Pull> pulls;
+  std::vector<Perturbation> perturbations;
 
   Vec3 position(std::size_t mass) const {
     return residence.group ? residence.at(residence.x, mass) : at(x, places.of_mass[mass]);

@@ -57,7 +57,7 @@ HWY_INLINE Mask operator<=(Lanes a, Lanes b) { return {hn::Le(a.v, b.v)}; }
 HWY_INLINE Mask operator>(Lanes a, Lanes b) { return {hn::Lt(b.v, a.v)}; }
 
 HWY_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) { return a * b + c; }
-HWY_INLINE Lanes negative_multiply_add(Lanes a, Lanes b, Lanes c) { return c - a * b; }
+HWY_INLINE Lanes fnma(Lanes a, Lanes b, Lanes c) { return c - a * b; }
 HWY_INLINE Lanes absolute(Lanes a) { return hn::Abs(a.v); }
 HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
 HWY_INLINE Lanes inverse(Lanes a) { return Lanes(1.0f) / a; }

@@ -102,9 +102,9 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
   return group;
 }
 
-void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& hooks,
+void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyEnvironmentModel& model,
                std::span<const std::array<FactorId, max_materials>> factors) {
-  const OceanHooks* const ocean = std::get_if<OceanHooks>(&hooks);
+  const OceanModel* const ocean = std::get_if<OceanModel>(&model);
   std::ranges::fill(group.rest_length, 0.0f);
   std::ranges::fill(group.factor, FactorId{0});
   std::ranges::fill(group.hardness, 0.0f);
@@ -122,7 +122,7 @@ void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& ho
       group.factor[slot] = factors[member][spring.material];
     }
     if (ocean != nullptr) {
-      const OceanHooks::Coefficients coefficients = ocean->of_sums(body.scale.force);
+      const OceanModel::Coefficients coefficients = ocean->of_sums(body.scale.force);
       group.most_force[lane] = coefficients.most();
       for (const std::uint32_t pair : seating.faces) {
         group.face_drag[group.face_slots[pair] * group.lanes + lane] = coefficients.drag;
@@ -186,16 +186,16 @@ void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead) {
   }
 }
 
-void take_pulls(Lockstep& group) {
-  group.pulls.clear();
+void take_perturbations(Lockstep& group) {
+  group.perturbations.clear();
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
-    for (const Pull& pull : group.members[lane]->pulls)
-      group.pulls.push_back({group.first_of(group.seatings[lane]->seats[pull.mass], lane), pull.target,
-                             pull.stiffness * group.members[lane]->scale.force});
+    for (const Perturbation& perturbation : group.members[lane]->perturbations)
+      group.perturbations.push_back({group.first_of(group.seatings[lane]->seats[perturbation.mass], lane),
+                                     perturbation.target, perturbation.stiffness * group.members[lane]->scale.force});
 }
 
-void add_pulls(Lockstep& group) {
-  for (const auto& [first, target, stiffness] : group.pulls) {
+void add_perturbations(Lockstep& group) {
+  for (const auto& [first, target, stiffness] : group.perturbations) {
     const Vec3 units = stiffness * (target - at(group, group.x, first));
     if (fits(units)) push(group, first, units);
   }

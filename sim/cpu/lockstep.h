@@ -48,7 +48,7 @@ struct Lockstep {
   // [slot][lane], as in SpringPlan; no force where a robot has no spring
   Aligned<float> rest_length, hardness;
   Aligned<FactorId> factor;
-  // [slot of pairs of faces][lane]: OceanHooks::of_sums() in units; 0 where a robot has no such faces
+  // [slot of pairs of faces][lane]: OceanModel::of_sums() in units; 0 where a robot has no such faces
   Aligned<float> face_drag, face_lift;
 
   // [seat][x, y, z][lane]
@@ -67,12 +67,12 @@ struct Lockstep {
   std::vector<StandIn> stand_ins;
   std::int64_t steps_since_settled = 0;
 
-  struct LanePull {
+  struct LanePerturbation {
     std::size_t first = 0;  // of x
     Vec3 target;            // [m]
     float stiffness = 0;    // [units/m]
   };
-  std::vector<LanePull> pulls;
+  std::vector<LanePerturbation> perturbations;
 
   // Of each lane's robot.
   Aligned<float> force_scale, correction_scale;  // FixedPointScale
@@ -91,7 +91,7 @@ Lockstep make_lockstep(std::span<const Body> bodies, std::vector<std::size_t> me
                        bool contacts);
 
 // Takes the bodies' laws as they stand; `factors`, by body, are those of their materials.
-void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyHooks& hooks,
+void take_laws(Lockstep& group, std::span<const Body> bodies, const AnyEnvironmentModel& model,
                std::span<const std::array<FactorId, max_materials>> factors);
 
 // Takes the bodies' states, which reside here from then on; gives them back.
@@ -102,8 +102,8 @@ void store(Lockstep& group);
 void settle_stand_ins(Lockstep& group, std::int64_t steps_ahead);
 
 // Takes the members' pulls; adds their forces.
-void take_pulls(Lockstep& group);
-void add_pulls(Lockstep& group);
+void take_perturbations(Lockstep& group);
+void add_perturbations(Lockstep& group);
 
 // Lists the near pairs of these lanes' robots, one bit a lane, where they are now; adds the forces of all lanes'
 // contacts. `list` does it for a body whose masses are at body.x.

@@ -11,12 +11,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
 
-template <class Hooks>
+template <class EnvironmentModel>
 class LockstepStepper {
  public:
-  LockstepStepper(Lockstep& group, const Hooks& hooks, const StepSetting& setting)
+  LockstepStepper(Lockstep& group, const EnvironmentModel& model, const StepSetting& setting)
       : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), joints_(group.joints),
-        hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness),
+        model_(model), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness),
         force_scale_(load_aligned(group.force_scale.data())),
         correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
         per_correction_(inverse(correction_scale_)),
@@ -24,10 +24,10 @@ class LockstepStepper {
 
   // False if a robot may have exploded.
   bool step(Solver solver, const float* factors) {
-    if (!group_.pulls.empty()) add_pulls(group_);
-    if constexpr (Hooks::has_contacts)
+    if (!group_.perturbations.empty()) add_perturbations(group_);
+    if constexpr (EnvironmentModel::has_contacts)
       if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) touch();
-    if constexpr (Hooks::has_faces)
+    if constexpr (EnvironmentModel::has_faces)
       if (!add_faces()) return false;
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
   }
@@ -39,8 +39,8 @@ class LockstepStepper {
     const bool is_compact = compact(load_aligned(group_.squared_diagonal.data()));
     const bool sound = add_springs(factors, is_compact, [&](std::size_t mass, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = of_mass(x_, mass), v0 = of_mass(v_, mass);
-      Lanes3 v = accelerated_by(sum, per_force_, v0, hooks_, constants_), x = multiply_add(constants_.dt, v, x0);
-      end_step(x, v, hooks_, constants_);
+      Lanes3 v = accelerated_by(sum, per_force_, v0, model_, constants_), x = multiply_add(constants_.dt, v, x0);
+      end_step(x, v, model_, constants_);
       keep(x, v, mass);
       box.add(x);
     });
@@ -52,7 +52,7 @@ class LockstepStepper {
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t mass = 0; mass < joints_.size(); ++mass) {
-      const Lanes3 v = accelerated_by(take(mass), per_force_, of_mass(v_, mass), hooks_, constants_);
+      const Lanes3 v = accelerated_by(take(mass), per_force_, of_mass(v_, mass), model_, constants_);
       const Lanes3 x = multiply_add(constants_.dt, v, of_mass(x_, mass));
       keep(x, v, mass);
       predicted.add(x);
@@ -64,7 +64,7 @@ class LockstepStepper {
           const Lanes3 correction = per_correction_ * float_of(sum);
           Lanes3 x = of_mass(x_, mass) + correction;
           Lanes3 v = multiply_add(constants_.inverse_dt, correction, of_mass(v_, mass));
-          end_step(x, v, hooks_, constants_);
+          end_step(x, v, model_, constants_);
           keep(x, v, mass);
           box.add(x);
         });
@@ -138,14 +138,14 @@ class LockstepStepper {
   HWY_INLINE void for_each_pair_of_faces(const std::vector<Corners>& slots, const float* drag, const float* lift,
                                          const Visit& visit) const {
     const float *const x = x_, *const v = v_;
-    const Lanes3 thrice_flow{hooks_.thrice_flow.x, hooks_.thrice_flow.y, hooks_.thrice_flow.z};
+    const Lanes3 thrice_flow{model_.thrice_flow.x, model_.thrice_flow.y, model_.thrice_flow.z};
     for (const Corners& corners : slots) {
       const auto& [a, b, c, d] = corners;
       const Lanes3 xa = at(x, a);
       Lanes3 common = at(v, a) + at(v, c);
-      if constexpr (!Hooks::calm) common = common - thrice_flow;
-      visit(corners, face_forces<Hooks>(load_aligned(drag), load_aligned(lift), at(x, b) - xa, at(x, c) - xa,
-                                        at(x, d) - xa, common + at(v, b), common + at(v, d)));
+      if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
+      visit(corners, face_forces<EnvironmentModel>(load_aligned(drag), load_aligned(lift), at(x, b) - xa, at(x, c) - xa,
+                                                   at(x, d) - xa, common + at(v, b), common + at(v, d)));
       drag += lane_count;
       lift += lane_count;
     }
@@ -231,16 +231,16 @@ class LockstepStepper {
   float *const x_, *const v_;
   std::int32_t* const sums_;
   const std::vector<Lockstep::Joint>& joints_;
-  const Hooks hooks_;
+  const EnvironmentModel model_;
   const StepConstants constants_;
   const float contact_stiffness_;
   const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
 };
 
-template <class Hooks>
-bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& setting, Factors factors,
+template <class EnvironmentModel>
+bool advance_with(const EnvironmentModel& model, Lockstep& group, const StepSetting& setting, Factors factors,
                   std::int64_t steps) {
-  LockstepStepper stepper(group, hooks, setting);
+  LockstepStepper stepper(group, model, setting);
   for (std::int64_t n = 0; n < steps; ++n)
     if (!stepper.step(setting.solver, factors.of_step(n))) return false;
   return true;
@@ -248,7 +248,7 @@ bool advance_with(const Hooks& hooks, Lockstep& group, const StepSetting& settin
 
 // Kernel::advance_together.
 inline bool advance_together(Lockstep& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  return with_hooks(setting, [&](const auto& hooks) { return advance_with(hooks, group, setting, factors, steps); });
+  return with_model(setting, [&](const auto& model) { return advance_with(model, group, setting, factors, steps); });
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

@@ -33,38 +33,38 @@ inline bool note_bad(Body& body, std::size_t place) {
 
 // The velocity before damping, from a sum in units of which a newton has 1 / `per_unit`. That is a power of two, so
 // that it does not matter when it is multiplied by.
-template <class Hooks>
-HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const Hooks& hooks,
+template <class EnvironmentModel>
+HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const EnvironmentModel& model,
                                  const StepConstants& constants) {
-  if constexpr (Hooks::calm) return multiply_add(constants.dt * per_unit, float_of(sum), v);
-  return accelerated(v, per_unit * float_of(sum) + hooks.on_mass(v), constants);
+  if constexpr (EnvironmentModel::still_water) return multiply_add(constants.dt * per_unit, float_of(sum), v);
+  return accelerated(v, per_unit * float_of(sum) + model.on_mass(v), constants);
 }
-// Calls with the hooks of the environment, the calm ones if they fit.
+// Calls with the environment model, StillWaterOceanModel if it fits.
 template <class Call>
-HWY_INLINE auto with_hooks(const StepSetting& setting, const Call& call) {
+HWY_INLINE auto with_model(const StepSetting& setting, const Call& call) {
   constexpr float least_dt = 1e-6f;  // [s]; with much smaller ones a product of it with a unit would not be exact
-  const auto* const ocean = std::get_if<OceanHooks>(&setting.hooks);
-  if (ocean != nullptr && CalmOceanHooks::fits(*ocean) && setting.constants.dt >= least_dt)
-    return call(CalmOceanHooks{*ocean});
-  return std::visit(call, setting.hooks);
+  const auto* const ocean = std::get_if<OceanModel>(&setting.model);
+  if (ocean != nullptr && StillWaterOceanModel::fits(*ocean) && setting.constants.dt >= least_dt)
+    return call(StillWaterOceanModel{*ocean});
+  return std::visit(call, setting.model);
 }
 
 // One phase of a step. Masses that are collected one by one, for faces or springs in rows, are kept in rows as well.
-template <class Hooks, bool spring_rows>
+template <class EnvironmentModel, bool spring_rows>
 class Motion {
  public:
-  static constexpr bool needs_rows = Hooks::has_faces || spring_rows;
+  static constexpr bool needs_rows = EnvironmentModel::has_faces || spring_rows;
 
   // `scale`: units in a newton or, for corrections, in a metre.
-  HWY_INLINE Motion(Body& body, const Hooks& hooks, const StepConstants& constants, float scale)
-      : body_(body), arrays_(body), hooks_(hooks), constants_(constants), inverse_scale_(1 / scale), box_() {}
+  HWY_INLINE Motion(Body& body, const EnvironmentModel& model, const StepConstants& constants, float scale)
+      : body_(body), arrays_(body), model_(model), constants_(constants), inverse_scale_(1 / scale), box_() {}
 
   // Algorithm 1: the end of the step.
   HWY_INLINE void end_with_forces(std::size_t place) {
     const Lanes3 x0 = load_aligned(arrays_.x, place), v0 = load_aligned(arrays_.v, place);
-    Lanes3 v = accelerated_by(take<true>(place), inverse_scale_, v0, hooks_, constants_);
+    Lanes3 v = accelerated_by(take<true>(place), inverse_scale_, v0, model_, constants_);
     Lanes3 x = multiply_add(constants_.dt, v, x0);
-    end_step(x, v, hooks_, constants_);
+    end_step(x, v, model_, constants_);
     keep(x, v, x0, v0, place);
     box_.add(x);
     store_rows_of(x, v, place);
@@ -73,7 +73,7 @@ class Motion {
   // Algorithm 2: leaves the prediction in place of the position and v + dt F in place of the velocity.
   HWY_INLINE void predict(std::size_t place) {
     const Lanes3 x0 = load_aligned(arrays_.x, place), v0 = load_aligned(arrays_.v, place);
-    Lanes3 v = accelerated_by(take<false>(place), inverse_scale_, v0, hooks_, constants_);
+    Lanes3 v = accelerated_by(take<false>(place), inverse_scale_, v0, model_, constants_);
     Lanes3 x = multiply_add(constants_.dt, v, x0);
     keep(x, v, x0, v0, place);
     box_.add(x);
@@ -85,7 +85,7 @@ class Motion {
     const Lanes3 correction = Lanes(inverse_scale_) * float_of(take<true>(place));
     Lanes3 x = x0 + correction;
     Lanes3 v = multiply_add(constants_.inverse_dt, correction, v0);
-    end_step(x, v, hooks_, constants_);
+    end_step(x, v, model_, constants_);
     keep(x, v, x0, v0, place);
     box_.add(x);
     store_rows_of(x, v, place);
@@ -117,12 +117,12 @@ class Motion {
 
   HWY_INLINE void store_rows_of(Lanes3 x, Lanes3 v, std::size_t place) const {
     if constexpr (needs_rows) arrays_.store_x_rows(x, place);
-    if constexpr (Hooks::has_faces) arrays_.store_v_rows(v, place);
+    if constexpr (EnvironmentModel::has_faces) arrays_.store_v_rows(v, place);
   }
 
   Body& body_;
   const Arrays arrays_;
-  const Hooks hooks_;
+  const EnvironmentModel model_;
   const StepConstants constants_;
   const float inverse_scale_;
   Box box_;

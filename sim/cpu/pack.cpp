@@ -61,7 +61,7 @@ class Casting {
   std::array<FactorId, max_materials> factors_{};
 };
 
-void take_laws(Pack& pack, std::span<Body> bodies, const AnyHooks& hooks) {
+void take_laws(Pack& pack, std::span<Body> bodies, const AnyEnvironmentModel& model) {
   pack.muscles = {};
   Casting casting(pack.muscles);
   for (Lockstep& group : pack.groups) {
@@ -70,7 +70,7 @@ void take_laws(Pack& pack, std::span<Body> bodies, const AnyHooks& hooks) {
       factors.push_back(casting.factors_of(bodies[i]));
       set_factors(bodies[i], factors.back());  // if it has to be stepped alone
     }
-    if (!group.bodies.empty()) take_laws(group, bodies, hooks, factors);
+    if (!group.bodies.empty()) take_laws(group, bodies, model, factors);
   }
   for (const std::size_t i : pack.bodies) set_factors(bodies[i], casting.factors_of(bodies[i]));
   pack.laws_are_stale = false;
@@ -131,7 +131,7 @@ std::vector<Pack> pack(std::span<const Body> bodies, std::size_t threads, const 
 
 std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, const StepSetting& setting,
                     const Clock& clock, std::int64_t steps) {
-  if (pack.laws_are_stale) take_laws(pack, bodies, setting.hooks);
+  if (pack.laws_are_stale) take_laws(pack, bodies, setting.model);
   std::size_t broken = 0;
   const auto break_up_counted = [&](Lockstep& group) {
     break_up(group, pack);
@@ -144,7 +144,7 @@ std::size_t advance(const Kernel& kernel, Pack& pack, std::span<Body> bodies, co
       continue;
     }
     if (!group.resident()) load(group, bodies);
-    take_pulls(group);
+    take_perturbations(group);
   }
   pack.muscles.move_to(clock);
   const std::size_t muscles = pack.muscles.amplitude.size();

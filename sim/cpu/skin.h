@@ -21,22 +21,23 @@ struct FaceForces {
 
 // The ways from a to the other corners, and the sum of the velocities of each face's corners relative to the water;
 // of_sums() by `drag`, `lift`.
-template <class Hooks>
+template <class EnvironmentModel>
 HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 first,
                                   Lanes3 second) {
   const Lanes first_squared = inner(first, first), second_squared = inner(second, second);
-  return {Hooks::on_face(cross(to_c, to_b), first, first_squared, drag, lift),
-          Hooks::on_face(cross(to_d, to_c), second, second_squared, drag, lift), larger(first_squared, second_squared)};
+  return {EnvironmentModel::on_face(cross(to_c, to_b), first, first_squared, drag, lift),
+          EnvironmentModel::on_face(cross(to_d, to_c), second, second_squared, drag, lift),
+          larger(first_squared, second_squared)};
 }
 
-template <class Hooks>
+template <class EnvironmentModel>
 class Skin {
  public:
-  Skin(Body& body, const Hooks& hooks)
+  Skin(Body& body, const EnvironmentModel& model)
       : arrays_(body), corners_(body.faces.data()), corners_end_(corners_ + body.faces.size()),
-        coefficients_(hooks.of_sums(body.scale.force)),
+        coefficients_(model.of_sums(body.scale.force)),
         most_per_squared_speed_(coefficients_.most() * body.squared_diagonal),
-        thrice_flow_(row_in_every(hooks.thrice_flow)) {}
+        thrice_flow_(row_in_every(model.thrice_flow)) {}
 
   // Adds a third of each face's force to each of its masses. False if a force is out of range. That is looked for only
   // where no bound excludes it.
@@ -72,9 +73,9 @@ class Skin {
                                *const d = c + lane_count;
     const Rows xa = x(a);
     Rows common = v(a) + v(c);
-    if constexpr (!Hooks::calm) common = common - thrice_flow_;
-    return face_forces<Hooks>(coefficients_.drag, coefficients_.lift, vectors(x(b) - xa), vectors(x(c) - xa),
-                              vectors(x(d) - xa), vectors(common + v(b)), vectors(common + v(d)));
+    if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_;
+    return face_forces<EnvironmentModel>(coefficients_.drag, coefficients_.lift, vectors(x(b) - xa), vectors(x(c) - xa),
+                                         vectors(x(d) - xa), vectors(common + v(b)), vectors(common + v(d)));
   }
   HWY_NOINLINE bool forces_fit() const {
     Integers largest_force = no_integers();
@@ -87,7 +88,7 @@ class Skin {
 
   const Arrays arrays_;
   const std::uint32_t *const corners_, *const corners_end_;
-  const OceanHooks::Coefficients coefficients_;
+  const OceanModel::Coefficients coefficients_;
   const float most_per_squared_speed_;
   const Rows thrice_flow_;
 };

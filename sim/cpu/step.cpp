@@ -17,7 +17,8 @@ void add(Sums& sums, std::size_t place, Vec3 units) {
 StepSetting setting_of(const Configuration& configuration) {
   StepSetting setting;
   setting.solver = configuration.solver;
-  setting.hooks = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+  setting.model =
+      std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
   if (const Land* land = std::get_if<Land>(&configuration.environment))
     setting.contact.stiffness = contact_stiffness_of(*land, configuration.solver, configuration.dt);
   setting.constants = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
@@ -25,10 +26,11 @@ StepSetting setting_of(const Configuration& configuration) {
   return setting;
 }
 
-void add_pulls(Body& body) {
-  for (const Pull& pull : body.pulls) {
-    const Vec3 units = pull.stiffness * body.scale.force * (pull.target - body.position(pull.mass));
-    if (fits(units)) add(body.sums, body.places.of_mass[pull.mass], units);
+void add_perturbations(Body& body) {
+  for (const Perturbation& perturbation : body.perturbations) {
+    const Vec3 units =
+        perturbation.stiffness * body.scale.force * (perturbation.target - body.position(perturbation.mass));
+    if (fits(units)) add(body.sums, body.places.of_mass[perturbation.mass], units);
   }
 }
 

@@ -15,7 +15,7 @@ struct ContactLaw {
   float stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no self-collision
 };
 
-using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
+using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
 
 // L(t) / L0 of every muscle, step after step.
 struct Factors {
@@ -26,7 +26,7 @@ struct Factors {
 
 struct StepSetting {
   Solver solver = Solver::force;
-  AnyHooks hooks = OceanHooks(Ocean{});
+  AnyEnvironmentModel model = OceanModel(Ocean{});
   ContactLaw contact;
   StepConstants constants;
 };
@@ -34,7 +34,7 @@ struct StepSetting {
 StepSetting setting_of(const Configuration& configuration);
 
 // Adds the forces of pulls and of contacts between listed pairs to the sums.
-void add_pulls(Body& body);
+void add_perturbations(Body& body);
 void add_contacts(Body& body, float stiffness);
 // Contacts at positions(place): calls add(place, units) for both masses of a pair that touches.
 template <class Positions, class Add>

@@ -10,11 +10,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
 
-template <class Hooks, bool spring_rows>
+template <class EnvironmentModel, bool spring_rows>
 class Stepper {
  public:
-  Stepper(Body& body, const Hooks& hooks, const StepSetting& setting)
-      : body_(body), hooks_(hooks), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness) {
+  Stepper(Body& body, const EnvironmentModel& model, const StepSetting& setting)
+      : body_(body), model_(model), constants_(setting.constants), contact_stiffness_(setting.contact.stiffness) {
     if (needs_rows != body.sums.with_rows) {
       clear(body.sums);
       body.sums.with_rows = needs_rows;
@@ -26,7 +26,7 @@ class Stepper {
         arrays.store_v_rows(load_aligned(arrays.v, place), place);
       }
     }
-    body.rows_are_current = Hooks::has_faces;
+    body.rows_are_current = EnvironmentModel::has_faces;
   }
 
   // False if the robot has exploded.
@@ -35,13 +35,13 @@ class Stepper {
   }
 
  private:
-  using Moving = Motion<Hooks, spring_rows>;
+  using Moving = Motion<EnvironmentModel, spring_rows>;
   static constexpr bool needs_rows = Moving::needs_rows;
 
   // Algorithm 1.
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
-    Moving end(body_, hooks_, constants_, body_.scale.force);
+    Moving end(body_, model_, constants_, body_.scale.force);
     if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t place) HWY_ATTR { end.end_with_forces(place); }))
       return false;
     settle_stand_ins();
@@ -52,10 +52,10 @@ class Stepper {
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     if (!add_environment()) return false;
-    Moving prediction(body_, hooks_, constants_, body_.scale.force);
+    Moving prediction(body_, model_, constants_, body_.scale.force);
     for (std::size_t place = 0; place < body_.places.mass_at.size(); place += lane_count) prediction.predict(place);
     if (!prediction.finite()) return false;
-    Moving end(body_, hooks_, constants_, body_.scale.correction);
+    Moving end(body_, model_, constants_, body_.scale.correction);
     if (!add_springs(factors, prediction.squared_diagonal(),
                      [&](std::size_t place) HWY_ATTR { end.end_with_corrections(place); }))
       return false;
@@ -74,16 +74,16 @@ class Stepper {
 
   // Forces that do not depend on one mass alone.
   bool add_environment() {
-    if (!body_.pulls.empty()) add_pulls(body_);
-    if constexpr (Hooks::has_contacts) {
+    if (!body_.perturbations.empty()) add_perturbations(body_);
+    if constexpr (EnvironmentModel::has_contacts) {
       const float distance = body_.measures.contact_distance();
       if (contact_stiffness_ != 0 && distance != 0) {
         if (!body_.near_pairs.listed() || strayed(list_reach * distance)) list_near_pairs(body_);
         add_contacts(body_, contact_stiffness_);
       }
     }
-    if constexpr (Hooks::has_faces) {
-      const Skin<Hooks> skin(body_, hooks_);
+    if constexpr (EnvironmentModel::has_faces) {
+      const Skin<EnvironmentModel> skin(body_, model_);
       if (skin.add_forces()) return true;
       skin.for_each_bad_corner([&](std::size_t place) { note_bad(body_, place); });
       return false;
@@ -117,15 +117,15 @@ class Stepper {
   }
 
   Body& body_;
-  const Hooks hooks_;
+  const EnvironmentModel model_;
   const StepConstants constants_;
   const float contact_stiffness_;
 };
 
-template <class Hooks, bool spring_rows>
-std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& setting, Factors factors,
+template <class EnvironmentModel, bool spring_rows>
+std::int64_t advance_body(Body& body, const EnvironmentModel& model, const StepSetting& setting, Factors factors,
                           std::int64_t steps) {
-  Stepper<Hooks, spring_rows> stepper(body, hooks, setting);
+  Stepper<EnvironmentModel, spring_rows> stepper(body, model, setting);
   for (std::int64_t n = 0; n < steps; ++n)
     if (!stepper.step(setting.solver, factors.of_step(n))) return n;
   return steps;
@@ -133,10 +133,10 @@ std::int64_t advance_body(Body& body, const Hooks& hooks, const StepSetting& set
 
 // Kernel::advance.
 inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
-  return with_hooks(setting, [&](const auto& hooks) {
-    using Hooks = std::decay_t<decltype(hooks)>;
-    return body.springs.has_rows() ? advance_body<Hooks, true>(body, hooks, setting, factors, steps)
-                                   : advance_body<Hooks, false>(body, hooks, setting, factors, steps);
+  return with_model(setting, [&](const auto& model) {
+    using EnvironmentModel = std::decay_t<decltype(model)>;
+    return body.springs.has_rows() ? advance_body<EnvironmentModel, true>(body, model, setting, factors, steps)
+                                   : advance_body<EnvironmentModel, false>(body, model, setting, factors, steps);
   });
 }
 

@@ -40,7 +40,7 @@ class CudaBackend final : public Backend {
 
   std::size_t robots_at_once() const override {
     use_device();
-    return batch_.size() == 0 ? 0 : robots_in_flight(configuration_.solver, hooks_, shape_);
+    return batch_.size() == 0 ? 0 : robots_in_flight(configuration_.solver, model_, shape_);
   }
   double spring_limit() const override {
     use_device();
@@ -59,7 +59,8 @@ class CudaBackend final : public Backend {
     begin_change();
     configuration_ = configuration;
     batch_.configure(configuration);
-    hooks_ = std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+    model_ =
+        std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
     constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                   static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
     choose();
@@ -78,7 +79,7 @@ class CudaBackend final : public Backend {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));
       arguments.report = done + arguments.steps == steps ? report : nullptr;
-      launch_steps(configuration_.solver, hooks_, arguments, nullptr);
+      launch_steps(configuration_.solver, model_, arguments, nullptr);
     }
     end.record();
     busy_seconds_ += end.seconds_since(start);
@@ -130,9 +131,9 @@ class CudaBackend final : public Backend {
     choose();
   }
 
-  void set_pulls(std::span<const Pull> pulls) override {
+  void set_perturbations(std::span<const Perturbation> perturbations) override {
     use_device();
-    batch_.set_pulls(pulls);
+    batch_.set_perturbations(perturbations);
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
@@ -142,7 +143,7 @@ class CudaBackend final : public Backend {
     if (!report_made_) {
       StepArguments arguments = prepare(clock);
       arguments.report = reports_on_device();
-      launch_steps(configuration_.solver, hooks_, arguments, nullptr);
+      launch_steps(configuration_.solver, model_, arguments, nullptr);
       check(cudaDeviceSynchronize(), "reading telemetry");
       report_made_ = true;
     }
@@ -209,7 +210,7 @@ class CudaBackend final : public Backend {
   mutable bool report_made_ = false, report_expected_ = false;
   mutable DeviceArray<float> packed_;  // what is read of all masses
   Configuration configuration_;
-  AnyHooks hooks_ = OceanHooks(Ocean{});
+  AnyEnvironmentModel model_ = OceanModel(Ocean{});
   StepConstants constants_;
   Shape shape_;
   double busy_seconds_ = 0;
@@ -229,10 +230,10 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.group_stride = groups_of(robot);
   batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
   const Shape shape = choose_shape(configuration.solver, configuration.environment, batch, true);
-  const AnyHooks hooks =
-      std::visit([](const auto& kind) { return AnyHooks(hooks_of(kind)); }, configuration.environment);
+  const AnyEnvironmentModel model =
+      std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
   return {most_shared_bytes(), shape.on_chip, shape.on_chip && shape.contacts_on_chip,
-          robots_in_flight(configuration.solver, hooks, shape)};
+          robots_in_flight(configuration.solver, model, shape)};
 }
 
 int cuda_device_count() {

@@ -143,7 +143,7 @@ void Batch::upload(std::span<const RobotMeasures> measures) {
                      measures[i].contact_distance()};
       const std::size_t state_size = std::size_t{group_stride_} * state_rows * lanes;
       const auto groups = std::span(state).subspan(k * state_size, state_size);
-      const std::vector<std::uint32_t> at = springs_at_masses(robot);
+      const std::vector<std::uint32_t> at = valences(robot);
       for (std::uint32_t m = 0; m < robot.masses.size(); ++m) {
         const std::uint32_t slot = order.slot_of(m);
         put_vector(groups, slot, 0, robot.masses[m]);
@@ -226,13 +226,14 @@ void Batch::update_phases(const Clock& clock) {
   phases_stale_ = false;
 }
 
-void Batch::set_pulls(std::span<const Pull> pulls) {
-  std::vector<DevicePull> converted;
-  for (const Pull& pull : pulls)
-    converted.push_back(
-        {static_cast<std::uint32_t>(pull.robot), order_of(pull.robot).slot_of(pull.mass), pull.target, pull.stiffness});
-  pulls_ = DeviceArray<DevicePull>(converted.size());
-  pulls_.write(0, converted);
+void Batch::set_perturbations(std::span<const Perturbation> perturbations) {
+  std::vector<DevicePerturbation> converted;
+  for (const Perturbation& perturbation : perturbations)
+    converted.push_back({static_cast<std::uint32_t>(perturbation.robot),
+                         order_of(perturbation.robot).slot_of(perturbation.mass), perturbation.target,
+                         perturbation.stiffness});
+  perturbations_ = DeviceArray<DevicePerturbation>(converted.size());
+  perturbations_.write(0, converted);
 }
 
 void Batch::reserve_workspace(std::size_t bytes_a_robot) {
@@ -254,13 +255,13 @@ BatchView Batch::view() const {
           arrivals_.data(),
           device_materials_.data(),
           phases_.data(),
-          pulls_.data(),
+          perturbations_.data(),
           workspace_.data(),
           size(),
           group_stride_,
           row_stride_,
           face_stride_,
-          static_cast<std::uint32_t>(pulls_.size()),
+          static_cast<std::uint32_t>(perturbations_.size()),
           static_cast<std::uint32_t>(workspace_stride_),
           record_words_};
 }

@@ -27,7 +27,7 @@ class Batch {
   void set_materials(std::size_t first_robot, std::span<const Material> tables, const Configuration& configuration);
   // Brings the phases up to a clock whose base or dt is new.
   void update_phases(const Clock& clock);
-  void set_pulls(std::span<const Pull> pulls);
+  void set_perturbations(std::span<const Perturbation> perturbations);
   // Room for working memory off the chip; 0 = none.
   void reserve_workspace(std::size_t bytes_a_robot);
 
@@ -69,7 +69,7 @@ class Batch {
   DeviceArray<FacePair> face_pairs_;
   DeviceArray<Material> device_materials_;
   DeviceArray<MusclePhase> phases_;
-  DeviceArray<DevicePull> pulls_;
+  DeviceArray<DevicePerturbation> perturbations_;
   DeviceArray<std::uint64_t> device_first_mass_;
   DeviceArray<char> workspace_;
 };

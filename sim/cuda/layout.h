@@ -80,7 +80,7 @@ struct DeviceStatus {
   std::uint32_t bad_mass;  // its number, not its slot
 };
 
-struct DevicePull {
+struct DevicePerturbation {
   std::uint32_t robot, slot;
   Vec3 target;
   float stiffness;
@@ -99,9 +99,9 @@ struct BatchView {
   const std::uint32_t* arrivals;   // [robot][slot], places of the schedule whose partner a slot is
   const Material* materials;       // [robot][max_materials]
   MusclePhase* phases;             // [robot][max_materials], for the present clock base
-  const DevicePull* pulls;
+  const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
-  std::uint32_t robot_count, group_stride, row_stride, face_stride, pull_count, workspace_stride;
+  std::uint32_t robot_count, group_stride, row_stride, face_stride, perturbation_count, workspace_stride;
   std::uint32_t record_words;  // 1 or 2
 };
 

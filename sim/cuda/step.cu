@@ -11,10 +11,10 @@ namespace mercury::cuda {
 namespace {
 
 // With 72 registers a multiprocessor holds 28 warps.
-template <Solver solver, class Hooks, class Memory, int record_words>
+template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 __global__ void __maxnreg__(72)
-    step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Hooks hooks) {
-  using Stepper = RobotStepper<solver, Hooks, Memory, record_words>;
+    step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ EnvironmentModel model) {
+  using Stepper = RobotStepper<solver, EnvironmentModel, Memory, record_words>;
   const Shape& shape = arguments.shape;
   const BlockPlaces<Memory> places(arguments, Stepper::rows);
   const Seat<Memory>& seat = places.seat;
@@ -22,7 +22,7 @@ __global__ void __maxnreg__(72)
                           shape.shared_table ? threadIdx.x / lanes : seat.warp,
                           shape.shared_table ? blockDim.x / lanes : shape.warps_per_robot, seat.lane, places.table);
   materials.template fill<solver>(arguments);
-  Stepper stepper(arguments, hooks, seat, places.failure, places.contacts);
+  Stepper stepper(arguments, model, seat, places.failure, places.contacts);
   // The last block may have seats left; those and robots that exploded earlier only keep the barriers company.
   const bool seated = places.has_robot && stepper.alive();
   if (seat.warp == 0 && seat.lane == 0) *places.failure = {seated ? never : 0, never};
@@ -33,11 +33,11 @@ __global__ void __maxnreg__(72)
   int list_contacts = 1;
 
   for (std::uint32_t step = 0; step < arguments.steps; ++step) {
-    if constexpr (Hooks::has_contacts)
+    if constexpr (EnvironmentModel::has_contacts)
       if (shape.contact_buckets > 0 && list_contacts) stepper.list_contacts();
     stepper.add_environment(step);
     if constexpr (solver == Solver::xpbd) {
-      if constexpr (Hooks::has_faces || Hooks::has_contacts) __syncthreads();
+      if constexpr (EnvironmentModel::has_faces || EnvironmentModel::has_contacts) __syncthreads();
       stepper.predict(step);
       __syncthreads();
     }
@@ -46,7 +46,7 @@ __global__ void __maxnreg__(72)
     stepper.end(step);
     stepper.expect_environment();
     materials.update(arguments, step + 1);
-    if constexpr (Hooks::has_contacts)
+    if constexpr (EnvironmentModel::has_contacts)
       list_contacts = __syncthreads_or(stepper.contacts_stale());
     else
       __syncthreads();
@@ -57,17 +57,19 @@ __global__ void __maxnreg__(72)
   if (seated) stepper.store_state();
 }
 
-template <Solver solver, class Hooks, int record_words>
+template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const Shape& shape) {
   if constexpr (solver == Solver::xpbd)
-    if (shape.on_chip && !shape.splits_on_chip) return step_kernel<solver, Hooks, OnChipWithoutSplits, record_words>;
-  return shape.on_chip ? step_kernel<solver, Hooks, OnChip, record_words>
-                       : step_kernel<solver, Hooks, OffChip, record_words>;
+    if (shape.on_chip && !shape.splits_on_chip)
+      return step_kernel<solver, EnvironmentModel, OnChipWithoutSplits, record_words>;
+  return shape.on_chip ? step_kernel<solver, EnvironmentModel, OnChip, record_words>
+                       : step_kernel<solver, EnvironmentModel, OffChip, record_words>;
 }
 
-template <Solver solver, class Hooks>
+template <Solver solver, class EnvironmentModel>
 auto kernel_for(const Shape& shape) {
-  return shape.record_words == 1 ? kernel_for<solver, Hooks, 1>(shape) : kernel_for<solver, Hooks, 2>(shape);
+  return shape.record_words == 1 ? kernel_for<solver, EnvironmentModel, 1>(shape)
+                                 : kernel_for<solver, EnvironmentModel, 2>(shape);
 }
 
 template <class Kernel>
@@ -78,14 +80,14 @@ void prepare(Kernel kernel, const Shape& shape) {
         "preferring shared memory");
 }
 
-template <Solver solver, class Hooks>
-void launch(const Hooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
-  const auto kernel = kernel_for<solver, Hooks>(arguments.shape);
+template <Solver solver, class EnvironmentModel>
+void launch(const EnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream) {
+  const auto kernel = kernel_for<solver, EnvironmentModel>(arguments.shape);
   const Shape& shape = arguments.shape;
   prepare(kernel, shape);
   const std::uint32_t blocks = (arguments.batch.robot_count + shape.robots_per_block - 1) / shape.robots_per_block;
   const std::uint32_t threads = shape.robots_per_block * shape.warps_per_robot * lanes;
-  kernel<<<blocks, threads, shape.shared_bytes, stream>>>(arguments, hooks);
+  kernel<<<blocks, threads, shape.shared_bytes, stream>>>(arguments, model);
   check(cudaGetLastError(), "starting the step kernel");
 }
 
@@ -173,12 +175,12 @@ Shape choose_shape(Solver solver, const Environment& environment, const BatchVie
   return shape;
 }
 
-std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape) {
+std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const Shape& shape) {
   return std::visit(
       [&](const auto& kind) {
-        using Hooks = std::decay_t<decltype(kind)>;
-        const auto kernel =
-            solver == Solver::force ? kernel_for<Solver::force, Hooks>(shape) : kernel_for<Solver::xpbd, Hooks>(shape);
+        using EnvironmentModel = std::decay_t<decltype(kind)>;
+        const auto kernel = solver == Solver::force ? kernel_for<Solver::force, EnvironmentModel>(shape)
+                                                    : kernel_for<Solver::xpbd, EnvironmentModel>(shape);
         prepare(kernel, shape);
         int blocks = 0;
         const auto threads = static_cast<int>(shape.robots_per_block * shape.warps_per_robot * lanes);
@@ -186,7 +188,7 @@ std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape
               "asking for occupancy");
         return static_cast<std::uint32_t>(blocks) * shape.robots_per_block * device_limits().multiprocessors;
       },
-      hooks);
+      model);
 }
 
 double spring_limit(Solver solver) {
@@ -197,16 +199,17 @@ double spring_limit(Solver solver) {
   return 1e3 * kilohertz * device_limits().multiprocessors * lanes / passes;
 }
 
-void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream) {
+void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments,
+                  cudaStream_t stream) {
   std::visit(
       [&](const auto& kind) {
-        using Hooks = std::decay_t<decltype(kind)>;
+        using EnvironmentModel = std::decay_t<decltype(kind)>;
         if (solver == Solver::force)
-          launch<Solver::force, Hooks>(kind, arguments, stream);
+          launch<Solver::force, EnvironmentModel>(kind, arguments, stream);
         else
-          launch<Solver::xpbd, Hooks>(kind, arguments, stream);
+          launch<Solver::xpbd, EnvironmentModel>(kind, arguments, stream);
       },
-      hooks);
+      model);
 }
 
 }  // namespace mercury::cuda

@@ -12,7 +12,7 @@
 namespace mercury::cuda {
 
 // A robot that is stepped.
-template <Solver solver, class Hooks, class Memory, int record_words>
+template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 class RobotStepper : public BlockRobot<solver, Memory, record_words> {
   using Robot = BlockRobot<solver, Memory, record_words>;
   using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::first_group_,
@@ -21,9 +21,9 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       Robot::unit, Robot::law_of, Robot::for_each_rows;
 
  public:
-  __device__ RobotStepper(const StepArguments& arguments, const Hooks& hooks, const Seat<Memory>& seat,
+  __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model, const Seat<Memory>& seat,
                           Failure* failure, char* contacts)
-      : Robot(arguments, seat), hooks_(hooks), failure_(failure), contacts_(contacts) {}
+      : Robot(arguments, seat), model_(model), failure_(failure), contacts_(contacts) {}
 
   __device__ bool alive() const { return arguments_.batch.statuses[seat_.robot].exploded_step < 0; }
 
@@ -88,15 +88,15 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
   // Contact, faces and pulls: the forces that do not depend on one mass alone.
   __device__ void add_environment(std::uint32_t step) {
     if (failed_before(step, phase_environment)) return;
-    if (arguments_.batch.pull_count > 0 && thread() == 0) add_pulls();
-    if constexpr (Hooks::has_faces) add_faces(step);
-    if constexpr (Hooks::has_contacts)
+    if (arguments_.batch.perturbation_count > 0 && thread() == 0) add_perturbations();
+    if constexpr (EnvironmentModel::has_faces) add_faces(step);
+    if constexpr (EnvironmentModel::has_contacts)
       if (collides()) add_contacts();
   }
 
   // Reads ahead what add_environment begins with.
   __device__ void expect_environment() {
-    if constexpr (Hooks::has_faces)
+    if constexpr (EnvironmentModel::has_faces)
       if (first_face_pair() < record_.face_pairs) first_faces_ = face_pair(first_face_pair());
   }
 
@@ -115,7 +115,7 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       if (!is_mass(g)) continue;
       const Mass<Memory> mass = own(g);
       const Vec3 v = mass.vector(row_v);
-      const Vec3 force = sum_of(mass, 1 / record_.force_scale) + hooks_.on_mass(v);
+      const Vec3 force = sum_of(mass, 1 / record_.force_scale) + model_.on_mass(v);
       mass.set_sum(springs_bias(g));
       const Vec3 predicted = accelerated(v, force, arguments_.constants);
       keep(step, phase_prediction, g, multiply_add(arguments_.constants.dt, predicted, mass.vector(row_x)), predicted);
@@ -132,7 +132,7 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       Vec3 x = mass.vector(row_x), v = mass.vector(row_v);
       if constexpr (solver == Solver::force) {
         const int bias = springs_bias(g);
-        v = accelerated(v, sum_of(mass, 1 / record_.force_scale) + hooks_.on_mass(v), constants);
+        v = accelerated(v, sum_of(mass, 1 / record_.force_scale) + model_.on_mass(v), constants);
         x = multiply_add(constants.dt, v, x);
         mass.set_sum(bias);
       } else {
@@ -141,8 +141,8 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
         v = multiply_add(constants.inverse_dt, correction, v);
         mass.set_sum(0);
       }
-      end_step(x, v, hooks_, constants);
-      if constexpr (Hooks::has_contacts) farthest = fmaxf(farthest, distance_moved(mass, x));
+      end_step(x, v, model_, constants);
+      if constexpr (EnvironmentModel::has_contacts) farthest = fmaxf(farthest, distance_moved(mass, x));
       keep(step, phase_end, g, x, v);
     }
     travelled_ += farthest;
@@ -296,8 +296,8 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
       const Vec3 shared = a.vector(row_v) + c.vector(row_v);
       const float third = 1.0f / 3.0f;
       const float scale = third * record_.force_scale;
-      const Vec3 first = scale * hooks_.on_face(0.5f * cross(to_b, to_c), third * (shared + b.vector(row_v)));
-      const Vec3 second = scale * hooks_.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(row_v)));
+      const Vec3 first = scale * model_.on_face(0.5f * cross(to_b, to_c), third * (shared + b.vector(row_v)));
+      const Vec3 second = scale * model_.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(row_v)));
       if (!fits(first) || !fits(second)) {
         const SlotOrder order = slot_order(record_);
         fail(step, phase_environment,
@@ -314,12 +314,13 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
     }
   }
 
-  __device__ void add_pulls() {
-    for (std::uint32_t p = 0; p < arguments_.batch.pull_count; ++p) {
-      const DevicePull& pull = arguments_.batch.pulls[p];
-      if (pull.robot != seat_.robot) continue;
-      const Vec3 units = pull.stiffness * record_.force_scale * (pull.target - at(pull.slot).vector(row_x));
-      if (fits(units)) at(pull.slot).add_to_sum(units);
+  __device__ void add_perturbations() {
+    for (std::uint32_t p = 0; p < arguments_.batch.perturbation_count; ++p) {
+      const DevicePerturbation& perturbation = arguments_.batch.perturbations[p];
+      if (perturbation.robot != seat_.robot) continue;
+      const Vec3 units =
+          perturbation.stiffness * record_.force_scale * (perturbation.target - at(perturbation.slot).vector(row_x));
+      if (fits(units)) at(perturbation.slot).add_to_sum(units);
     }
   }
 
@@ -379,7 +380,7 @@ class RobotStepper : public BlockRobot<solver, Memory, record_words> {
     return false;
   }
 
-  const Hooks& hooks_;
+  const EnvironmentModel& model_;
   float travelled_ = 0;  // no mass of this thread has gone farther since contacts were listed
   ushort4 first_faces_{};
   Failure* const failure_;

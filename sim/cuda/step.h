@@ -23,7 +23,7 @@ struct StepArguments {
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
 };
 
-using AnyHooks = std::variant<OceanHooks, OceanSimpleHooks, LandHooks>;
+using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
 
 // The shape that keeps most robots in flight on the present device. `groups` = of the largest robot.
 Shape choose_shape(Solver solver, const Environment& environment, const BatchView& batch, bool same_materials);
@@ -32,7 +32,7 @@ Shape choose_shape(Solver solver, const Environment& environment, const BatchVie
 std::size_t most_shared_bytes();
 
 // Robots that the present device steps at the same time.
-std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape& shape);
+std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const Shape& shape);
 
 // Springs a second if only the shared memory pipe counted: a row of 32 springs takes ten passes through it (four of the
 // record, the position and the rest length, two of the material, three additions, and one more where XPBD reads
@@ -40,6 +40,6 @@ std::uint32_t robots_in_flight(Solver solver, const AnyHooks& hooks, const Shape
 double spring_limit(Solver solver);
 
 // Asynchronous; errors through cudaGetLastError.
-void launch_steps(Solver solver, const AnyHooks& hooks, const StepArguments& arguments, cudaStream_t stream);
+void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace mercury::cuda

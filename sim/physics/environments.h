@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three environments as the solvers see them. A new one is one struct with these hooks:
-//   has_faces, has_contacts, has_floor, calm what a step has to do, known at compile time
+// The three environments as the solvers see them. A new one is one struct with these functions:
+//   has_faces, has_contacts, has_floor, still_water   what a step has to do, known at compile time
 //   on_mass(v)                               force on a unit mass of velocity v [N]
 //   on_face(area_normal, v)                  force on a face, if has_faces
 //   on_face(normal, u, u.u, drag, lift)      the same with fewer multiplications, for of_sums()
@@ -18,12 +18,12 @@ MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
   return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
 
-struct OceanHooks {
-  static constexpr bool has_faces = true, has_contacts = false, has_floor = false, calm = false;
+struct OceanModel {
+  static constexpr bool has_faces = true, has_contacts = false, has_floor = false, still_water = false;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0;
 
-  explicit OceanHooks(const Ocean& ocean)
+  explicit OceanModel(const Ocean& ocean)
       : gravity(ocean.gravity), flow(ocean.flow), thrice_flow(3.0f * ocean.flow), half_density(ocean.density / 2),
         drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient) {}
 
@@ -67,17 +67,17 @@ struct OceanHooks {
 };
 
 // Water that does not flow, without gravity: nothing acts on a mass but what acts on its faces.
-struct CalmOceanHooks : OceanHooks {
-  static constexpr bool calm = true;
-  static bool fits(const OceanHooks& hooks) { return hooks.flow == Vec3{} && hooks.gravity == Vec3{}; }
+struct StillWaterOceanModel : OceanModel {
+  static constexpr bool still_water = true;
+  static bool fits(const OceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
 };
 
-struct OceanSimpleHooks {
-  static constexpr bool has_faces = false, has_contacts = false, has_floor = false, calm = false;
+struct OceanSimpleModel {
+  static constexpr bool has_faces = false, has_contacts = false, has_floor = false, still_water = false;
   Vec3 gravity, flow;
   float drag = 0;
 
-  explicit OceanSimpleHooks(const OceanSimple& ocean)
+  explicit OceanSimpleModel(const OceanSimple& ocean)
       : gravity(ocean.gravity), flow(ocean.flow), drag(ocean.point_drag) {}
 
   template <class Vector>
@@ -87,12 +87,12 @@ struct OceanSimpleHooks {
   }
 };
 
-struct LandHooks {
-  static constexpr bool has_faces = false, has_contacts = true, has_floor = true, calm = false;
+struct LandModel {
+  static constexpr bool has_faces = false, has_contacts = true, has_floor = true, still_water = false;
   Vec3 gravity;
   float friction = 0;
 
-  explicit LandHooks(const Land& land) : gravity(land.gravity), friction(land.friction) {}
+  explicit LandModel(const Land& land) : gravity(land.gravity), friction(land.friction) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
@@ -108,21 +108,18 @@ struct LandHooks {
     const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
     const auto held = friction * depth;
     const auto undone = select(moved > held, held / moved, 1.0f);
-    x = select(touched,
-               Vector{negative_multiply_add(undone, displacement.x, x.x),
-                      negative_multiply_add(undone, displacement.y, x.y), 0.0f},
-               x);
+    x = select(touched, Vector{fnma(undone, displacement.x, x.x), fnma(undone, displacement.y, x.y), 0.0f}, x);
     displacement = select(touched,
-                          Vector{negative_multiply_add(undone, displacement.x, displacement.x),
-                                 negative_multiply_add(undone, displacement.y, displacement.y), displacement.z + depth},
+                          Vector{fnma(undone, displacement.x, displacement.x),
+                                 fnma(undone, displacement.y, displacement.y), displacement.z + depth},
                           displacement);
     return touched;
   }
 };
 
-inline OceanHooks hooks_of(const Ocean& ocean) { return OceanHooks(ocean); }
-inline OceanSimpleHooks hooks_of(const OceanSimple& ocean) { return OceanSimpleHooks(ocean); }
-inline LandHooks hooks_of(const Land& land) { return LandHooks(land); }
+inline OceanModel model_of(const Ocean& ocean) { return OceanModel(ocean); }
+inline OceanSimpleModel model_of(const OceanSimple& ocean) { return OceanSimpleModel(ocean); }
+inline LandModel model_of(const Land& land) { return LandModel(land); }
 
 // Repulsion of two masses that no spring joins: the force on the first is this times d = x_second - x_first, pointing
 // away from the second, k_c (distance - |d|) / |d|; zero at and beyond the distance.

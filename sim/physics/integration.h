@@ -33,11 +33,11 @@ MERCURY_HOST_DEVICE Vector accelerated(Vector velocity, Vector force, const Step
 
 // Ends a step at position x with undamped velocity v: contact with the floor, then damping. The velocity is summed on
 // its own, never differenced from positions, whose last digit is too coarse for that.
-template <class Vector, class Hooks>
-MERCURY_HOST_DEVICE void end_step(Vector& x, Vector& v, const Hooks& hooks, const StepConstants& step) {
-  if constexpr (Hooks::has_floor) {
+template <class Vector, class EnvironmentModel>
+MERCURY_HOST_DEVICE void end_step(Vector& x, Vector& v, const EnvironmentModel& model, const StepConstants& step) {
+  if constexpr (EnvironmentModel::has_floor) {
     Vector displacement = step.dt * v;
-    const auto touched = hooks.floor(x, displacement);
+    const auto touched = model.floor(x, displacement);
     v = select(touched, step.inverse_dt * displacement, v);
   }
   v = step.zeta * v;

@@ -32,7 +32,7 @@ RobotMeasures measure(const Robot& robot) {
   return measures;
 }
 
-std::vector<std::uint32_t> springs_at_masses(const Robot& robot) {
+std::vector<std::uint32_t> valences(const Robot& robot) {
   std::vector<std::uint32_t> counts(robot.masses.size());
   for (const Spring& spring : robot.springs) {
     ++counts[spring.a];
@@ -58,7 +58,7 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
   return {power_of_two_within(range), power_of_two_within(reach * longest / (2 + compliance))};
 }
 
-std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted) {
+std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted) {
   if (noted >= state.positions.size()) {
     const auto lost = std::ranges::find_if_not(state.positions, [](Vec3 x) { return within_reach(x); });
     return lost == state.positions.end() ? noted : static_cast<std::uint32_t>(lost - state.positions.begin());
@@ -82,7 +82,7 @@ std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_
   return worst;
 }
 
-std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass) {
+std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass) {
   const auto index_of = [&](auto found) {
     return static_cast<std::uint32_t>(std::distance(robot.springs.begin(), found));
   };

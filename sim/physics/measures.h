@@ -26,7 +26,7 @@ struct RobotMeasures {
 RobotMeasures measure(const Robot& robot);
 
 // Number of springs at each mass: s of the split masses (Tonge et al. 2012).
-std::vector<std::uint32_t> springs_at_masses(const Robot& robot);
+std::vector<std::uint32_t> valences(const Robot& robot);
 
 // The finest powers of two at which no spring below the stretch limit leaves spring_limit_units.
 FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const Material> materials,
@@ -34,11 +34,11 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 
 // The spring to blame for an explosion, or no_spring: the first that `bad_mass` belongs to, if a mass left the finite,
 // else the most strained of those that are longer than the stretch limit allows, else the most strained one.
-std::uint32_t first_bad_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
+std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
 
 // `noted`, or a mass at most two faces from it that is more to blame: one that is out of reach or not finite, else the
 // fastest. A backend that finds a face's force out of range notes a mass of that face or of one beside it, whichever is
 // at hand; one that finds a spring too long may note none, and then a mass out of reach is to blame, if there is one.
-std::uint32_t mass_to_blame(const Robot& robot, const State& state, std::uint32_t noted);
+std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted);
 
 }  // namespace mercury

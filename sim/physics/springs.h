@@ -18,7 +18,7 @@ MERCURY_HOST_DEVICE auto squared_length(Vector d) {
 // is times it, too, bit for bit.
 template <class Real>
 MERCURY_HOST_DEVICE Real excess(Real squared, Real length, Real one = 1.0f) {
-  return negative_multiply_add(length, inverse_sqrt(squared), one);
+  return fnma(length, inverse_sqrt(squared), one);
 }
 
 // Eq. 2 (Hooke's law): the force on the first mass is this times d = x_second - x_first.

@@ -86,8 +86,8 @@ TEST_P(Control, BadMaterialsStatesAndPullsAreRefused) {
   EXPECT_THROW(simulation.set_materials(std::vector<Material>(3)), std::invalid_argument);
   EXPECT_THROW(simulation.set_state(0, std::vector<Vec3>(1), std::vector<Vec3>(2)), std::invalid_argument);
   EXPECT_THROW(simulation.set_state(0, std::vector<Vec3>(2), std::vector<Vec3>(3)), std::invalid_argument);
-  const Pull pull{.robot = 0, .mass = 2, .target = {}, .stiffness = 1};
-  EXPECT_THROW(simulation.set_pulls({&pull, 1}), std::out_of_range);
+  const Perturbation perturbation{.robot = 0, .mass = 2, .target = {}, .stiffness = 1};
+  EXPECT_THROW(simulation.set_perturbations({&perturbation, 1}), std::out_of_range);
   EXPECT_THROW(simulation.step(-1), std::invalid_argument);
   EXPECT_EQ(simulation.material(0, 1), (Material{50, 0, 0, 0}));
 }
@@ -130,15 +130,15 @@ TEST_P(Control, APulledMassSwingsAboutItsTargetAndIsFreeWhenLetGo) {
     Configuration setting = configuration();
     setting.solver = solver;
     Simulation simulation(setting, robots);
-    const Pull pull{.robot = 1, .mass = 0, .target = {0.1f, -0.2f, 0}, .stiffness = 40};
-    simulation.set_pulls({&pull, 1});
+    const Perturbation perturbation{.robot = 1, .mass = 0, .target = {0.1f, -0.2f, 0}, .stiffness = 40};
+    simulation.set_perturbations({&perturbation, 1});
     const double omega = std::sqrt(40.0);
     simulation.step(800);
     EXPECT_EQ(simulation.positions(0)[0], Vec3{}) << "not pulled";
     const State state = simulation.state(1);
     EXPECT_NEAR(state.positions[0].x, 0.1 * (1 - std::cos(omega * 0.8)), 1e-3);
     EXPECT_NEAR(state.positions[0].y, -0.2 * (1 - std::cos(omega * 0.8)), 2e-3);
-    simulation.set_pulls({});
+    simulation.set_perturbations({});
     simulation.step(1000);
     const State free = simulation.state(1);
     EXPECT_EQ(free.velocities[0], state.velocities[0]);
@@ -152,10 +152,11 @@ TEST_P(Control, PulledRobotsFollowTheReference) {
     const Configuration setting{.solver = solver, .device = device()};
     Simulation simulation(setting, {&robot, 1});
     reference::Reference expected(setting, robot);
-    const std::vector<Pull> pulls = {{.robot = 0, .mass = 5, .target = {0.4f, 0.1f, 0.3f}, .stiffness = 50},
-                                     {.robot = 0, .mass = 0, .target = {-0.2f, 0.1f, 0}, .stiffness = 30}};
-    simulation.set_pulls(pulls);
-    expected.set_pulls(pulls);
+    const std::vector<Perturbation> perturbations = {
+        {.robot = 0, .mass = 5, .target = {0.4f, 0.1f, 0.3f}, .stiffness = 50},
+        {.robot = 0, .mass = 0, .target = {-0.2f, 0.1f, 0}, .stiffness = 30}};
+    simulation.set_perturbations(perturbations);
+    expected.set_perturbations(perturbations);
     simulation.step(700);
     expected.step(700);
     EXPECT_LT(reference::largest_deviation(expected.positions(), simulation.positions(0)), 1e-4) << name_of(solver);

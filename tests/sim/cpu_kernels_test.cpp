@@ -67,13 +67,14 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
     std::int64_t exploded_step;
     std::uint32_t bad_mass;
   };
-  Result by_kernel(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps) const {
+  Result by_kernel(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
+                   std::int64_t steps) const {
     const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
     const Robot* const pointer = &robot;
     const Configuration told = configuration();
     backend->load({&pointer, 1}, told);
     backend->write(0, start.positions, start.velocities);
-    backend->set_pulls(pulls);
+    backend->set_perturbations(perturbations);
     Clock clock{.dt = told.dt};
     for (std::int64_t call : {std::int64_t{1}, std::int64_t{40}, steps - 41}) {
       backend->step(clock, call);
@@ -85,17 +86,19 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
     result.bad_mass = backend->status(0).bad_mass;
     return result;
   }
-  Result by_plain_loop(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps) const {
+  Result by_plain_loop(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
+                       std::int64_t steps) const {
     bench::PlainLoop loop(robot, configuration());
     loop.set_state(start);
-    loop.set_pulls(pulls);
+    loop.set_perturbations(perturbations);
     loop.step(steps);
     return {loop.state(), loop.exploded_step(), loop.bad_mass()};
   }
 
-  void expect_same(const Robot& robot, const State& start, std::span<const Pull> pulls, std::int64_t steps,
-                   const std::string& which) const {
-    const Result got = by_kernel(robot, start, pulls, steps), wanted = by_plain_loop(robot, start, pulls, steps);
+  void expect_same(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
+                   std::int64_t steps, const std::string& which) const {
+    const Result got = by_kernel(robot, start, perturbations, steps),
+                 wanted = by_plain_loop(robot, start, perturbations, steps);
     EXPECT_EQ(got.exploded_step, wanted.exploded_step) << which;
     EXPECT_EQ(got.bad_mass, wanted.bad_mass) << which;
     std::size_t different = 0;
@@ -112,8 +115,8 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     State start = bodies::shaken(robots[i], 0.01f, 0.5f, i);
     for (Vec3& x : start.positions) x.z += 0.3f;
-    const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
-    expect_same(robots[i], start, pulls, 500, "robot " + std::to_string(i));
+    const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
+    expect_same(robots[i], start, perturbations, 500, "robot " + std::to_string(i));
   }
 }
 
@@ -170,22 +173,22 @@ class CpuKernelTogether : public CpuKernel {
   }
 
   // All of them in one batch on one core, calls of 3, 45, 200 and 52 steps.
-  void expect_all_same(std::span<const Pull> pulls = {}) const {
+  void expect_all_same(std::span<const Perturbation> perturbations = {}) const {
     const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
     std::vector<const Robot*> pointers;
     for (const Robot& robot : robots) pointers.push_back(&robot);
     backend->load(pointers, configuration());
     for (std::size_t i = 0; i < robots.size(); ++i) backend->write(i, starts[i].positions, starts[i].velocities);
-    backend->set_pulls(pulls);
+    backend->set_perturbations(perturbations);
     Clock clock{.dt = configuration().dt};
     for (const std::int64_t call : {3, 45, 200, 52}) {
       backend->step(clock, call);
       clock.step += call;
     }
     for (std::size_t i = 0; i < robots.size(); ++i) {
-      std::vector<Pull> own;
-      for (const Pull& pull : pulls)
-        if (pull.robot == i) own.push_back(pull);
+      std::vector<Perturbation> own;
+      for (const Perturbation& perturbation : perturbations)
+        if (perturbation.robot == i) own.push_back(perturbation);
       const Result wanted = by_plain_loop(robots[i], starts[i], own, clock.step);
       State got{std::vector<Vec3>(built.masses.size()), std::vector<Vec3>(built.masses.size())};
       backend->read(i, got.positions, got.velocities);
@@ -217,8 +220,8 @@ TEST_P(CpuKernelTogether, AnExplosionOrAPullIsItsRobotsOwn) {
   robots[1].materials.assign(materials_of(robots[1]).begin(), materials_of(robots[1]).end());
   for (Material& material : robots[1].materials) material.stiffness *= 2e4f;  // too stiff for the time step
   robots[1].materials[air] = {};
-  const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
-  expect_all_same(pulls);
+  const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
+  expect_all_same(perturbations);
 }
 
 }  // namespace

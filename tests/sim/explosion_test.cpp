@@ -46,8 +46,8 @@ TEST_P(Explosion, IsReportedWithTimeAndFirstBadSpringAndTheRobotIsFrozenWhileIts
     const Telemetry telemetry = simulation.telemetry(1);
     ASSERT_TRUE(telemetry.exploded) << "way " << way;
     EXPECT_NEAR(telemetry.exploded_at, 0.05, 1.001e-3) << "way " << way;  // in the very next step
-    ASSERT_LT(telemetry.first_bad_spring, robots[1].springs.size());
-    const Spring& bad = robots[1].springs[telemetry.first_bad_spring];
+    ASSERT_LT(telemetry.culprit_spring, robots[1].springs.size());
+    const Spring& bad = robots[1].springs[telemetry.culprit_spring];
     EXPECT_TRUE(bad.a == victim || bad.b == victim) << "way " << way << ": " << bad.a << " - " << bad.b;
     const bool torn = std::isfinite(state.positions[victim].y) && state.positions[victim].y == 500;
     const auto strain = [&](const Spring& spring) {
@@ -57,7 +57,7 @@ TEST_P(Explosion, IsReportedWithTimeAndFirstBadSpringAndTheRobotIsFrozenWhileIts
       const Spring& spring = robots[1].springs[other];
       if (torn) {
         EXPECT_LE(strain(spring), 1.001f * strain(bad)) << "not the most strained";
-      } else if (other < telemetry.first_bad_spring) {
+      } else if (other < telemetry.culprit_spring) {
         EXPECT_FALSE(spring.a == victim || spring.b == victim) << "not the first";
       }
     }
@@ -134,7 +134,7 @@ TEST_P(Explosion, GoesWithAStateIntoAnotherSimulation) {
   const Telemetry told = other.telemetry(1), before = simulation.telemetry(1);
   EXPECT_TRUE(told.exploded);
   EXPECT_EQ(told.exploded_at, before.exploded_at);
-  EXPECT_EQ(told.first_bad_spring, before.first_bad_spring);
+  EXPECT_EQ(told.culprit_spring, before.culprit_spring);
   other.step(25);
   EXPECT_EQ(other.hash(1), simulation.hash(1)) << "it stays frozen";
   EXPECT_EQ(other.telemetry(1).exploded_at, before.exploded_at);

@@ -93,19 +93,20 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
   }
 
   // All in one batch, calls of 1 to 45 steps, beside the plain loop.
-  void expect_the_plain_loop(std::span<const Pull> pulls = {}, Vec3 flow = {}) const {
+  void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}, Vec3 flow = {}) const {
     KernelCase of = GetParam();
     of.flow = flow;
     Batch batch(of, robots);
     for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
-    batch.backend().set_pulls(pulls);
+    batch.backend().set_perturbations(perturbations);
     for (const std::int64_t call : {1, 2, 45, 7, 40, 1, 34}) batch.step(call);
     for (std::size_t i = 0; i < robots.size(); ++i) {
       bench::PlainLoop loop(robots[i], of.configuration());
       loop.set_state(starts[i]);
-      std::vector<Pull> own;
-      std::ranges::copy_if(pulls, std::back_inserter(own), [&](const Pull& pull) { return pull.robot == i; });
-      loop.set_pulls(own);
+      std::vector<Perturbation> own;
+      std::ranges::copy_if(perturbations, std::back_inserter(own),
+                           [&](const Perturbation& perturbation) { return perturbation.robot == i; });
+      loop.set_perturbations(own);
       loop.step(batch.steps());
       expect_same(batch.state(i), loop.state(), i);
       EXPECT_EQ(batch.backend().status(i).exploded_step, loop.exploded_step()) << i;
@@ -130,11 +131,11 @@ TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopAtSpeed) {
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopInACurrent) { expect_the_plain_loop({}, {0.3f, -0.2f, 1.5f}); }
 
 TEST_P(MixedBatch, WhatPullsARobotPullsNoOther) {
-  const std::vector<Pull> pulls = {{0, 0, {0.3f, 0.1f, 0.4f}, 20},
-                                   {0, 5, {0.3f, 0.1f, 0.4f}, 2},
-                                   {7, 3, {-1, 0, 0.5f}, 50},
-                                   {9, 1, {1e6f, 0, 0}, 1e6f}};
-  expect_the_plain_loop(pulls);
+  const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20},
+                                                   {0, 5, {0.3f, 0.1f, 0.4f}, 2},
+                                                   {7, 3, {-1, 0, 0.5f}, 50},
+                                                   {9, 1, {1e6f, 0, 0}, 1e6f}};
+  expect_the_plain_loop(perturbations);
 }
 
 TEST_P(MixedBatch, AnExplosionIsItsRobotsOwn) {

@@ -106,8 +106,10 @@ Field Reference::environment_forces() const {
     for (std::size_t i = 0; i < x_.size(); ++i)
       force[i] += double{simple->point_drag} * (vector_of(simple->flow) - v_[i]);
   if (const auto* land = std::get_if<Land>(&environment); land && land->self_collision) add_repulsion(*land, force);
-  for (const Pull& pull : pulls_)
-    if (pull.robot == 0) force[pull.mass] += double{pull.stiffness} * (vector_of(pull.target) - x_[pull.mass]);
+  for (const Perturbation& perturbation : perturbations_)
+    if (perturbation.robot == 0)
+      force[perturbation.mass] +=
+          double{perturbation.stiffness} * (vector_of(perturbation.target) - x_[perturbation.mass]);
   return force;
 }
 

@@ -31,7 +31,7 @@ class Reference {
   Reference(const Configuration& configuration, const Robot& robot);
 
   void set_state(const State& state);
-  void set_pulls(std::vector<Pull> pulls) { pulls_ = std::move(pulls); }
+  void set_perturbations(std::vector<Perturbation> perturbations) { perturbations_ = std::move(perturbations); }
   void step(std::int64_t steps = 1);
 
   const Field& positions() const { return x_; }
@@ -56,7 +56,7 @@ class Reference {
 
   Configuration configuration_;
   Robot robot_;
-  std::vector<Pull> pulls_;
+  std::vector<Perturbation> perturbations_;
   std::set<std::pair<int, int>> joined_;  // both orders
   std::vector<double> springs_at_;        // s, one a mass
   double contact_distance_ = 0;           // [m]

@@ -170,11 +170,11 @@ class Story {
     if (const auto at = place(2)) simulation_.set_material(*at, 7, {90, 0.05f, 3, 0});
     run(40);
     if (const auto at = place(3)) {
-      const Pull pull{*at, 4, {0.3f, 0.2f, 0.1f}, 60};
-      simulation_.set_pulls({&pull, 1});
+      const Perturbation perturbation{*at, 4, {0.3f, 0.2f, 0.1f}, 60};
+      simulation_.set_perturbations({&perturbation, 1});
     }
     run(40);
-    simulation_.set_pulls({});
+    simulation_.set_perturbations({});
     for (const std::size_t victim : {4u, 21u})
       if (const auto at = place(victim)) {
         State state = simulation_.state(*at);

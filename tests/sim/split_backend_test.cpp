@@ -23,8 +23,8 @@ TEST(SplitBackend, GivesWhatOnePartGivesForEveryRobot) {
   const Clock start;
   for (Backend* backend : {one.get(), split.get()}) {
     backend->load(pointers, {});
-    const Pull pull{.robot = 3, .mass = 1, .target = {1, 2, 3}, .stiffness = 10};
-    backend->set_pulls(std::span(&pull, 1));
+    const Perturbation perturbation{.robot = 3, .mass = 1, .target = {1, 2, 3}, .stiffness = 10};
+    backend->set_perturbations(std::span(&perturbation, 1));
     backend->step(start, 50);
   }
   std::size_t masses = 0;

@@ -39,7 +39,7 @@ TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
       EXPECT_NEAR(telemetry.elastic_energy, expected.elastic_energy(), 1e-3 * expected.elastic_energy() + 1e-12) << i;
       EXPECT_NEAR(telemetry.largest_strain, expected.largest_strain(), 1e-5) << i;
       EXPECT_FALSE(telemetry.exploded);
-      EXPECT_EQ(telemetry.first_bad_spring, no_spring);
+      EXPECT_EQ(telemetry.culprit_spring, no_spring);
       const Telemetry one = simulation.telemetry(i);
       EXPECT_EQ(one.kinetic_energy, telemetry.kinetic_energy);
       EXPECT_EQ(one.center_of_mass, telemetry.center_of_mass);

@@ -54,7 +54,7 @@ void ExplosionCard::follow(Desk& desk, const PictureArea& area, const render::Ca
   desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
   for (const Explosion& explosion : desk.scene.take_explosions())
     desk.observations.tell(
-        "exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.first_bad_spring}});
+        "exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.culprit_spring}});
   robots_ = desk.scene.exploded();
   std::erase_if(dismissed_, [&](const auto& one) {
     return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) {

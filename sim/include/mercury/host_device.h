@@ -26,7 +26,7 @@ MERCURY_HOST_DEVICE float multiply_add(float a, float b, float c) {
 }
 
 // c - a b, rounded likewise.
-MERCURY_HOST_DEVICE float negative_multiply_add(float a, float b, float c) {
+MERCURY_HOST_DEVICE float fnma(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   return __fmaf_rn(-a, b, c);
 #else

@@ -24,11 +24,11 @@ struct State {
   // As in Telemetry.
   bool exploded = false;
   double exploded_at = 0;
-  std::uint32_t first_bad_spring = no_spring;
+  std::uint32_t culprit_spring = no_spring;
 };
 
 // A pull on one mass by a spring of rest length 0 to a point in the robot's own frame, as a hand on a mouse does.
-struct Pull {
+struct Perturbation {
   std::size_t robot = 0;
   std::uint16_t mass = 0;
   Vec3 target;           // [m]
@@ -123,7 +123,7 @@ class Simulation {
   std::vector<Material> materials() const;  // the same shape
 
   // Replaces all pulls of before; empty = let go.
-  void set_pulls(std::span<const Pull> pulls);
+  void set_perturbations(std::span<const Perturbation> perturbations);
 
  private:
   struct Parts;

@@ -130,18 +130,18 @@ TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
   table[3] = material;
   Configuration changed = simulation.configuration();
   changed.dt = 6e-4;
-  repro.pulls = {{.mass = 1, .target = {0, 1, 0}, .stiffness = 25}};
+  repro.perturbations = {{.mass = 1, .target = {0, 1, 0}, .stiffness = 25}};
   repro.changes = {{.step = 150, .materials = table},
                    {.step = 170, .configuration = changed},
-                   {.step = 200, .pulls = std::vector<Pull>{}}};
+                   {.step = 200, .perturbations = std::vector<Perturbation>{}}};
   repro.last_step = 400;
-  simulation.set_pulls(repro.pulls);
+  simulation.set_perturbations(repro.perturbations);
   simulation.step(30);
   simulation.set_material(0, 3, material);
   simulation.step(20);
   simulation.configure(changed);
   simulation.step(30);
-  simulation.set_pulls({});
+  simulation.set_perturbations({});
   simulation.step(200);
   const Repro read = parse_repro(serialize_repro(repro));
   Simulation same = start_of(read, device());

@@ -126,12 +126,12 @@ TEST(LivePhysics, APullMovesTheCentreOfMassAsItsForceSays) {
   Physics physics(space, messages);
   Robot point{.name = "point", .masses = {{0, 0, 0}}};
   physics.set_scene({{.id = 7, .robot = std::make_shared<const Robot>(point)}}, space);
-  physics.set_pulls({{.robot = 7, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}, {.robot = 8, .mass = 3}});
+  physics.set_perturbations({{.robot = 7, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}, {.robot = 8, .mass = 3}});
   physics.step(1);
   physics.wait_until_done();
   // One kilogram, 20 N for 1 ms.
   EXPECT_NEAR(physics.newest()->velocities[0].x, 0.02, 1e-6);
-  ASSERT_EQ(physics.newest()->pulls.size(), 1u) << "a pull on a robot that is not there is left out";
+  ASSERT_EQ(physics.newest()->perturbations.size(), 1u) << "a pull on a robot that is not there is left out";
   physics.step(249);
   physics.wait_until_done();
   // x = 1 - cos(omega t), omega = sqrt(20); the integrator's positions are half a step ahead.
@@ -158,7 +158,7 @@ TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
   ASSERT_EQ(explosions.size(), 1u);
   EXPECT_EQ(explosions[0].robot, robots[0].id);
   EXPECT_EQ(explosions[0].time, moment->telemetry[0].exploded_at);
-  EXPECT_LT(explosions[0].first_bad_spring, robots[0].robot->springs.size());
+  EXPECT_LT(explosions[0].culprit_spring, robots[0].robot->springs.size());
   physics.step(5);
   physics.wait_until_done();
   EXPECT_TRUE(physics.take_explosions().empty());

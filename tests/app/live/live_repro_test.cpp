@@ -156,10 +156,11 @@ TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
   histories.follow(simulation, robots, {});
   for (int i = 0; i < 5; ++i) {
     simulation.step(100);
-    const std::vector<LivePull> pulls{
+    const std::vector<LivePerturbation> perturbations{
         {.robot = 4, .mass = 1, .target = {0.1f * static_cast<float>(i), 0, 1}, .stiffness = 20}};
-    simulation.set_pulls(std::vector<Pull>{{.mass = 1, .target = pulls[0].target, .stiffness = 20}});
-    histories.follow(simulation, robots, pulls);
+    simulation.set_perturbations(
+        std::vector<Perturbation>{{.mass = 1, .target = perturbations[0].target, .stiffness = 20}});
+    histories.follow(simulation, robots, perturbations);
     simulation.step(100);
     histories.stepped(6, simulation, robots);
   }

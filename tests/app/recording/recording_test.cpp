@@ -170,7 +170,7 @@ TEST_F(Recording, ExplodedRobotsAreNotedAndWhatIsNotFiniteIsKept) {
 
   TrajectoryReader reader(file());
   EXPECT_EQ(reader.robots()[0].exploded_at, wild.exploded_at);
-  EXPECT_EQ(reader.robots()[0].first_bad_spring, wild.first_bad_spring);
+  EXPECT_EQ(reader.robots()[0].culprit_spring, wild.culprit_spring);
   EXPECT_EQ(reader.robots()[1].exploded_at, std::nullopt);
   EXPECT_TRUE(same_bits(reader.positions(40), all_positions(simulation)));
 }
@@ -276,7 +276,7 @@ TEST_F(Recording, PlayedBackARobotExplodesWhenItDid) {
   }
   EXPECT_TRUE(played.telemetry(0).exploded);
   EXPECT_EQ(played.telemetry(0).exploded_at, end.exploded_at);
-  EXPECT_EQ(played.telemetry(0).first_bad_spring, end.first_bad_spring);
+  EXPECT_EQ(played.telemetry(0).culprit_spring, end.culprit_spring);
 }
 
 std::string refusal(const std::string& path) {
