@@ -13,15 +13,15 @@ packages_to_build=(
   libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev   # app
 )
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
-packages_welcome=(libosmesa6)  # drawing where EGL is missing; newer distributions have it no more
-packages_to_test=(libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
+packages_welcome=(libosmesa6)  # drawing where EGL is missing; newer distributions no longer have it
+packages_to_test=(clang-format-14 libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
 
 fail() {
   echo "$(basename "$0"): $*" >&2
   exit 1
 }
 
-# logged FILE COMMAND...: the command's output goes to build/FILE, and its end to the terminal if it fails.
+# logged FILE COMMAND...: writes the command's output to build/FILE, and prints its end if the command fails.
 logged() {
   local log=build/$1
   shift
@@ -31,8 +31,8 @@ logged() {
   fi
 }
 
-# install_missing PACKAGE...: installs by apt what dpkg does not list as installed. Silent, and without touching the
-# network, when nothing is missing.
+# install_missing PACKAGE...: installs by apt what dpkg does not list as installed. If nothing is missing, it prints
+# nothing and does not use the network.
 install_missing() {
   command -v dpkg-query >/dev/null ||
     fail "this machine has no dpkg; install what scripts/setup.sh lists under its own names, then use cmake (docs/building.md)"
@@ -58,7 +58,7 @@ install_missing() {
   logged apt-install.log "${apt[@]}" install --no-install-recommends "${missing[@]}"
 }
 
-# One compiler a core, but no more than memory holds: CGAL takes up to 2 GB each.
+# One compiler per core, but not more than fit into memory: with CGAL each takes up to 2 GB.
 build_jobs() {
   local cores gigabytes
   cores=$(nproc)
@@ -67,7 +67,7 @@ build_jobs() {
   echo $((cores < gigabytes ? cores : gigabytes))
 }
 
-# configure CMAKE-OPTION...: configures build/, for this machine where it is new, else as it was with the options on top.
+# configure CMAKE-OPTION...: configures build/ for this machine, or adds the options to a build/ that exists.
 configure() {
   mkdir -p build
   if [[ -e build/CMakeCache.txt ]]; then
@@ -77,12 +77,12 @@ configure() {
   fi
 }
 
-# This machine's GPU, or a Hopper where there is none to ask: every further architecture is another compilation.
+# This machine's GPU, or Hopper where there is none: every further architecture is another compilation.
 cuda_architectures() {
   if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then echo native; else echo 90; fi
 }
 
-# build_targets TARGET...: builds them in build/. Says so, unless no source has changed since it did.
+# build_targets TARGET...: builds them in build/. Prints a line only if a source has changed since the last time.
 build_targets() {
   local built="build/built-$*"
   if [[ ! -e $built || -n $(find CMakeLists.txt CMakePresets.json cmake sim robots render app shaders bench tests examples \

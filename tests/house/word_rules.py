@@ -14,14 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 READ = {".h", ".cpp", ".cu", ".cuh", ".in", ".py", ".md", ".txt", ".cmake", ".glsl", ".vert", ".frag", ".comp", ".sh", ""}
 EXEMPT = {"tests/house/word_rules.py", "tests/house/word_rules_test.py", "docs/glossary.md", "LICENSE"}
 
-# (pattern, what to write instead). A pattern matches whole words of prose and whole parts of an identifier:
+# (pattern, what to write instead, and if given a pattern of the paths that it is for). A pattern matches whole words of prose and whole parts of an identifier:
 # "seat" matches seat, seat_ and first_seat, not "seated by" in another word.
 WORDS = [
     # Plain English
     ("told|tells?|telling", "reports, returns, says, prints"),
     ("anew", "again, from scratch, recomputed"),
     ("so many", "that many, or the number"),
-    ("stand[- ]?ins?|empty[ _]places?", "padding, placeholder, substitute"),
+    ("stand[-_]?ins?|empty[ _]places?", "padding, placeholder, substitute"),
     ("of before", "previous"),
     ("built alike", "same topology"),
     ("(springs|steps|pictures|frames|robots) a second", "per second"),
@@ -44,7 +44,7 @@ WORDS = [
     ("culprits?", "culprit_spring"),
     ("first[ _]bad[ _]spring", "culprit_spring"),
     ("to[ _]blame", "culprit"),
-    ("bundles?", "face_tile"),
+    ("bundles?", "face_tile", r"^(sim|tests/sim|bench)/"),
     # Program and window
     ("cameram[ae]n", "CameraController"),
     ("camera[ _]hand", "OrbitController"),
@@ -57,6 +57,7 @@ WORDS = [
 ]
 # Where an old word is the right one: (pattern of the path, pattern of the line).
 ALLOWED = [
+    (r"^docs/formats\.md", r"first_bad_spring"),
     ("", r"Hooke's law|muscle law|Coulomb's law|law of|assembly language|the assembler|__asm__|inline assembly"),
     ("", r"third[- ]part(y|ies)"),
     ("", r"culprit_?spring|CulpritSpring|culprit spring"),
@@ -65,8 +66,8 @@ ALLOWED = [
 
 
 def rules():
-    for words, instead in WORDS:
-        yield re.compile(rf"(?<![A-Za-z])({words})(?![A-Za-z])", re.IGNORECASE), instead
+    for words, instead, *paths in WORDS:
+        yield re.compile(rf"(?<![A-Za-z])({words})(?![A-Za-z])", re.IGNORECASE), instead, re.compile("".join(paths))
 
 
 RULES = list(rules())
@@ -78,8 +79,8 @@ def findings_of_text(path, text):
     for number, line in enumerate(text.splitlines(), start=1):
         if any(p.search(path) and exception.search(line) for p, exception in EXCEPTIONS):
             continue
-        for pattern, instead in RULES:
-            found = pattern.search(line)
+        for pattern, instead, paths in RULES:
+            found = paths.search(path) and pattern.search(line)
             if found:
                 yield number, f"'{found.group()}': write {instead}"
 
