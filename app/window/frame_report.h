@@ -4,15 +4,15 @@
 
 #include <chrono>
 
+#include "app/window/panels/panel_context.h"
 #include "app/window/panels/performance_panel.h"
-#include "app/window/picture/desk.h"
-#include "app/window/picture/hands.h"
 #include "app/window/toolkit/window.h"
+#include "app/window/viewport/viewport_area.h"
 
 namespace mercury::window {
 
 struct ShownPicture {
-  PictureArea area;
+  ViewportArea area;
   render::Camera camera;
   double time;  // of the robots in it [s]
 };
@@ -20,17 +20,17 @@ struct ShownPicture {
 class FrameReport {
  public:
   // `dt`: since the last frame [s].
-  void tell(Desk& desk, Window& window, const ShownPicture& picture, const FrameCost& cost, double dt);
+  void write(PanelContext& context, Window& window, const ShownPicture& picture, const FrameTimes& cost, double dt);
 
  private:
-  void tell_complaints(Desk& desk, Window& window);
-  void tell_robots(Desk& desk);
+  void write_gl_messages(PanelContext& context, Window& window);
+  void write_robots(PanelContext& context);
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::int64_t frames_ = 0;
   std::uint64_t input_ = 0;  // told of last
-  double told_ = -1;         // when a frame was told of last [s]
+  double written_at_ = -1;   // when a frame was told of last [s]
   std::size_t robots_ = 0;
 };
 

@@ -15,10 +15,11 @@
 #include "app/scene/cameraman.h"
 #include "app/window/frame_report.h"
 #include "app/window/panels/panels.h"
-#include "app/window/picture/picture_text.h"
-#include "app/window/picture/screenshot.h"
-#include "app/window/toolkit/interface.h"
+#include "app/window/toolkit/imgui_layer.h"
+#include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
+#include "app/window/viewport/mouse_controller.h"
+#include "app/window/viewport/viewport_text.h"
 
 namespace mercury::window {
 namespace {
@@ -47,7 +48,7 @@ Tone tone_of(Severity severity) {
     case Severity::error:
       return Tone::error;
     default:
-      return Tone::news;
+      return Tone::info;
   }
 }
 
@@ -62,7 +63,7 @@ class Viewer {
   void fill_scene();
   void frame(double dt);
   void listen(const std::vector<InputEvent>& events);
-  void draw_picture(const PictureArea& area, double dt);
+  void draw_picture(const ViewportArea& area, double dt);
   void finish_picture();
   void take_screenshot();
   bool anything_moves() const;
@@ -72,17 +73,17 @@ class Viewer {
   ViewerOptions options_;
   std::filesystem::path folder_;  // of settings; empty = nothing is remembered
   Preferences preferences_;
-  Observations observations_;
+  EventLog log_;
   Window window_;
-  Interface interface_;
-  PictureView picture_;
+  ImGuiLayer imgui_;
+  Viewport viewport_;
   LiveScene scene_;
-  CameraHand camera_;
+  OrbitController camera_;
   Toasts toasts_;
   Dialogs dialogs_;
-  Desk desk_{scene_, camera_, preferences_, observations_, toasts_, dialogs_};
+  PanelContext context_{scene_, camera_, preferences_, log_, toasts_, dialogs_};
   Panels panels_;
-  Hands hands_;
+  MouseController mouse_{scene_, camera_, log_, toasts_};
   Screenshot screenshot_;
 
   std::uint64_t bodies_ = 0;  // revision that the renderer has
@@ -92,8 +93,8 @@ class Viewer {
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // of the robots in the picture [s]
   render::Camera shown_;    // the picture was drawn with
-  PictureArea area_{{0, 0}, {16, 9}};
-  FrameCost cost_;
+  ViewportArea area_{{0, 0}, {16, 9}};
+  FrameTimes cost_;
   Clock::time_point seen_;  // the last picture
   double seeing_ = 0;       // time that it took [s]
 };
@@ -101,10 +102,9 @@ class Viewer {
 Viewer::Viewer(ViewerOptions options)
     : options_(std::move(options)), folder_(options_.remember ? settings_folder() : std::filesystem::path()),
       preferences_(remembered(options_, folder_)),
-      observations_(options_.report.empty() ? Observations() : Observations(options_.report)),
-      window_("Mercury", preferences_.size), interface_(window_, settings("window.ini")),
-      picture_(window_.context(), preferences_.quality),
-      scene_({.configuration = options_.configuration, .view = options_.view}), panels_(desk_, window_, picture_) {
+      log_(options_.report.empty() ? EventLog() : EventLog(options_.report)), window_("Mercury", preferences_.size),
+      imgui_(window_, settings("window.ini")), viewport_(window_.gl_context(), preferences_.quality),
+      scene_({.configuration = options_.configuration, .view = options_.view}), panels_(context_, window_, viewport_) {
   remember();
   fill_scene();
 }
@@ -129,7 +129,7 @@ void Viewer::remember() {
   if (folder_.empty()) return;
   Messages messages;
   const Remembered last = load_remembered(remembered_path(), messages);
-  for (const Message& message : messages.take()) toasts_.say(tone_of(message.severity), message.text);
+  for (const Message& message : messages.take()) toasts_.show(tone_of(message.severity), message.text);
   if (options_of(options_.view).empty()) scene_.set_view(last.view);
   std::error_code unknown;
   if (std::filesystem::exists(remembered_path(), unknown)) panels_.generation() = last.generation;
@@ -140,7 +140,7 @@ void Viewer::fill_scene() {
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
   for (const Generation& generation : options_.generations) scene_.generate(generation);
-  for (const std::string& line : options_.notes) toasts_.say(Tone::news, line);
+  for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
   if (options_.playing) scene_.play();
 }
 
@@ -164,20 +164,20 @@ int Viewer::run() {
 bool Viewer::anything_moves() const {
   return redraw_ > 0 || turned_ || scene_.playing() || camera_.gliding() || camera_.mode() == CameraMode::turntable ||
          !toasts_.empty() || panels_.busy() || panels_.film().busy() || screenshot_.under_way() ||
-         !scene_.work().empty() || hands_.busy() || picture_.coarse();
+         !scene_.work().empty() || mouse_.busy() || viewport_.coarse();
 }
 
 void Viewer::listen(const std::vector<InputEvent>& events) {
   if (const auto files = window_.take_dropped_files(); !files.empty()) {
     scene_.open(files);
-    observations_.tell("dropped", {{"files", files.size()}});
+    log_.write("dropped", {{"files", files.size()}});
   }
   const bool typing = ImGui::GetIO().WantTextInput;
   for (const Press& press : presses_of(events)) {
     const std::optional<Command> command = command_of(press);
     if (dialogs_.open()) {
       if (command && command->action == Action::deselect)
-        panels_.carry_out(*command);
+        panels_.execute(*command);
       else
         dialogs_.press(press);
       continue;
@@ -188,7 +188,7 @@ void Viewer::listen(const std::vector<InputEvent>& events) {
          command->action == Action::select_all) &&
         command->action != Action::help)
       continue;
-    panels_.carry_out(*command);
+    panels_.execute(*command);
   }
 }
 
@@ -197,22 +197,22 @@ void Viewer::frame(double dt) {
   listen(events);
   const auto begin = Clock::now();
   scene_.frame(area_.aspect());
-  for (const Message& message : scene_.take_messages()) toasts_.say(tone_of(message.severity), message.text);
+  for (const Message& message : scene_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
   cost_.scene = since(begin);
   panels_.work(0.004);
   cost_.thumbnails = since(begin) - cost_.scene;
-  interface_.set_looks(scene_.view().theme, preferences_.text_scale);
+  imgui_.set_appearance(scene_.view().theme, preferences_.text_scale);
   const auto panels_begin = Clock::now();
-  interface_.begin_frame(events);
+  imgui_.begin_frame(events);
   area_ = panels_.draw_frame();
-  hands_.work(desk_, area_, shown_);
+  mouse_.update(area_, shown_);
   panels_.draw_over(area_, shown_, dt);
   // The play bar has a clock of its own.
-  draw_picture_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_, !preferences_.panels);
-  hands_.draw(desk_, area_, shown_);
+  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_, !preferences_.panels);
+  mouse_.draw(area_, shown_);
   cost_.panels = since(panels_begin);
   if (window_.input().behind() && since(seen_) < unseen_share * seeing_) {
-    interface_.end_unseen();
+    imgui_.discard_frame();
   } else {
     const auto drawing = Clock::now();
     draw_picture(area_, dt);
@@ -222,20 +222,20 @@ void Viewer::frame(double dt) {
   }
   cost_.whole = dt;
   panels_.note(cost_);
-  report_.tell(desk_, window_, {area_, shown_, shown_time_}, cost_, dt);
+  report_.write(context_, window_, {area_, shown_, shown_time_}, cost_, dt);
 }
 
-void Viewer::draw_picture(const PictureArea& area, double dt) {
+void Viewer::draw_picture(const ViewportArea& area, double dt) {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-  picture_.place(static_cast<int>(area.low.x * scale.x), static_cast<int>(area.low.y * scale.y),
-                 static_cast<int>(area.width() * scale.x), static_cast<int>(area.height() * scale.y));
+  viewport_.place(static_cast<int>(area.low.x * scale.x), static_cast<int>(area.low.y * scale.y),
+                  static_cast<int>(area.width() * scale.x), static_cast<int>(area.height() * scale.y));
   LivePicture& live = scene_.picture();
-  if (preferences_.quality != render::Quality::automatic && preferences_.quality != picture_.renderer().quality()) {
-    picture_.renderer().set_quality(preferences_.quality);
+  if (preferences_.quality != render::Quality::automatic && preferences_.quality != viewport_.renderer().quality()) {
+    viewport_.renderer().set_quality(preferences_.quality);
     redraw_ = 3;
   }
   if (bodies_ != live.bodies_revision()) {
-    live.set_bodies(picture_.renderer());
+    live.set_bodies(viewport_.renderer());
     bodies_ = live.bodies_revision();
     redraw_ = 3;
   }
@@ -253,10 +253,10 @@ void Viewer::draw_picture(const PictureArea& area, double dt) {
                       camera.field_of_view != shown_.field_of_view;
   const bool stepped = shown_steps_ != scene_.moment().steps || shown_time_ != live.scene().time;
   turned_ = turned;
-  const bool moving = turned || (stepped && scene_.playing()) || hands_.busy();
-  if (!moving && !stepped && redraw_ == 0 && !picture_.coarse()) return;
+  const bool moving = turned || (stepped && scene_.playing()) || mouse_.busy();
+  if (!moving && !stepped && redraw_ == 0 && !viewport_.coarse()) return;
   const auto begin = Clock::now();
-  picture_.draw(without_text(live.scene()), camera, moving);
+  viewport_.draw(without_text(live.scene()), camera, moving);
   cost_.picture = since(begin);
   shown_ = camera;
   shown_steps_ = scene_.moment().steps;
@@ -270,24 +270,24 @@ void Viewer::finish_picture() {
   glViewport(0, 0, pixels.width, pixels.height);
   glClearColor(0.08f, 0.10f, 0.13f, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (pixels.width > 0 && pixels.height > 0) picture_.present(pixels.height);
-  interface_.end_frame();
-  panels_.film().frame(desk_, pixels);
+  if (pixels.width > 0 && pixels.height > 0) viewport_.present(pixels.height);
+  imgui_.end_frame();
+  panels_.film().frame(context_, pixels);
   if (panels_.take_screenshot_wish()) take_screenshot();
   std::filesystem::path path;
   std::string error;
   if (screenshot_.done(path, error)) {
     if (error.empty())
-      toasts_.say(Tone::success, "picture saved: " + path.string());
+      toasts_.show(Tone::success, "picture saved: " + path.string());
     else
-      toasts_.say(Tone::error, error);
-    observations_.tell("screenshot", {{"file", path.string()}});
+      toasts_.show(Tone::error, error);
+    log_.write("screenshot", {{"file", path.string()}});
   }
   window_.show_picture();
 }
 
 void Viewer::take_screenshot() {
-  screenshot_.take(read_window(window_.pixels()), fresh_name(picture_folder(desk_), ".png"));
+  screenshot_.take(read_window(window_.pixels()), fresh_name(picture_folder(context_), ".png"));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct ViewerOptions {
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;
   WindowSize size{0, 0};           // 0 = of the last time
-  std::filesystem::path report;    // where to tell what happens (observations.h); empty = nowhere
+  std::filesystem::path report;    // where to tell what happens (log.h); empty = nowhere
   bool playing = true;             // from the start
   bool remember = true;            // settings of earlier windows are used, and kept for later ones
   std::vector<std::string> notes;  // shown at the start

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/window/toolkit/actions.h"
+#include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
@@ -36,12 +36,12 @@ void Dialogs::press(const Press& press) {
   if (open_ && is_enter(press)) accepted_ = true;
 }
 
-void Dialogs::draw(Observations& observations) {
-  files_.draw(observations);
-  draw_question(observations);
+void Dialogs::draw(EventLog& log) {
+  files_.draw(log);
+  draw_question(log);
 }
 
-void Dialogs::draw_question(Observations& observations) {
+void Dialogs::draw_question(EventLog& log) {
   if (!open_ && !shown_) return;
   const std::string id = question_.title + "###dialog";
   if (open_ && fresh_) ImGui::OpenPopup(id.c_str());
@@ -64,7 +64,7 @@ void Dialogs::draw_question(Observations& observations) {
     if (fresh_) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1);
     accepted |= text_field("##text", text_);
-    observations.item("dialog.text");
+    log.item("dialog.text");
   }
   fresh_ = false;
   const float width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
@@ -74,15 +74,15 @@ void Dialogs::draw_question(Observations& observations) {
       ImGui::GetContentRegionAvail().x - buttons * width - (buttons - 1) * ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
   const bool refused = ImGui::Button("Cancel", {width, 0}) || refused_;
-  observations.item("dialog.cancel");
+  log.item("dialog.cancel");
   ImGui::SameLine();
   if (!question_.other_button.empty()) {
     other = ImGui::Button(question_.other_button.c_str(), {width, 0});
-    observations.item("dialog.other");
+    log.item("dialog.other");
     ImGui::SameLine();
   }
   accepted |= ImGui::Button(question_.button.c_str(), {width, 0});
-  observations.item("dialog.accept");
+  log.item("dialog.accept");
   if (accepted || refused || other) {
     open_ = shown_ = accepted_ = refused_ = false;
     ImGui::CloseCurrentPopup();

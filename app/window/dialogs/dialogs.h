@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/window/dialogs/file_dialog.h"
-#include "app/window/toolkit/observations.h"
+#include "app/window/toolkit/event_log.h"
 
 namespace mercury::window {
 
@@ -38,10 +38,10 @@ class Dialogs {
   void close();
   // A key pressed while one is open.
   void press(const Press& press);
-  void draw(Observations& observations);
+  void draw(EventLog& log);
 
  private:
-  void draw_question(Observations& observations);
+  void draw_question(EventLog& log);
 
   Question question_;
   std::string text_;

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/window/toolkit/actions.h"
+#include "app/window/toolkit/key_bindings.h"
 
 namespace mercury::window {
 namespace {
@@ -25,7 +25,7 @@ bool is_path(const std::string& text) { return text.find('/') != std::string::np
 void FileDialog::ask(FileQuestion question, std::function<void(const FileAnswer&)> act) {
   question_ = std::move(question);
   act_ = std::move(act);
-  view_ = FolderView(question_.extensions);
+  view_ = FolderListing(question_.extensions);
   if (question_.folder.empty() || !view_.enter(question_.folder)) view_.enter(".");
   place_ = view_.folder().string();
   error_.clear();

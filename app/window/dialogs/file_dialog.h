@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/window/dialogs/folder_view.h"
-#include "app/window/toolkit/observations.h"
+#include "app/window/dialogs/folder_listing.h"
+#include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/window.h"
 
 namespace mercury::window {
@@ -40,14 +40,14 @@ class FileDialog {
   void close() { open_ = false; }
   // A key pressed while it is open.
   void press(const Press& press);
-  void draw(Observations& observations);
+  void draw(EventLog& log);
 
  private:
-  void draw_places(Observations& observations);
-  void draw_items(Observations& observations);
-  void draw_row(std::size_t index, Observations& observations);
-  void draw_name(Observations& observations);
-  void draw_buttons(Observations& observations);
+  void draw_places(EventLog& log);
+  void draw_items(EventLog& log);
+  void draw_row(std::size_t index, EventLog& log);
+  void draw_name(EventLog& log);
+  void draw_buttons(EventLog& log);
   void set_text(std::string text);
   void typed();
   void enter(const std::filesystem::path& folder);
@@ -59,7 +59,7 @@ class FileDialog {
 
   FileQuestion question_;
   std::function<void(const FileAnswer&)> act_;
-  FolderView view_;
+  FolderListing view_;
   std::string text_, place_, error_;  // name, folder as they are typed; why nothing came of them
   int text_edition_ = 0;              // counts what was put into the name's field by us
   int format_ = 0;

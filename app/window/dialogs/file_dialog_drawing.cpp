@@ -60,7 +60,7 @@ void label(const char* text, float width) {
 
 }  // namespace
 
-void FileDialog::draw(Observations& observations) {
+void FileDialog::draw(EventLog& log) {
   if (!open_ && !shown_) return;
   const std::string id = question_.title + "###files";
   if (open_ && fresh_) {
@@ -80,10 +80,10 @@ void FileDialog::draw(Observations& observations) {
   }
   shown_ = open_;
   if (open_) {
-    draw_places(observations);
-    draw_items(observations);
-    draw_name(observations);
-    draw_buttons(observations);
+    draw_places(log);
+    draw_items(log);
+    draw_name(log);
+    draw_buttons(log);
     if (std::exchange(entered_, false)) {
       if (place_active_)
         enter(typed_path(view_.folder(), place_));
@@ -100,30 +100,30 @@ void FileDialog::draw(Observations& observations) {
   if (std::exchange(answered_, false)) act_(answer_);
 }
 
-void FileDialog::draw_places(Observations& observations) {
+void FileDialog::draw_places(EventLog& log) {
   if (ImGui::Button("Up")) go_up();
-  observations.item("files.up");
-  hint("the folder above (Backspace where no name is typed)");
+  log.item("files.up");
+  tooltip("the folder above (Backspace where no name is typed)");
   ImGui::SameLine();
   if (const char* home = std::getenv("HOME"); home && *home) {
     if (ImGui::Button("Home")) enter(home);
-    observations.item("files.home");
+    log.item("files.home");
     ImGui::SameLine();
   }
   if (ImGui::Button("Start")) enter(fs::current_path());
-  observations.item("files.start");
-  hint("the folder that the program was started in");
+  log.item("files.start");
+  tooltip("the folder that the program was started in");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID(view_.folder().string().c_str());
   text_field("##place", place_);
   place_active_ = ImGui::IsItemActive() || (place_active_ && entered_);
   ImGui::PopID();
-  observations.item("files.place");
-  hint("a folder's name, then Enter");
+  log.item("files.place");
+  tooltip("a folder's name, then Enter");
 }
 
-void FileDialog::draw_items(Observations& observations) {
+void FileDialog::draw_items(EventLog& log) {
   const float lines = (error_.empty() ? 2.0f : 3.0f) + (question_.formats.empty() ? 0.0f : 1.0f) +
                       (question_.kind == Kind::folder ? 1.0f : 0.0f);
   const float height = ImGui::GetContentRegionAvail().y - lines * ImGui::GetFrameHeightWithSpacing();
@@ -139,7 +139,7 @@ void FileDialog::draw_items(Observations& observations) {
                           9 * text);
   ImGui::TableHeadersRow();
   if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0)
-    view_.sort(static_cast<FolderView::Order>(specs->Specs[0].ColumnIndex),
+    view_.sort(static_cast<FolderListing::Order>(specs->Specs[0].ColumnIndex),
                specs->Specs[0].SortDirection == ImGuiSortDirection_Descending);
   const float row_height = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   if (std::exchange(reveal_, false) && view_.cursor()) {
@@ -155,18 +155,18 @@ void FileDialog::draw_items(Observations& observations) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       // A click may have gone to another folder.
       if (static_cast<std::size_t>(i) < view_.items().size() && view_.folder() == folder)
-        draw_row(static_cast<std::size_t>(i), observations);
+        draw_row(static_cast<std::size_t>(i), log);
   ImGui::EndTable();
 }
 
-void FileDialog::draw_row(std::size_t index, Observations& observations) {
+void FileDialog::draw_row(std::size_t index, EventLog& log) {
   const FolderItem item = view_.items()[index];
   ImGui::PushID(static_cast<int>(index));
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   const bool clicked = ImGui::Selectable("##row", item.marked,
                                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
-  if (index < 20) observations.item(fmt::format("file.{}", item.name));
+  if (index < 20) log.item(fmt::format("file.{}", item.name));
   ImGui::SameLine(0, 0);
   sign(item.folder);
   const bool dim = !item.folder && question_.kind == Kind::folder;
@@ -183,7 +183,7 @@ void FileDialog::draw_row(std::size_t index, Observations& observations) {
   if (clicked) click(index);
 }
 
-void FileDialog::draw_name(Observations& observations) {
+void FileDialog::draw_name(EventLog& log) {
   if (!error_.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
     ImGui::TextUnformatted(shortened(error_, ImGui::GetContentRegionAvail().x, true).c_str());
@@ -200,8 +200,8 @@ void FileDialog::draw_name(Observations& observations) {
   ImGui::PushID(text_edition_);
   text_field("##name", text_, wanted[kind]);
   ImGui::PopID();
-  observations.item("dialog.text");
-  if (question_.kind != Kind::open) hint("folders that are missing are made");
+  log.item("dialog.text");
+  if (question_.kind != Kind::open) tooltip("folders that are missing are made");
   if (text_ != before) typed();
   if (question_.kind == Kind::folder)
     note(shortened(
@@ -213,11 +213,11 @@ void FileDialog::draw_name(Observations& observations) {
   if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) &&
       question_.kind == Kind::save)
     set_text(fs::path(text_).replace_extension(question_.extensions[static_cast<std::size_t>(format_)]).string());
-  observations.item("files.format");
-  hint("JSON can be read by people; CBOR is the same, and smaller");
+  log.item("files.format");
+  tooltip("JSON can be read by people; CBOR is the same, and smaller");
 }
 
-void FileDialog::draw_buttons(Observations& observations) {
+void FileDialog::draw_buttons(EventLog& log) {
   const float text = ImGui::GetFontSize(),
               width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
   if (question_.kind == Kind::open) {
@@ -228,20 +228,20 @@ void FileDialog::draw_buttons(Observations& observations) {
         if (!item.folder) all.push_back(view_.folder() / item.name);
       finish(std::move(all));
     }
-    observations.item("files.all");
+    log.item("files.all");
     ImGui::EndDisabled();
-    hint("opens every file of this folder that the name leaves in the list");
+    tooltip("opens every file of this folder that the name leaves in the list");
     ImGui::SameLine();
   }
   const float room = ImGui::GetContentRegionAvail().x - 2 * width - ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
   if (ImGui::Button("Cancel", {width, 0})) open_ = false;
-  observations.item("files.cancel");
+  log.item("files.cancel");
   ImGui::SameLine();
   const std::vector<FolderItem> marked = view_.marked();
   const bool into = marked.size() == 1 && marked.front().folder;
   if (ImGui::Button(into ? "Open folder###accept" : (question_.button + "###accept").c_str(), {width, 0})) accept();
-  observations.item("files.accept");
+  log.item("files.accept");
 }
 
 }  // namespace mercury::window

@@ -15,12 +15,12 @@
 namespace mercury::window {
 namespace {
 
-std::string figures_of(const FolderEntry& entry) {
+std::string figures_of(const RobotFolderEntry& entry) {
   return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs,
                      entry.figures.extent.x, entry.figures.extent.y, entry.figures.extent.z);
 }
 
-void tooltip(const FolderEntry& entry) {
+void tooltip(const RobotFolderEntry& entry) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(26 * ImGui::GetFontSize());
   ImGui::TextUnformatted(entry.path.filename().string().c_str());
@@ -53,24 +53,24 @@ void BrowserPanel::show_folder(const std::filesystem::path& folder) {
   typed_ = folder.string();
   reader_.reset();
   if (!folder.empty()) {
-    reader_ = std::make_unique<FolderReader>(folder);
+    reader_ = std::make_unique<RobotFolderReader>(folder);
     return;
   }
   for (Robot& robot : sample_robots("")) {
-    FolderEntry entry{.path = robot.name, .figures = inspect(robot)};
+    RobotFolderEntry entry{.path = robot.name, .figures = inspect(robot)};
     entry.robot = std::make_shared<Robot>(std::move(robot));
     entries_.push_back(std::move(entry));
   }
 }
 
-void BrowserPanel::draw_bar(Desk& desk) {
-  std::string& folder = desk.preferences.folder;
+void BrowserPanel::draw_bar(PanelContext& context) {
+  std::string& folder = context.preferences.folder;
   if (ImGui::Button("Samples")) folder.clear();
-  desk.observations.item("browser.samples");
-  hint("the robots that come with the program");
+  context.log.item("browser.samples");
+  tooltip("the robots that come with the program");
   ImGui::SameLine();
   if (ImGui::Button("Folder...")) {
-    desk.dialogs.ask_files(
+    context.dialogs.ask_files(
         {.kind = FileQuestion::Kind::folder,
          .title = "Folder of robots",
          .button = "Show",
@@ -78,14 +78,14 @@ void BrowserPanel::draw_bar(Desk& desk) {
          .folder = folder,
          .name = "",
          .formats = {}},
-        [&desk](const FileAnswer& answer) { desk.preferences.folder = answer.paths.front().string(); });
+        [&context](const FileAnswer& answer) { context.preferences.folder = answer.paths.front().string(); });
   }
-  desk.observations.item("browser.choose");
-  hint("shows the robots of a folder");
+  context.log.item("browser.choose");
+  tooltip("shows the robots of a folder");
   ImGui::SetNextItemWidth(-1);
   if (text_field("##folder", typed_, "sample robots; or a folder") && !typed_.empty()) folder = typed_;
-  desk.observations.item("browser.folder");
-  hint("type a folder's name, then Enter");
+  context.log.item("browser.folder");
+  tooltip("type a folder's name, then Enter");
   if (!reader_) return;
   if (!reader_->error().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
@@ -104,23 +104,23 @@ void BrowserPanel::draw_bar(Desk& desk) {
   }
 }
 
-void BrowserPanel::draw(Desk& desk) {
-  theme_ = desk.scene.view().theme;
-  draw_bar(desk);
-  const bool shown = reader_ ? reader_->folder() == std::filesystem::path(desk.preferences.folder).lexically_normal()
-                             : !entries_.empty() && desk.preferences.folder.empty();
-  if (!shown) show_folder(desk.preferences.folder);
+void BrowserPanel::draw(PanelContext& context) {
+  theme_ = context.scene.view().theme;
+  draw_bar(context);
+  const bool shown = reader_ ? reader_->folder() == std::filesystem::path(context.preferences.folder).lexically_normal()
+                             : !entries_.empty() && context.preferences.folder.empty();
+  if (!shown) show_folder(context.preferences.folder);
   const std::size_t total = reader_ ? reader_->files() : entries_.size();
   note(total == 0 ? "no robots here"
                   : fmt::format("{} of {} robots; click one to add it", entries_.size(), total).c_str());
   ImGui::BeginDisabled(entries_.empty());
   if (ImGui::Button("Add all", {-1, 0})) {
     std::vector<Robot> robots;
-    for (const FolderEntry& entry : entries_)
+    for (const RobotFolderEntry& entry : entries_)
       if (entry.robot) robots.push_back(*entry.robot);
-    desk.scene.add(std::move(robots));
+    context.scene.add(std::move(robots));
   }
-  desk.observations.item("browser.all");
+  context.log.item("browser.all");
   ImGui::EndDisabled();
   const float text = ImGui::GetFontSize(), spacing = ImGui::GetStyle().ItemSpacing.x;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
@@ -129,19 +129,19 @@ void BrowserPanel::draw(Desk& desk) {
   if (ImGui::BeginChild("cards", {0, 0}))
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine();
-      draw_card(desk, i, width);
+      draw_card(context, i, width);
     }
   ImGui::EndChild();
 }
 
-void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
-  const FolderEntry& entry = entries_[index];
+void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float width) {
+  const RobotFolderEntry& entry = entries_[index];
   const float line = ImGui::GetTextLineHeight(), picture = width * Thumbnails::height / Thumbnails::width;
   const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, picture + 3.5f * line};
   ImGui::PushID(static_cast<int>(index));
   const bool clicked = ImGui::InvisibleButton("card", size);
   const bool hovered = ImGui::IsItemHovered();
-  if (index < 30 && ImGui::IsItemVisible()) desk.observations.item(fmt::format("card.{}", index));
+  if (index < 30 && ImGui::IsItemVisible()) context.log.item(fmt::format("card.{}", index));
   ImGui::PopID();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float rounding = ImGui::GetStyle().ChildRounding;
@@ -160,19 +160,19 @@ void BrowserPanel::draw_card(Desk& desk, std::size_t index, float width) {
   list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text),
                shortened(name, width - 2 * margin).c_str());
   if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, figures_of(entry).c_str());
-  if (hovered && rests_here()) tooltip(entry);
-  if (clicked && entry.robot) desk.scene.add({*entry.robot});
-  if (clicked && !entry.robot) desk.toasts.say(Tone::error, entry.error);
+  if (hovered && pointer_rests()) tooltip(entry);
+  if (clicked && entry.robot) context.scene.add({*entry.robot});
+  if (clicked && !entry.robot) context.toasts.show(Tone::error, entry.error);
 }
 
 void BrowserPanel::work(double seconds, render::Theme theme) {
   if (reader_) {
-    std::vector<FolderEntry> fresh = reader_->take();
+    std::vector<RobotFolderEntry> fresh = reader_->take();
     entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
   }
   const auto begin = std::chrono::steady_clock::now();
   while (waiting_ < entries_.size()) {
-    const FolderEntry& entry = entries_[waiting_++];
+    const RobotFolderEntry& entry = entries_[waiting_++];
     if (entry.robot) thumbnails_.draw(entry.path.string(), *entry.robot, theme);
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) return;
   }

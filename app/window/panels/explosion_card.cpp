@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/window/picture/explosion_marks.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
+#include "app/window/viewport/explosion_marks.h"
 
 namespace mercury::window {
 namespace {
@@ -22,19 +22,20 @@ std::string advice_for(const ExplodedRobot& robot) {
                      advice);
 }
 
-void ask_for_repro(Desk& desk, const ExplodedRobot& robot) {
-  desk.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
-                          .title = "Save what explodes, to see it again",
-                          .button = "Save here",
-                          .extensions = {".repro"},
-                          .folder = desk.preferences.save_folder,
-                          .name = "repro",
-                          .formats = {}},
-                         [&desk, id = robot.robot](const FileAnswer& answer) {
-                           save_with_care(desk, "repro", [&desk, id, folder = answer.paths.front()](bool overwrite) {
-                             return desk.scene.save_repro(id, folder, overwrite);
-                           });
-                         });
+void ask_for_repro(PanelContext& context, const ExplodedRobot& robot) {
+  context.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+                             .title = "Save what explodes, to see it again",
+                             .button = "Save here",
+                             .extensions = {".repro"},
+                             .folder = context.preferences.save_folder,
+                             .name = "repro",
+                             .formats = {}},
+                            [&context, id = robot.robot](const FileAnswer& answer) {
+                              save_with_confirmation(context, "repro",
+                                                     [&context, id, folder = answer.paths.front()](bool overwrite) {
+                                                       return context.scene.save_repro(id, folder, overwrite);
+                                                     });
+                            });
 }
 
 }  // namespace
@@ -50,23 +51,23 @@ void ExplosionCard::choose(int places) {
   chosen_ = robots_[static_cast<std::size_t>((place + places + count) % count)].robot;
 }
 
-void ExplosionCard::follow(Desk& desk, const PictureArea& area, const render::Camera& camera) {
-  desk.scene.pause_on_explosion(desk.preferences.pause_on_explosion);
-  for (const Explosion& explosion : desk.scene.take_explosions())
-    desk.observations.tell(
-        "exploded", {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.culprit_spring}});
-  robots_ = desk.scene.exploded();
+void ExplosionCard::follow(PanelContext& context, const ViewportArea& area, const render::Camera& camera) {
+  context.scene.pause_on_explosion(context.preferences.pause_on_explosion);
+  for (const Explosion& explosion : context.scene.take_explosions())
+    context.log.write("exploded",
+                      {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.culprit_spring}});
+  robots_ = context.scene.exploded();
   std::erase_if(dismissed_, [&](const auto& one) {
     return std::ranges::none_of(robots_, [&](const ExplodedRobot& robot) {
       return one == std::pair{robot.robot, robot.time};
     });
   });
   if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
-  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, desk.observations,
-                       area, camera);
+  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, context.log, area,
+                       camera);
 }
 
-void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
+void ExplosionCard::draw(PanelContext& context, const ViewportArea& area) {
   low_ = high_ = {0, 0};
   const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) {
     return !dismissed_.contains({robot.robot, robot.time});
@@ -81,17 +82,17 @@ void ExplosionCard::draw(Desk& desk, const PictureArea& area) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PopStyleColor();
-  draw_heading(desk, robot);
+  draw_heading(context, robot);
   note(advice_for(robot).c_str());
-  draw_buttons(desk, robot, area);
-  ImGui::Checkbox("Pause when something explodes", &desk.preferences.pause_on_explosion);
+  draw_buttons(context, robot, area);
+  ImGui::Checkbox("Pause when something explodes", &context.preferences.pause_on_explosion);
   low_ = ImGui::GetWindowPos();
   high_ = {low_.x + ImGui::GetWindowWidth(), low_.y + ImGui::GetWindowHeight()};
-  desk.observations.item("panel.Explosion", low_, high_);
+  context.log.item("panel.Explosion", low_, high_);
   ImGui::End();
 }
 
-void ExplosionCard::draw_heading(Desk& desk, const ExplodedRobot& robot) {
+void ExplosionCard::draw_heading(PanelContext& context, const ExplodedRobot& robot) {
   const std::string place = fmt::format("{} of {}", chosen() - robots_.data() + 1, robots_.size());
   const float spacing = ImGui::GetStyle().ItemInnerSpacing.x, button = ImGui::GetFrameHeight();
   const float steppers =
@@ -110,29 +111,29 @@ void ExplosionCard::draw_heading(Desk& desk, const ExplodedRobot& robot) {
   ImGui::TextUnformatted(place.c_str());
   ImGui::SameLine(0, spacing);
   if (ImGui::ArrowButton("##later", ImGuiDir_Right)) choose(1);
-  desk.observations.item("explosion.next");
+  context.log.item("explosion.next");
 }
 
-void ExplosionCard::draw_buttons(Desk& desk, const ExplodedRobot& robot, const PictureArea& area) {
+void ExplosionCard::draw_buttons(PanelContext& context, const ExplodedRobot& robot, const ViewportArea& area) {
   if (ImGui::Button("Show it")) {
-    desk.scene.select(robot.robot);
-    desk.camera.set_mode(CameraMode::still);
+    context.scene.select(robot.robot);
+    context.camera.set_mode(CameraMode::still);
     if (robot.spring)
-      desk.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
+      context.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
     else
-      frame_robots(desk, {robot.robot}, area.aspect());
+      frame_robots(context, {robot.robot}, area.aspect());
   }
-  desk.observations.item("explosion.show");
+  context.log.item("explosion.show");
   ImGui::SameLine();
-  if (ImGui::Button("Save repro...")) ask_for_repro(desk, robot);
-  desk.observations.item("explosion.repro");
+  if (ImGui::Button("Save repro...")) ask_for_repro(context, robot);
+  context.log.item("explosion.repro");
   ImGui::SameLine();
-  if (ImGui::Button("Reset")) desk.scene.reset();
-  desk.observations.item("explosion.reset");
+  if (ImGui::Button("Reset")) context.scene.reset();
+  context.log.item("explosion.reset");
   ImGui::SameLine();
   if (ImGui::Button("Dismiss"))
     for (const ExplodedRobot& one : robots_) dismissed_.insert({one.robot, one.time});
-  desk.observations.item("explosion.dismiss");
+  context.log.item("explosion.dismiss");
 }
 
 }  // namespace mercury::window

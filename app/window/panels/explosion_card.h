@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/window/picture/desk.h"
-#include "app/window/picture/hands.h"
+#include "app/window/panels/panel_context.h"
+#include "app/window/viewport/viewport_area.h"
 
 namespace mercury::window {
 
@@ -16,15 +16,15 @@ class ExplosionCard {
  public:
   // Takes note of explosions and marks their springs in the picture that `camera` was used for; call once a frame,
   // before what lies over the picture.
-  void follow(Desk& desk, const PictureArea& area, const render::Camera& camera);
+  void follow(PanelContext& context, const ViewportArea& area, const render::Camera& camera);
   // Over the lower left of the picture, while there is one to tell of.
-  void draw(Desk& desk, const PictureArea& area);
+  void draw(PanelContext& context, const ViewportArea& area);
 
  private:
   const ExplodedRobot* chosen() const;
   void choose(int places);
-  void draw_heading(Desk& desk, const ExplodedRobot& robot);
-  void draw_buttons(Desk& desk, const ExplodedRobot& robot, const PictureArea& area);
+  void draw_heading(PanelContext& context, const ExplodedRobot& robot);
+  void draw_buttons(PanelContext& context, const ExplodedRobot& robot, const ViewportArea& area);
 
   std::vector<ExplodedRobot> robots_;
   std::optional<RobotId> chosen_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "app/window/toolkit/actions.h"
+#include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -45,7 +45,7 @@ void mouse() {
 
 }  // namespace
 
-void draw_help(bool& open, Observations& observations) {
+void draw_help(bool& open, EventLog& log) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
   const ImVec2 size{std::min(0.96f * screen.x, 58 * text), std::min(0.96f * screen.y, 41.5f * text)};
@@ -55,9 +55,8 @@ void draw_help(bool& open, Observations& observations) {
   ImGui::SetNextWindowSize({size.x, std::min(size.y, screen.y - top - 0.2f * text)}, ImGuiCond_Appearing);
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    observations.item(
-        "panel.Help", ImGui::GetWindowPos(),
-        {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
+    log.item("panel.Help", ImGui::GetWindowPos(),
+             {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
     if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingStretchSame)) {
       ImGui::TableNextColumn();
       mouse();

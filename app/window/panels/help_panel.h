@@ -2,10 +2,10 @@
 // All keys and gestures.
 #pragma once
 
-#include "app/window/toolkit/observations.h"
+#include "app/window/toolkit/event_log.h"
 
 namespace mercury::window {
 
-void draw_help(bool& open, Observations& observations);
+void draw_help(bool& open, EventLog& log);
 
 }  // namespace mercury::window

@@ -30,44 +30,44 @@ std::string name_of_material(const Robot& robot, int id) {
 
 }  // namespace
 
-void MaterialsPanel::draw(Desk& desk) {
+void MaterialsPanel::draw(PanelContext& context) {
   heading("Materials");
-  const std::vector<RobotId> robots = chosen_robots(desk.scene);
+  const std::vector<RobotId> robots = selected_or_all(context.scene);
   if (robots.empty()) {
     note("There are no robots.");
     return;
   }
-  const std::size_t selected = desk.scene.selection().size();
+  const std::size_t selected = context.scene.selection().size();
   note(fmt::format("of {}",
                    selected == 0
                        ? fmt::format("all {} robots; select some to change only those", robots.size())
                        : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected)))
            .c_str());
-  draw_factors(desk, robots);
+  draw_factors(context, robots);
   if (ImGui::Button("As in the file", {-1, 0})) {
     scale_ = {};
-    desk.scene.reset_materials(robots);
-    desk.scene.end_edit();
+    context.scene.reset_materials(robots);
+    context.scene.end_edit();
   }
-  desk.observations.item("materials.reset");
-  hint("the materials that the robots were made with");
-  draw_one(desk, robots);
+  context.log.item("materials.reset");
+  tooltip("the materials that the robots were made with");
+  draw_one(context, robots);
 }
 
-void MaterialsPanel::draw_factors(Desk& desk, const std::vector<RobotId>& robots) {
+void MaterialsPanel::draw_factors(PanelContext& context, const std::vector<RobotId>& robots) {
   bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1,
                         {0.1f, 10, "\xc3\x97 %.2f", true});
-  desk.observations.item("materials.stiffness");
+  context.log.item("materials.stiffness");
   changed |=
       slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
   changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
   changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
-  if (changed) desk.scene.scale_materials(robots, scale_);
+  if (changed) context.scene.scale_materials(robots, scale_);
 }
 
-void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
-  const RobotId shown = desk.scene.current().value_or(robots.front());
-  const DocumentRobot* document = desk.scene.document().find(shown);
+void MaterialsPanel::draw_one(PanelContext& context, const std::vector<RobotId>& robots) {
+  const RobotId shown = context.scene.current().value_or(robots.front());
+  const DocumentRobot* document = context.scene.document().find(shown);
   if (!document || !ImGui::CollapsingHeader("One material")) return;
   const Robot& robot = *document->body.robot;
   const std::vector<int> used = used_materials(robot);
@@ -80,7 +80,7 @@ void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
         material_ = id;
     ImGui::EndCombo();
   }
-  const std::span<const Material> table = desk.scene.materials(shown);
+  const std::span<const Material> table = context.scene.materials(shown);
   if (static_cast<std::size_t>(material_) >= table.size()) return;
   const auto id = static_cast<std::size_t>(material_);
   Material material = table[id];
@@ -90,7 +90,7 @@ void MaterialsPanel::draw_one(Desk& desk, const std::vector<RobotId>& robots) {
                     {0, 0.6f, "%.3f"});
   changed |= slider("frequency", "omega", material.frequency, made.frequency, {0, 25, "%.2f rad/s"});
   changed |= slider("phase", "phi", material.phase, made.phase, {-pi, 2 * pi, "%.2f rad"});
-  if (changed && is_valid(material)) desk.scene.set_material(robots, static_cast<MaterialId>(material_), material);
+  if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
 }
 
 }  // namespace mercury::window

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/window/picture/robot_files.h"
+#include "app/window/panels/file_commands.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -31,7 +31,7 @@ std::string name_of_robot(const LiveScene& scene, RobotId robot) {
 
 }  // namespace
 
-void MeasurePanel::draw(Desk& desk) {
+void MeasurePanel::draw(PanelContext& context) {
   heading("Plots");
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     const QuantityName& name = quantities()[i];
@@ -40,21 +40,22 @@ void MeasurePanel::draw(Desk& desk) {
       if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name.name).x + 1.5f * ImGui::GetFontSize())
         ImGui::NewLine();
     }
-    if (toggle(name.name, shown_[i])) shown_[i] = !shown_[i];
-    desk.observations.item(std::string("measure.") + name.name);
+    if (toggle_button(name.name, shown_[i])) shown_[i] = !shown_[i];
+    context.log.item(std::string("measure.") + name.name);
   }
-  draw_plots(desk);
-  draw_exports(desk);
+  draw_plots(context);
+  draw_exports(context);
 }
 
-void MeasurePanel::draw_plots(Desk& desk) {
-  std::vector<RobotId> robots = chosen_robots(desk.scene);
+void MeasurePanel::draw_plots(PanelContext& context) {
+  std::vector<RobotId> robots = selected_or_all(context.scene);
   if (robots.size() > most_lines) {
     note(fmt::format("the first {} of {} robots; select others to see them", most_lines, robots.size()).c_str());
     robots.resize(most_lines);
   }
   std::deque<Curve> curves;
-  for (const RobotId robot : robots) curves.push_back({name_of_robot(desk.scene, robot), desk.scene.series(robot)});
+  for (const RobotId robot : robots)
+    curves.push_back({name_of_robot(context.scene, robot), context.scene.series(robot)});
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (!shown_[i]) continue;
     const QuantityName& quantity = quantities()[i];
@@ -73,21 +74,21 @@ void MeasurePanel::draw_plots(Desk& desk) {
   plot_key(names);
 }
 
-void MeasurePanel::draw_exports(Desk& desk) {
+void MeasurePanel::draw_exports(PanelContext& context) {
   if (ImGui::Button("Save as CSV...", {-1, 0}))
-    save_csv(desk, "measurements", [&desk] { return desk.scene.csv(chosen_robots(desk.scene)); });
-  desk.observations.item("measure.csv");
-  hint("all quantities over time, of the selected robots, or of all");
+    save_csv(context, "measurements", [&context] { return context.scene.csv(selected_or_all(context.scene)); });
+  context.log.item("measure.csv");
+  tooltip("all quantities over time, of the selected robots, or of all");
 }
 
-void RankingPanel::draw(Desk& desk, float aspect) {
+void RankingPanel::draw(PanelContext& context, float aspect) {
   heading("Ranking");
   struct Named {
     std::string name;
     RankingRow row;
   };
   std::vector<Named> rows;
-  for (const RankingRow& row : desk.scene.ranking()) rows.push_back({name_of_robot(desk.scene, row.robot), row});
+  for (const RankingRow& row : context.scene.ranking()) rows.push_back({name_of_robot(context.scene, row.robot), row});
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
   const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
@@ -103,7 +104,7 @@ void RankingPanel::draw(Desk& desk, float aspect) {
     for (int column = 0; column < ImGui::TableGetColumnCount(); ++column) {
       if (!ImGui::TableSetColumnIndex(column)) continue;
       ImGui::TableHeader(ImGui::TableGetColumnName(column));
-      desk.observations.item(std::string("ranking.by.") + ImGui::TableGetColumnName(column));
+      context.log.item(std::string("ranking.by.") + ImGui::TableGetColumnName(column));
     }
     if (ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs(); specs && specs->SpecsCount > 0) {
       if (std::exchange(specs->SpecsDirty, false)) sorted_ = false;
@@ -123,8 +124,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
     if (std::exchange(sorted_, true) == false) {
       std::vector<std::string> names;
       for (const Named& named : rows) names.push_back(named.name);
-      desk.observations.tell("ranking",
-                             {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
+      context.log.write("ranking",
+                        {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
     }
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(rows.size()));
@@ -134,12 +135,12 @@ void RankingPanel::draw(Desk& desk, float aspect) {
         ImGui::PushID(static_cast<int>(row.robot));
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(fmt::format("{}. {}", i + 1, name).c_str(), desk.scene.is_selected(row.robot),
+        if (ImGui::Selectable(fmt::format("{}. {}", i + 1, name).c_str(), context.scene.is_selected(row.robot),
                               ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
-          desk.scene.select(row.robot, !ImGui::GetIO().KeyCtrl && !ImGui::GetIO().KeyShift);
-          if (ImGui::IsMouseDoubleClicked(0)) frame_robots(desk, {row.robot}, aspect);
+          context.scene.select(row.robot, !ImGui::GetIO().KeyCtrl && !ImGui::GetIO().KeyShift);
+          if (ImGui::IsMouseDoubleClicked(0)) frame_robots(context, {row.robot}, aspect);
         }
-        if (i < 20) desk.observations.item(fmt::format("ranking.{}", i));
+        if (i < 20) context.log.item(fmt::format("ranking.{}", i));
         const double numbers[] = {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy,
                                   row.largest_strain};
         for (const double number : numbers) {
@@ -152,8 +153,8 @@ void RankingPanel::draw(Desk& desk, float aspect) {
   }
   note("distance in m, speeds in m/s, energy in J; a click on a heading sorts");
   if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
-    save_csv(desk, "ranking", [&desk] { return desk.scene.ranking_csv(); });
-  desk.observations.item("ranking.csv");
+    save_csv(context, "ranking", [&context] { return context.scene.ranking_csv(); });
+  context.log.item("ranking.csv");
 }
 
 }  // namespace mercury::window

@@ -5,24 +5,24 @@
 #include <array>
 #include <string>
 
-#include "app/window/picture/desk.h"
+#include "app/window/panels/panel_context.h"
 
 namespace mercury::window {
 
 class MeasurePanel {
  public:
-  void draw(Desk& desk);
+  void draw(PanelContext& context);
 
  private:
-  void draw_plots(Desk& desk);
-  void draw_exports(Desk& desk);
+  void draw_plots(PanelContext& context);
+  void draw_exports(PanelContext& context);
 
   std::array<bool, 5> shown_{true, true, false, false, false};  // by Quantity
 };
 
 class RankingPanel {
  public:
-  void draw(Desk& desk, float aspect);
+  void draw(PanelContext& context, float aspect);
 
  private:
   int column_ = 1;

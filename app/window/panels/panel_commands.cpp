@@ -5,14 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
-#include "app/window/panels/see_panel.h"
-#include "app/window/picture/robot_files.h"
+#include "app/window/panels/view_panel.h"
 
 namespace mercury::window {
 
-void Panels::carry_out(const Command& command) {
-  LiveScene& scene = desk_.scene;
+void Panels::execute(const Command& command) {
+  LiveScene& scene = context_.scene;
   const std::vector<RobotId> selection = scene.selection();
   switch (command.action) {
     case Action::play_pause:
@@ -37,7 +37,7 @@ void Panels::carry_out(const Command& command) {
       scene.reset();
       break;
     case Action::new_random:
-      robots_.random.generate(desk_);
+      robots_.random.generate(context_);
       break;
     case Action::duplicate:
       scene.duplicate(selection);
@@ -46,7 +46,7 @@ void Panels::carry_out(const Command& command) {
       scene.remove(selection);
       break;
     case Action::mutate:
-      robots_.mutate(desk_);
+      robots_.mutate(context_);
       break;
     case Action::select_all:
       scene.select_all();
@@ -55,18 +55,18 @@ void Panels::carry_out(const Command& command) {
       escape();
       break;
     case Action::undo:
-      if (scene.can_undo()) desk_.toasts.say(Tone::news, "undone: " + scene.undo_name());
+      if (scene.can_undo()) context_.toasts.show(Tone::info, "undone: " + scene.undo_name());
       scene.undo();
       break;
     case Action::redo:
-      if (scene.can_redo()) desk_.toasts.say(Tone::news, "done again: " + scene.redo_name());
+      if (scene.can_redo()) context_.toasts.show(Tone::info, "done again: " + scene.redo_name());
       scene.redo();
       break;
     case Action::open:
-      open_robots(desk_);
+      open_robots(context_);
       break;
     case Action::save:
-      save_robots(desk_);
+      save_robots(context_);
       break;
     case Action::frame:
     case Action::follow:
@@ -83,7 +83,7 @@ void Panels::carry_out(const Command& command) {
       change_view(command.action, command.number);
       break;
     case Action::hide_panels:
-      desk_.preferences.panels = !desk_.preferences.panels;
+      context_.preferences.panels = !context_.preferences.panels;
       break;
     case Action::full_screen:
       window_.toggle_full_screen();
@@ -92,7 +92,7 @@ void Panels::carry_out(const Command& command) {
       screenshot_wanted_ = true;
       break;
     case Action::record:
-      film_.toggle(desk_);
+      film_.toggle(context_);
       break;
     case Action::help:
       help_ = !help_;
@@ -104,18 +104,18 @@ void Panels::carry_out(const Command& command) {
 }
 
 void Panels::change_view(Action action, int number) {
-  ViewSettings view = desk_.scene.view();
-  const Environment& environment = desk_.scene.configuration().environment;
+  ViewSettings view = context_.scene.view();
+  const Environment& environment = context_.scene.configuration().environment;
   const bool ocean = std::holds_alternative<Ocean>(environment);
   switch (action) {
     case Action::drag_arrows:
       toggle_drag_arrows(view);
-      if (view.shown.arrows.drag && !ocean) desk_.toasts.say(Tone::news, "drag arrows are there in the ocean only");
-      desk_.observations.tell("view", {{"drag", view.shown.arrows.drag}});
+      if (view.shown.arrows.drag && !ocean) context_.toasts.show(Tone::info, "drag arrows are there in the ocean only");
+      context_.log.write("view", {{"drag", view.shown.arrows.drag}});
       break;
     case Action::color:
       if (!color_by_number(view, number, environment)) return;
-      desk_.toasts.say(Tone::news, fmt::format("coloured by {}", name_of(view.color)));
+      context_.toasts.show(Tone::info, fmt::format("coloured by {}", name_of(view.color)));
       break;
     case Action::springs:
       view.shown.springs = !view.shown.springs;
@@ -133,13 +133,13 @@ void Panels::change_view(Action action, int number) {
     default:
       return;
   }
-  desk_.scene.set_view(view);
+  context_.scene.set_view(view);
 }
 
 void Panels::change_camera(Action action) {
-  CameraHand& camera = desk_.camera;
+  OrbitController& camera = context_.camera;
   const auto toggle_mode = [&](CameraMode mode) { camera.set_mode(camera.mode() == mode ? CameraMode::still : mode); };
-  if (action == Action::frame) frame_robots(desk_, desk_.scene.selection(), aspect_);
+  if (action == Action::frame) frame_robots(context_, context_.scene.selection(), aspect_);
   if (action == Action::turntable) toggle_mode(CameraMode::turntable);
   if (action == Action::top_view) toggle_mode(CameraMode::top);
   if (action != Action::follow) return;
@@ -147,23 +147,23 @@ void Panels::change_camera(Action action) {
     camera.set_mode(CameraMode::still);
     return;
   }
-  const std::optional<RobotId> current = desk_.scene.current();
-  camera.follow(current ? desk_.scene.moment().robots->index_of(*current) : std::nullopt);
+  const std::optional<RobotId> current = context_.scene.current();
+  camera.follow(current ? context_.scene.moment().robots->index_of(*current) : std::nullopt);
 }
 
 void Panels::quit() {
-  quit_with_care(desk_, [this] { quits_ = true; });
+  quit_with_confirmation(context_, [this] { quits_ = true; });
 }
 
 void Panels::escape() {
-  if (desk_.dialogs.open())
-    desk_.dialogs.close();
+  if (context_.dialogs.open())
+    context_.dialogs.close();
   else if (help_)
     help_ = false;
   else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
     ImGui::SetWindowFocus(nullptr);  // closes menus and lists
   else
-    desk_.scene.clear_selection();
+    context_.scene.clear_selection();
 }
 
 }  // namespace mercury::window

@@ -4,31 +4,31 @@
 
 #include "app/window/panels/browser_panel.h"
 #include "app/window/panels/explosion_card.h"
-#include "app/window/panels/film_panel.h"
-#include "app/window/panels/layout.h"
 #include "app/window/panels/materials_panel.h"
 #include "app/window/panels/measure_panel.h"
+#include "app/window/panels/panel_column.h"
+#include "app/window/panels/panel_context.h"
 #include "app/window/panels/performance_panel.h"
 #include "app/window/panels/robots_panel.h"
-#include "app/window/picture/desk.h"
-#include "app/window/picture/picture_view.h"
-#include "app/window/toolkit/actions.h"
+#include "app/window/panels/video_panel.h"
+#include "app/window/toolkit/key_bindings.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 
 class Panels {
  public:
-  Panels(Desk& desk, Window& window, PictureView& picture);
+  Panels(PanelContext& context, Window& window, Viewport& picture);
 
   // Menu, columns and play bar; returns the place that is left for the picture.
-  PictureArea draw_frame();
+  ViewportArea draw_frame();
   // What lies over the picture.
-  void draw_over(const PictureArea& area, const render::Camera& camera, double dt);
-  void carry_out(const Command& command);
+  void draw_over(const ViewportArea& area, const render::Camera& camera, double dt);
+  void execute(const Command& command);
   // Closes the window; where something would be lost, asks first.
   void quit();
   bool quits() const { return quits_; }
-  void note(const FrameCost& cost) { performance_.note(cost); }
+  void note(const FrameTimes& cost) { performance_.note(cost); }
   // Background work of panels, for at most so long [s]; takes what it took.
   void work(double seconds);
   bool busy() const { return browser_.busy(); }
@@ -37,8 +37,8 @@ class Panels {
 
   bool take_screenshot_wish() { return std::exchange(screenshot_wanted_, false); }
   Generation& generation() { return robots_.random.generation; }
-  FilmPanel& film() { return film_; }
-  const FilmPanel& film() const { return film_; }
+  VideoPanel& film() { return film_; }
+  const VideoPanel& film() const { return film_; }
 
  private:
   void draw_menu();
@@ -47,18 +47,18 @@ class Panels {
   void change_camera(Action action);
   void escape();
 
-  Desk& desk_;
+  PanelContext& context_;
   Window& window_;
-  PictureView& picture_;
+  Viewport& picture_;
   RobotsPanel robots_;
   BrowserPanel browser_;
   MaterialsPanel materials_;
   MeasurePanel measure_;
   RankingPanel ranking_;
   PerformancePanel performance_;
-  FilmPanel film_;
+  VideoPanel film_;
   ExplosionCard explosions_;
-  Column left_, right_;
+  PanelColumn left_, right_;
   bool help_ = false, screenshot_wanted_ = false, quits_ = false;
   float aspect_ = 16.0f / 9;
 };

@@ -20,7 +20,7 @@ void figure(const char* name, const std::string& value, const char* explanation)
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(name);
-  hint(explanation);
+  tooltip(explanation);
   ImGui::TableNextColumn();
   right_aligned(value);
 }
@@ -33,12 +33,12 @@ bool begin_figures(const char* id) {
 
 }  // namespace
 
-void PerformancePanel::note(const FrameCost& cost) {
+void PerformancePanel::note(const FrameTimes& cost) {
   costs_.push_back(cost);
   if (costs_.size() > kept) costs_.pop_front();
 }
 
-void PerformancePanel::draw(const Moment& moment, const PictureView& picture, const std::string& device,
+void PerformancePanel::draw(const Moment& moment, const Viewport& picture, const std::string& device,
                             const std::string& card) {
   heading("Physics");
   ImGui::PushTextWrapPos(0);
@@ -55,8 +55,8 @@ void PerformancePanel::draw(const Moment& moment, const PictureView& picture, co
     ImGui::EndTable();
   }
   heading("A frame of the window");
-  FrameCost mean;
-  for (const FrameCost& cost : costs_) {
+  FrameTimes mean;
+  for (const FrameTimes& cost : costs_) {
     const double share = 1.0 / static_cast<double>(costs_.size());
     mean.whole += share * cost.whole;
     mean.scene += share * cost.scene;

@@ -6,13 +6,13 @@
 #include <string>
 
 #include "app/live/moment.h"
-#include "app/window/picture/picture_view.h"
-#include "app/window/toolkit/observations.h"
+#include "app/window/toolkit/event_log.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 
 // What the parts of one frame of the window took [s].
-struct FrameCost {
+struct FrameTimes {
   double whole = 0;    // from frame to frame
   double scene = 0;    // following the physics
   double picture = 0;  // drawing the robots
@@ -22,11 +22,11 @@ struct FrameCost {
 
 class PerformancePanel {
  public:
-  void note(const FrameCost& cost);
-  void draw(const Moment& moment, const PictureView& picture, const std::string& device, const std::string& card);
+  void note(const FrameTimes& cost);
+  void draw(const Moment& moment, const Viewport& picture, const std::string& device, const std::string& card);
 
  private:
-  std::deque<FrameCost> costs_;
+  std::deque<FrameTimes> costs_;
 };
 
 }  // namespace mercury::window

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/window/toolkit/interface.h"
+#include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -24,7 +24,7 @@ bool sign_button(const char* id, Sign sign, const char* explanation, bool lit = 
   if (lit) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
   const bool clicked = ImGui::Button(id, {side, side});
   if (lit) ImGui::PopStyleColor();
-  hint(explanation);
+  tooltip(explanation);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 color = lit ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text);
   const ImVec2 c{corner.x + side / 2, corner.y + side / 2};
@@ -59,8 +59,8 @@ std::string factor_text(double factor) {
   return factor >= 100 ? fmt::format("{:.0f}", factor) : fmt::format("{:.3g}", factor);
 }
 
-void draw_speed(Desk& desk) {
-  LiveScene& scene = desk.scene;
+void draw_speed(PanelContext& context) {
+  LiveScene& scene = context.scene;
   const float text = ImGui::GetFontSize();
   const bool unlimited = scene.speed() == unlimited_speed;
   ImGui::AlignTextToFramePadding();
@@ -75,31 +75,31 @@ void draw_speed(Desk& desk) {
       std::isfinite(speed))
     scene.set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
-  desk.observations.item("speed");
-  hint("simulated seconds a second, 1/1000 to 100 (keys + and -)");
+  context.log.item("speed");
+  tooltip("simulated seconds a second, 1/1000 to 100 (keys + and -)");
   ImGui::SameLine();
-  if (toggle("\xc3\x97"
-             "1",
-             scene.speed() == 1))
+  if (toggle_button("\xc3\x97"
+                    "1",
+                    scene.speed() == 1))
     scene.set_speed(1);
-  desk.observations.item("speed.one");
-  hint("real time (key 0)");
+  context.log.item("speed.one");
+  tooltip("real time (key 0)");
   ImGui::SameLine();
-  if (toggle("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
-  desk.observations.item("speed.fastest");
-  hint("as fast as it goes (key *)");
+  if (toggle_button("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
+  context.log.item("speed.fastest");
+  tooltip("as fast as it goes (key *)");
   ImGui::SameLine();
   const double achieved = scene.moment().achieved_speed;
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
   ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
   ImGui::PopStyleColor();
-  hint(late ? "the computer is too slow for the speed asked for" : "what the physics manages, over the last second");
+  tooltip(late ? "the computer is too slow for the speed asked for" : "what the physics manages, over the last second");
 }
 
 }  // namespace
 
-void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
+void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   ImGui::SetNextWindowPos(low);
   ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
@@ -107,18 +107,18 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  LiveScene& scene = desk.scene;
+  LiveScene& scene = context.scene;
   const float text = ImGui::GetFontSize();
   if (sign_button("##reset", Sign::reset, "back to the start (key R)")) scene.reset();
-  desk.observations.item("reset");
+  context.log.item("reset");
   ImGui::SameLine();
   if (sign_button("##toggle", scene.playing() ? Sign::pause : Sign::play,
                   scene.playing() ? "pause (Space)" : "play (Space)", true))
     scene.toggle();
-  desk.observations.item("play");
+  context.log.item("play");
   ImGui::SameLine();
   if (sign_button("##step", Sign::step, "one step of time (right arrow or .)")) scene.step();
-  desk.observations.item("step");
+  context.log.item("step");
   ImGui::SameLine(0, 1.2f * text);
   // All of the line in the middle of the buttons' height.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
@@ -127,12 +127,12 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
                        ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
   ImGui::TextUnformatted(time_text(scene.moment().time, scene.speed() < 0.05 ? 3 : 2).c_str());
   ImGui::PopFont();
-  hint(
+  tooltip(
       fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt)
           .c_str());
   ImGui::SameLine();
   ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
-  draw_speed(desk);
+  draw_speed(context);
   const std::string rate = short_number(scene.moment().springs_per_second) + " springs/s";
   const std::string where =
       fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
@@ -144,7 +144,7 @@ void draw_play_bar(Desk& desk, ImVec2 low, ImVec2 high) {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
     ImGui::TextUnformatted(where.c_str());
     ImGui::PopStyleColor();
-    hint(scene.device_name().c_str());
+    tooltip(scene.device_name().c_str());
   }
   ImGui::End();
 }

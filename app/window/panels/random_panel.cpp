@@ -8,12 +8,12 @@
 namespace mercury::window {
 namespace {
 
-bool whole_number(const char* name, const char* explanation, int& value, int low, int high, Desk& desk,
+bool whole_number(const char* name, const char* explanation, int& value, int low, int high, PanelContext& context,
                   const char* item) {
   ImGui::PushID(name);
   row(name, explanation);
   const bool changed = ImGui::InputInt("##value", &value, 1, 10);
-  desk.observations.item(item);
+  context.log.item(item);
   ImGui::PopID();
   value = std::clamp(value, low, high);
   return changed;
@@ -21,32 +21,32 @@ bool whole_number(const char* name, const char* explanation, int& value, int low
 
 }  // namespace
 
-void RandomPanel::draw(Desk& desk) {
+void RandomPanel::draw(PanelContext& context) {
   heading("Random robots");
   int kind = static_cast<int>(generation.kind);
-  if (choice("kind", "voxel: patches of muscle, tissue and bone. Network: grown by a neural network", kind,
-             {"voxel", "network"}))
+  if (combo("kind", "voxel: patches of muscle, tissue and bone. Network: grown by a neural network", kind,
+            {"voxel", "network"}))
     generation.kind = static_cast<Generation::Kind>(kind);
-  desk.observations.item("generate.kind");
+  context.log.item("generate.kind");
   auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
-  whole_number("count", "how many robots", count, 1, 4096, desk, "generate.count");
-  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, desk, "generate.seed");
+  whole_number("count", "how many robots", count, 1, 4096, context, "generate.count");
+  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, context, "generate.seed");
   generation.count = static_cast<std::size_t>(count);
   generation.seed = static_cast<std::uint64_t>(seed);
   if (generation.kind == Generation::Kind::voxel)
-    draw_voxel_options(desk);
+    draw_voxel_options(context);
   else
-    draw_network_options(desk);
+    draw_network_options(context);
   ImGui::Checkbox("Replace", &replace_);
-  desk.observations.item("generate.replace");
-  hint("the new robots take the place of those in the scene; otherwise they come beside them");
+  context.log.item("generate.replace");
+  tooltip("the new robots take the place of those in the scene; otherwise they come beside them");
   ImGui::SameLine();
-  if (ImGui::Button("Generate", {-1, 0})) generate(desk);
-  desk.observations.item("generate");
-  hint("and count the seed up (key N)");
+  if (ImGui::Button("Generate", {-1, 0})) generate(context);
+  context.log.item("generate");
+  tooltip("and count the seed up (key N)");
 }
 
-void RandomPanel::draw_voxel_options(Desk& desk) {
+void RandomPanel::draw_voxel_options(PanelContext& context) {
   RandomVoxelOptions& voxel = generation.voxel;
   row("smallest", "voxels along x, y and z");
   ImGui::InputInt3("##smallest", voxel.smallest.data());
@@ -59,24 +59,24 @@ void RandomPanel::draw_voxel_options(Desk& desk) {
   auto air = static_cast<float>(100 * voxel.air);
   if (slider("air", "share of the voxels that are empty", air, 30, {0, 90, "%.0f %%"}))
     voxel.air = std::clamp(static_cast<double>(air) / 100, 0.0, 0.95);
-  desk.observations.item("generate.air");
+  context.log.item("generate.air");
   int mirror = static_cast<int>(voxel.mirror);
-  if (choice("symmetry", "halves that face each other along this axis", mirror, {"none", "x", "y", "z"}))
+  if (combo("symmetry", "halves that face each other along this axis", mirror, {"none", "x", "y", "z"}))
     voxel.mirror = static_cast<Mirror>(mirror);
-  desk.observations.item("generate.symmetry");
+  context.log.item("generate.symmetry");
 }
 
-void RandomPanel::draw_network_options(Desk& desk) {
+void RandomPanel::draw_network_options(PanelContext& context) {
   auto points = static_cast<int>(generation.network.points);
-  whole_number("points", "that the body is grown from", points, 64, 8192, desk, "generate.points");
+  whole_number("points", "that the body is grown from", points, 64, 8192, context, "generate.points");
   generation.network.points = static_cast<std::size_t>(points);
   auto mirrored = static_cast<float>(100 * generation.network.mirrored);
   if (slider("symmetry", "share of robots with alike halves", mirrored, 50, {0, 100, "%.0f %%"}))
     generation.network.mirrored = std::clamp(static_cast<double>(mirrored) / 100, 0.0, 1.0);
 }
 
-void RandomPanel::generate(Desk& desk) {
-  desk.scene.generate(generation, replace_);
+void RandomPanel::generate(PanelContext& context) {
+  context.scene.generate(generation, replace_);
   ++generation.seed;
 }
 

@@ -2,23 +2,23 @@
 // Random robots: how they are made, and the button that makes them.
 #pragma once
 
-#include "app/window/picture/desk.h"
+#include "app/window/panels/panel_context.h"
 
 namespace mercury::window {
 
 class RandomPanel {
  public:
-  void draw(Desk& desk);
+  void draw(PanelContext& context);
   // New random robots, as the panel is set.
-  void generate(Desk& desk);
+  void generate(PanelContext& context);
   // Of its rows [pixels].
   float height() const;
 
   Generation generation{.count = 6};
 
  private:
-  void draw_voxel_options(Desk& desk);
-  void draw_network_options(Desk& desk);
+  void draw_voxel_options(PanelContext& context);
+  void draw_network_options(PanelContext& context);
 
   bool replace_ = true;
 };

@@ -6,20 +6,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/window/picture/robot_files.h"
+#include "app/window/panels/file_commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {
 
-void draw_work(Desk& desk) {
-  for (const Work& work : desk.scene.work()) {
+void draw_work(PanelContext& context) {
+  for (const Work& work : context.scene.work()) {
     ImGui::PushID(static_cast<int>(work.id));
     const float share = work.total > 0 ? static_cast<float>(work.done) / static_cast<float>(work.total) : 0;
     ImGui::ProgressBar(share, {ImGui::GetContentRegionAvail().x - 5 * ImGui::GetFontSize(), 0}, work.name.c_str());
     ImGui::SameLine();
-    if (ImGui::Button("Cancel")) desk.scene.cancel_work(work.id);
+    if (ImGui::Button("Cancel")) context.scene.cancel_work(work.id);
     ImGui::PopID();
   }
 }
@@ -38,15 +38,15 @@ void figures_of(const RobotEntry& entry) {
 
 }  // namespace
 
-void RobotsPanel::draw(Desk& desk, float aspect) {
-  draw_list(desk, aspect);
-  draw_work(desk);
-  draw_changes(desk);
-  random.draw(desk);
+void RobotsPanel::draw(PanelContext& context, float aspect) {
+  draw_list(context, aspect);
+  draw_work(context);
+  draw_changes(context);
+  random.draw(context);
 }
 
-void RobotsPanel::draw_list(Desk& desk, float aspect) {
-  LiveScene& scene = desk.scene;
+void RobotsPanel::draw_list(PanelContext& context, float aspect) {
+  LiveScene& scene = context.scene;
   const std::vector<RobotEntry> entries = scene.entries();
   const std::size_t selected = scene.selection().size();
   heading(fmt::format("{} robot{}{}", entries.size(), entries.size() == 1 ? "" : "s",
@@ -73,13 +73,13 @@ void RobotsPanel::draw_list(Desk& desk, float aspect) {
       ImGui::PushID(static_cast<int>(entry.id));
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      draw_row(desk, entry, aspect);
+      draw_row(context, entry, aspect);
       ImGui::PopID();
     }
   ImGui::EndTable();
 }
 
-void RobotsPanel::draw_row(Desk& desk, const RobotEntry& entry, float aspect) {
+void RobotsPanel::draw_row(PanelContext& context, const RobotEntry& entry, float aspect) {
   if (entry.selected) ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg1, ImGui::GetColorU32(ImGuiCol_Header));
   const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
   if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
@@ -88,12 +88,12 @@ void RobotsPanel::draw_row(Desk& desk, const RobotEntry& entry, float aspect) {
   const bool clicked = ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick);
   if (entry.selected) ImGui::PopStyleColor();
   if (clicked && ImGui::IsMouseDoubleClicked(0))
-    frame_robots(desk, {entry.id}, aspect);
+    frame_robots(context, {entry.id}, aspect);
   else if (clicked)
-    choose(desk, entry);
+    choose(context, entry);
   if (entry.exploded) ImGui::PopStyleColor();
-  desk.observations.item(fmt::format("robot.{}", ImGui::TableGetRowIndex() - 1));
-  if (ImGui::IsItemHovered() && rests_here()) figures_of(entry);
+  context.log.item(fmt::format("robot.{}", ImGui::TableGetRowIndex() - 1));
+  if (ImGui::IsItemHovered() && pointer_rests()) figures_of(entry);
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   right_aligned(fmt::format("{}", entry.springs));
@@ -101,14 +101,14 @@ void RobotsPanel::draw_row(Desk& desk, const RobotEntry& entry, float aspect) {
   ImGui::TableNextColumn();
   bool shown = !entry.hidden;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
-  if (ImGui::Checkbox("##shown", &shown)) desk.scene.set_hidden(entry.id, !shown);
+  if (ImGui::Checkbox("##shown", &shown)) context.scene.set_hidden(entry.id, !shown);
   ImGui::PopStyleVar();
-  hint("whether it is drawn; it swims on either way");
+  tooltip("whether it is drawn; it swims on either way");
 }
 
 // As in other lists: Ctrl adds one or takes it away, Shift adds all from the one clicked last.
-void RobotsPanel::choose(Desk& desk, const RobotEntry& entry) {
-  LiveScene& scene = desk.scene;
+void RobotsPanel::choose(PanelContext& context, const RobotEntry& entry) {
+  LiveScene& scene = context.scene;
   if (ImGui::GetIO().KeyShift && anchor_ != 0) {
     bool inside = false;
     for (const RobotEntry& other : scene.entries()) {
@@ -125,44 +125,44 @@ void RobotsPanel::choose(Desk& desk, const RobotEntry& entry) {
   anchor_ = entry.id;
 }
 
-void RobotsPanel::draw_changes(Desk& desk) {
-  LiveScene& scene = desk.scene;
+void RobotsPanel::draw_changes(PanelContext& context) {
+  LiveScene& scene = context.scene;
   const std::vector<RobotId> selection = scene.selection();
   const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
   ImGui::BeginDisabled(selection.empty());
   if (ImGui::Button("Duplicate", {width, 0})) scene.duplicate(selection);
-  desk.observations.item("duplicate");
-  hint("a copy of each selected robot (Ctrl D)");
+  context.log.item("duplicate");
+  tooltip("a copy of each selected robot (Ctrl D)");
   ImGui::SameLine();
-  if (ImGui::Button("Mutate", {width, 0})) mutate(desk);
-  desk.observations.item("mutate");
-  hint("a changed copy of each selected robot (key M)");
+  if (ImGui::Button("Mutate", {width, 0})) mutate(context);
+  context.log.item("mutate");
+  tooltip("a changed copy of each selected robot (key M)");
   ImGui::SameLine();
   if (ImGui::Button("Remove", {width, 0})) scene.remove(selection);
-  desk.observations.item("remove");
-  hint("remove the selected robots (Delete)");
+  context.log.item("remove");
+  tooltip("remove the selected robots (Delete)");
   ImGui::EndDisabled();
-  if (ImGui::Button("Open...", {width, 0})) open_robots(desk);
-  desk.observations.item("open");
-  hint("robots from files or a folder (Ctrl O); or drop them on the window");
+  if (ImGui::Button("Open...", {width, 0})) open_robots(context);
+  context.log.item("open");
+  tooltip("robots from files or a folder (Ctrl O); or drop them on the window");
   ImGui::SameLine();
   ImGui::BeginDisabled(scene.entries().empty());
-  if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(desk);
-  desk.observations.item("save");
-  hint("the selected robots, or all where none is selected (Ctrl S)");
+  if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
+  context.log.item("save");
+  tooltip("the selected robots, or all where none is selected (Ctrl S)");
   ImGui::SameLine();
   if (ImGui::Button("Clear", {width, 0})) scene.clear();
-  desk.observations.item("clear");
-  hint("remove all robots; Ctrl Z brings them back");
+  context.log.item("clear");
+  tooltip("remove all robots; Ctrl Z brings them back");
   ImGui::EndDisabled();
 }
 
-void RobotsPanel::mutate(Desk& desk) {
-  if (desk.scene.selection().empty()) {
-    desk.toasts.say(Tone::news, "select the robots to mutate first");
+void RobotsPanel::mutate(PanelContext& context) {
+  if (context.scene.selection().empty()) {
+    context.toasts.show(Tone::info, "select the robots to mutate first");
     return;
   }
-  desk.scene.mutate(desk.scene.selection(), mutation_);
+  context.scene.mutate(context.scene.selection(), mutation_);
   ++mutation_.seed;
 }
 

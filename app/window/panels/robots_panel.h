@@ -4,23 +4,23 @@
 
 #include <string>
 
+#include "app/window/panels/panel_context.h"
 #include "app/window/panels/random_panel.h"
-#include "app/window/picture/desk.h"
 
 namespace mercury::window {
 
 class RobotsPanel {
  public:
-  void draw(Desk& desk, float aspect);
-  void mutate(Desk& desk);
+  void draw(PanelContext& context, float aspect);
+  void mutate(PanelContext& context);
 
   RandomPanel random;
 
  private:
-  void draw_list(Desk& desk, float aspect);
-  void draw_row(Desk& desk, const RobotEntry& entry, float aspect);
-  void choose(Desk& desk, const RobotEntry& entry);
-  void draw_changes(Desk& desk);
+  void draw_list(PanelContext& context, float aspect);
+  void draw_row(PanelContext& context, const RobotEntry& entry, float aspect);
+  void choose(PanelContext& context, const RobotEntry& entry);
+  void draw_changes(PanelContext& context);
 
   Mutation mutation_;
   RobotId anchor_ = 0;  // where a range of selected rows begins

@@ -54,16 +54,16 @@ bool edit_common(Kind& environment) {
   return changed;
 }
 
-bool solver_section(Configuration& configuration, Observations& observations) {
+bool solver_section(Configuration& configuration, EventLog& log) {
   heading("Solver");
   bool changed = false;
   int solver = static_cast<int>(configuration.solver);
-  if (choice("method", "force: Hooke's law, explicit. XPBD: positions, stable at large steps", solver,
-             {"force", "XPBD"})) {
+  if (combo("method", "force: Hooke's law, explicit. XPBD: positions, stable at large steps", solver,
+            {"force", "XPBD"})) {
     configuration.solver = static_cast<Solver>(solver);
     changed = true;
   }
-  observations.item("tune.solver");
+  log.item("tune.solver");
   static const Configuration standard;
   auto dt = static_cast<float>(1000 * configuration.dt);
   if (slider("time step", "smaller is more exact and more stable, and slower", dt,
@@ -72,7 +72,7 @@ bool solver_section(Configuration& configuration, Observations& observations) {
     configuration.dt = static_cast<double>(dt) / 1000;
     changed = true;
   }
-  observations.item("tune.dt");
+  log.item("tune.dt");
   auto damping = static_cast<float>(configuration.damping);
   if (slider("damping", "velocities shrink by exp(-damping dt) a step", damping, static_cast<float>(standard.damping),
              {0, 5, "%.2f 1/s"}) &&
@@ -80,22 +80,22 @@ bool solver_section(Configuration& configuration, Observations& observations) {
     configuration.damping = static_cast<double>(damping);
     changed = true;
   }
-  observations.item("tune.damping");
+  log.item("tune.damping");
   return changed;
 }
 
-bool environment_section(Configuration& configuration, Observations& observations) {
+bool environment_section(Configuration& configuration, EventLog& log) {
   heading("Environment");
   bool changed = false;
   auto kind = static_cast<int>(configuration.environment.index());
-  if (choice("where", "ocean: drag on the skin. Simple ocean: drag on each mass. Land: floor, friction, gravity", kind,
-             {"ocean", "simple ocean", "land"})) {
+  if (combo("where", "ocean: drag on the skin. Simple ocean: drag on each mass. Land: floor, friction, gravity", kind,
+            {"ocean", "simple ocean", "land"})) {
     configuration.environment = kind == 0   ? Environment(Ocean{})
                                 : kind == 1 ? Environment(OceanSimple{})
                                             : Environment(Land{});
     changed = true;
   }
-  observations.item("tune.environment");
+  log.item("tune.environment");
   changed |= std::visit(
       [](auto& environment) {
         const bool own = edit(environment);
@@ -107,10 +107,10 @@ bool environment_section(Configuration& configuration, Observations& observation
 
 }  // namespace
 
-bool draw_physics_sliders(Configuration& configuration, Observations& observations) {
+bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
   Configuration edited = configuration;
-  bool changed = solver_section(edited, observations);
-  changed |= environment_section(edited, observations);
+  bool changed = solver_section(edited, log);
+  changed |= environment_section(edited, log);
   ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
   if (ImGui::Button("Reset all to defaults")) {
     const Device device = edited.device;
@@ -121,7 +121,7 @@ bool draw_physics_sliders(Configuration& configuration, Observations& observatio
     if (std::holds_alternative<OceanSimple>(configuration.environment)) edited.environment = OceanSimple{};
     changed = true;
   }
-  observations.item("tune.reset");
+  log.item("tune.reset");
   if (!changed) return false;
   try {
     validate(edited);

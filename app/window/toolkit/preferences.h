@@ -15,7 +15,7 @@ struct Preferences {
   float text_scale = 1;
   bool panels = true;                     // shown at all
   float left_width = 0, right_width = 0;  // of the columns of panels, in lines of text; 0 = as the window suggests
-  std::string left_panel = "Robots", right_panel = "See";
+  std::string left_panel = "Robots", right_panel = "View";
   render::Quality quality = render::Quality::automatic;
   std::string folder;                    // shown by the browser last
   std::string open_folder, save_folder;  // where files were opened and saved last

@@ -15,7 +15,7 @@ constexpr std::size_t most = 5;
 
 const char* name_of(Tone tone) {
   switch (tone) {
-    case Tone::news:
+    case Tone::info:
       return "news";
     case Tone::success:
       return "success";
@@ -42,7 +42,7 @@ ImU32 color_of(Tone tone) {
 
 }  // namespace
 
-void Toasts::say(Tone tone, std::string text) {
+void Toasts::show(Tone tone, std::string text) {
   const double stays = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
   for (Toast& toast : toasts_)
     if (toast.text == text) {
@@ -61,12 +61,12 @@ void Toasts::say(Tone tone, std::string text) {
   if (toasts_.size() > most) toasts_.pop_front();
 }
 
-void Toasts::draw(ImVec2 low, ImVec2 high, double dt, Observations& observations) {
+void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
   const float line = ImGui::GetFontSize();
   float y = low.y + line;
   int number = 0;
   for (Toast& toast : toasts_) {
-    if (!toast.told) observations.tell("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
+    if (!toast.told) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
     toast.told = true;
     const float width = std::min(high.x - low.x - 2 * line, 34 * line);
     const std::string text = toast.count > 1 ? fmt::format("{}  (x{})", toast.text, toast.count) : toast.text;

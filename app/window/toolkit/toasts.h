@@ -5,17 +5,17 @@
 #include <deque>
 #include <string>
 
-#include "app/window/toolkit/observations.h"
+#include "app/window/toolkit/event_log.h"
 
 namespace mercury::window {
 
-enum class Tone { news, success, warning, error };
+enum class Tone { info, success, warning, error };
 
 class Toasts {
  public:
-  void say(Tone tone, std::string text);
+  void show(Tone tone, std::string text);
   // Draws them below the upper middle of a rectangle. `dt`: since the last frame [s].
-  void draw(ImVec2 low, ImVec2 high, double dt, Observations& observations);
+  void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }
 
  private:

@@ -22,7 +22,7 @@ bool row_with_reset(const char* name, const char* text, bool differs) {
   const float side = 0.75f * ImGui::GetFrameHeight();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shortened(name, differs ? names - side - 0.3f * ImGui::GetFontSize() : names).c_str());
-  hint(text);
+  tooltip(text);
   bool clicked = false;
   if (differs) {
     ImGui::SameLine();
@@ -32,7 +32,7 @@ bool row_with_reset(const char* name, const char* text, bool differs) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
     clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
     ImGui::PopStyleVar();
-    hint(text_of_reset);
+    tooltip(text_of_reset);
     ImGui::SameLine();
     ImGui::SetCursorPosY(top);
   } else {
@@ -57,7 +57,7 @@ void heading(const char* text) {
 }
 
 // A pointer on its way to somewhere else wants no explanations.
-bool rests_here() {
+bool pointer_rests() {
   static ImVec2 place;
   static double since = 0;
   const ImVec2 corner = ImGui::GetItemRectMin();
@@ -68,8 +68,8 @@ bool rests_here() {
   return ImGui::GetTime() - since > rest;
 }
 
-void hint(const char* text) {
-  if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !rests_here()) return;
+void tooltip(const char* text) {
+  if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !pointer_rests()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
   ImGui::TextUnformatted(text);
@@ -93,7 +93,7 @@ void note(const char* text) {
   ImGui::PopStyleColor();
 }
 
-bool toggle(const char* text, bool on) {
+bool toggle_button(const char* text, bool on) {
   if (on) {
     ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, palette().accent);
@@ -104,14 +104,14 @@ bool toggle(const char* text, bool on) {
   return clicked;
 }
 
-bool slider(const char* name, const char* text, float& value, float standard, const Amount& amount) {
+bool slider(const char* name, const char* text, float& value, float standard, const SliderRange& range) {
   ImGui::PushID(name);
   const bool reset = row_with_reset(name, text, value != standard);
   ImGuiSliderFlags flags = ImGuiSliderFlags_NoRoundToFormat;
-  if (amount.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
+  if (range.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   float edited = value;
-  bool changed = ImGui::SliderFloat("##value", &edited, amount.low, amount.high, amount.format, flags);
-  hint("drag, or Ctrl-click to type");
+  bool changed = ImGui::SliderFloat("##value", &edited, range.low, range.high, range.format, flags);
+  tooltip("drag, or Ctrl-click to type");
   if (reset) {
     edited = standard;
     changed = true;
@@ -121,13 +121,13 @@ bool slider(const char* name, const char* text, float& value, float standard, co
   return changed;
 }
 
-bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, const Amount& amount) {
+bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, const SliderRange& range) {
   ImGui::PushID(name);
   const bool reset = row_with_reset(name, text, value != standard);
   float edited[3] = {value.x, value.y, value.z};
   bool changed =
-      ImGui::DragFloat3("##value", edited, (amount.high - amount.low) / 400, amount.low, amount.high, amount.format);
-  hint("x, y and z: drag sideways, or Ctrl-click to type");
+      ImGui::DragFloat3("##value", edited, (range.high - range.low) / 400, range.low, range.high, range.format);
+  tooltip("x, y and z: drag sideways, or Ctrl-click to type");
   if (reset) {
     edited[0] = standard.x, edited[1] = standard.y, edited[2] = standard.z;
     changed = true;
@@ -138,7 +138,7 @@ bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, cons
   return changed;
 }
 
-bool choice(const char* name, const char* text, int& index, const std::vector<const char*>& names) {
+bool combo(const char* name, const char* text, int& index, const std::vector<const char*>& names) {
   ImGui::PushID(name);
   row(name, text);
   const bool changed = ImGui::Combo("##choice", &index, names.data(), static_cast<int>(names.size()));

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/window/toolkit/observations.h"
+#include "app/window/toolkit/event_log.h"
 #include "mercury/vec3.h"
 
 namespace mercury::window {
@@ -21,10 +21,10 @@ void heading(const char* text);
 void row(const char* name, const char* hint = nullptr);
 
 // Whether the pointer has rested for a while on the item that was just put. Asked of one that is hovered.
-bool rests_here();
+bool pointer_rests();
 
 // The text in a tooltip of the item that was just put, when the pointer rests there.
-void hint(const char* text);
+void tooltip(const char* text);
 
 // Text that is of less weight, wrapped at the panel's edge.
 void note(const char* text);
@@ -33,21 +33,21 @@ void note(const char* text);
 void right_aligned(const std::string& text);
 
 // As wide as its text, lit while it is on. True when it was clicked.
-bool toggle(const char* text, bool on);
+bool toggle_button(const char* text, bool on);
 
-struct Amount {
+struct SliderRange {
   float low, high;
   const char* format;  // as "%.2f s"
   bool logarithmic = false;
 };
 // A slider in a row; beside the name a button that puts it back to `standard`, shown where it differs. True when the
 // value changed.
-bool slider(const char* name, const char* hint, float& value, float standard, const Amount& amount);
+bool slider(const char* name, const char* hint, float& value, float standard, const SliderRange& range);
 // Three of them.
-bool slider(const char* name, const char* hint, Vec3& value, Vec3 standard, const Amount& amount);
+bool slider(const char* name, const char* hint, Vec3& value, Vec3 standard, const SliderRange& range);
 
 // One of several. True when it changed.
-bool choice(const char* name, const char* hint, int& index, const std::vector<const char*>& names);
+bool combo(const char* name, const char* hint, int& index, const std::vector<const char*>& names);
 
 // A text field over a string, as wide as what is left or as set by SetNextItemWidth. True when Enter was pressed.
 bool text_field(const char* id, std::string& text, const char* placeholder = "");

@@ -66,7 +66,7 @@ Window::Window(const std::string& title, WindowSize size) {
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   listen();
   try {
-    context_ =
+    gl_context_ =
         render::adopt_context([this] { glfwMakeContextCurrent(window_); }, [] { glfwMakeContextCurrent(nullptr); });
   } catch (const render::ContextError& error) {
     glfwDestroyWindow(window_);
@@ -76,7 +76,7 @@ Window::Window(const std::string& title, WindowSize size) {
 }
 
 Window::~Window() {
-  context_.reset();
+  gl_context_.reset();
   glfwDestroyWindow(window_);
   glfwTerminate();
 }

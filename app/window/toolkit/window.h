@@ -46,7 +46,7 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  render::Context& context() { return *context_; }
+  render::Context& gl_context() { return *gl_context_; }
   GLFWwindow* handle() const { return window_; }
 
   bool asked_to_close() const;
@@ -76,7 +76,7 @@ class Window {
   void push(const InputEvent& event);
 
   GLFWwindow* window_ = nullptr;
-  std::unique_ptr<render::Context> context_;
+  std::unique_ptr<render::Context> gl_context_;
   InputQueue input_;
   std::vector<std::filesystem::path> dropped_;
   bool active_ = true;

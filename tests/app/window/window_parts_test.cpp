@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "app/window/dialogs/folder_view.h"
+#include "app/window/dialogs/folder_listing.h"
 #include "app/window/toolkit/window.h"
 #include "tests/app/program.h"
 
@@ -24,23 +24,23 @@ std::vector<std::string> names(const std::vector<FolderItem>& items) {
   return names;
 }
 
-class FolderViewTest : public test::FolderTest {
+class FolderListingTest : public test::FolderTest {
  protected:
   void write(const std::string& name, std::size_t bytes = 1) { std::ofstream(path(name)) << std::string(bytes, 'x'); }
   void SetUp() override {
     std::filesystem::create_directories(path("zoo/deep"));
     for (const char* name : {"eel.json", "Fish.JSON", "ray.cbor", "notes.txt", ".hidden.json"}) write(name);
   }
-  FolderView view_{{".json", ".cbor"}};
+  FolderListing view_{{".json", ".cbor"}};
 };
 
-TEST_F(FolderViewTest, FoldersComeFirstAndOtherFilesNotAtAll) {
+TEST_F(FolderListingTest, FoldersComeFirstAndOtherFilesNotAtAll) {
   ASSERT_TRUE(view_.enter(folder_));
   EXPECT_THAT(names(view_.items()), ElementsAre("zoo", "eel.json", "Fish.JSON", "ray.cbor"));
   EXPECT_EQ(view_.file_count(), 3u);
 }
 
-TEST_F(FolderViewTest, WhatCannotBeReadIsToldAndChangesNothing) {
+TEST_F(FolderListingTest, WhatCannotBeReadIsToldAndChangesNothing) {
   ASSERT_TRUE(view_.enter(folder_));
   EXPECT_FALSE(view_.enter(folder_ / "nowhere"));
   EXPECT_THAT(view_.error(), HasSubstr("nowhere"));
@@ -48,7 +48,7 @@ TEST_F(FolderViewTest, WhatCannotBeReadIsToldAndChangesNothing) {
   EXPECT_EQ(view_.items().size(), 4u);
 }
 
-TEST_F(FolderViewTest, GoingUpMarksTheFolderThatWasLeft) {
+TEST_F(FolderListingTest, GoingUpMarksTheFolderThatWasLeft) {
   ASSERT_TRUE(view_.enter(folder_ / "zoo" / ""));
   ASSERT_TRUE(view_.up());
   EXPECT_EQ(view_.folder(), folder_);
@@ -57,7 +57,7 @@ TEST_F(FolderViewTest, GoingUpMarksTheFolderThatWasLeft) {
   EXPECT_FALSE(view_.up());
 }
 
-TEST_F(FolderViewTest, FilterLooksAtNamesInAnyCase) {
+TEST_F(FolderListingTest, FilterLooksAtNamesInAnyCase) {
   view_.enter(folder_);
   view_.mark(1);
   view_.set_filter("FI");
@@ -67,18 +67,18 @@ TEST_F(FolderViewTest, FilterLooksAtNamesInAnyCase) {
   EXPECT_EQ(view_.items().size(), 4u);
 }
 
-TEST_F(FolderViewTest, SortingKeepsFoldersAboveAndMarksWhereTheyAre) {
+TEST_F(FolderListingTest, SortingKeepsFoldersAboveAndMarksWhereTheyAre) {
   write("ray.cbor", 900);
   write("eel.json", 20);
   view_.enter(folder_);
   view_.mark(3);
-  view_.sort(FolderView::Order::size, true);
+  view_.sort(FolderListing::Order::size, true);
   EXPECT_THAT(names(view_.items()), ElementsAre("zoo", "ray.cbor", "eel.json", "Fish.JSON"));
   EXPECT_THAT(names(view_.marked()), ElementsAre("ray.cbor"));
   EXPECT_EQ(view_.cursor(), 1u);
 }
 
-TEST_F(FolderViewTest, MarksFollowKeysAndClicks) {
+TEST_F(FolderListingTest, MarksFollowKeysAndClicks) {
   view_.enter(folder_);
   view_.move(1);
   EXPECT_THAT(names(view_.marked()), ElementsAre("zoo"));

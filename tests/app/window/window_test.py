@@ -28,7 +28,7 @@ PROGRAM, SAMPLES = sys.argv[1], Path(sys.argv[2])
 LEFT = ["Robots", "Browser", "Ranking"]
 SEEDS = [int(seed) for seed in os.environ.get("MERCURY_WINDOW_SEEDS", "4").split(",")]
 PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "10000"))
-RIGHT = ["See", "Tune", "Measure", "Film", "Stats"]
+RIGHT = ["View", "Tune", "Measure", "Video", "Stats"]
 
 
 def robot_that_explodes(name):

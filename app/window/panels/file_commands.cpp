@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/file_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace mercury::window {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> robot_extensions{".json", ".cbor"};
+const std::vector<const char*> robot_formats{"JSON", "CBOR"};
+
+void save_one(PanelContext& context, const RobotEntry& robot) {
+  const fs::path file = robot.file.empty()
+                            ? fs::path(context.preferences.save_folder) / (file_name_of(robot.name) + ".json")
+                            : fs::path(robot.file);
+  context.dialogs.ask_files({.kind = FileQuestion::Kind::save,
+                             .title = "Save " + robot.name,
+                             .button = "Save",
+                             .extensions = robot_extensions,
+                             .folder = file.parent_path(),
+                             .name = file.filename().string(),
+                             .formats = robot_formats},
+                            [&context, id = robot.id](const FileAnswer& answer) {
+                              const fs::path path = answer.paths.front();
+                              context.preferences.save_folder = path.parent_path().string();
+                              save_with_confirmation(context, "robot", [&context, id, path](bool overwrite) {
+                                return context.scene.save(id, path, overwrite);
+                              });
+                            });
+}
+
+void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
+  context.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+                             .title = fmt::format("Save {} robots, one file each", robots.size()),
+                             .button = "Save here",
+                             .extensions = robot_extensions,
+                             .folder = context.preferences.save_folder,
+                             .name = "",
+                             .formats = robot_formats},
+                            [&context, robots](const FileAnswer& answer) {
+                              const fs::path folder = answer.paths.front();
+                              const RobotFormat format = answer.format == 1 ? RobotFormat::cbor : RobotFormat::json;
+                              context.preferences.save_folder = folder.string();
+                              save_with_confirmation(context, fmt::format("{} robots", robots.size()),
+                                                     [&context, robots, folder, format](bool overwrite) {
+                                                       return context.scene.save_all(robots, folder, format, overwrite);
+                                                     });
+                            });
+}
+
+// Random robots come again from their seed, those of a file from it.
+std::vector<RobotId> robots_to_lose(const LiveScene& scene) {
+  std::vector<RobotId> lost;
+  for (const RobotEntry& robot : scene.entries()) {
+    const DocumentRobot* document = scene.document().find(robot.id);
+    const bool random = document && document->source.generation;
+    if (robot.unsaved && (robot.tuned || !random)) lost.push_back(robot.id);
+  }
+  return lost;
+}
+
+}  // namespace
+
+void open_robots(PanelContext& context) {
+  context.dialogs.ask_files({.kind = FileQuestion::Kind::open,
+                             .title = "Open robots",
+                             .button = "Open",
+                             .extensions = {".json", ".cbor", ".repro", ".h5"},
+                             .folder = context.preferences.open_folder,
+                             .name = "",
+                             .formats = {}},
+                            [&context](const FileAnswer& answer) {
+                              context.preferences.open_folder = answer.paths.front().parent_path().string();
+                              context.scene.open(answer.paths);
+                            });
+}
+
+void save_robots(PanelContext& context) {
+  const std::vector<RobotId> robots = selected_or_all(context.scene);
+  if (robots.empty()) {
+    context.toasts.show(Tone::info, "there are no robots to save");
+    return;
+  }
+  if (robots.size() > 1) {
+    save_many(context, robots);
+    return;
+  }
+  for (const RobotEntry& entry : context.scene.entries())
+    if (entry.id == robots.front()) save_one(context, entry);
+}
+
+void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make) {
+  context.dialogs.ask_files({.kind = FileQuestion::Kind::save,
+                             .title = "Save " + what,
+                             .button = "Save",
+                             .extensions = {".csv"},
+                             .folder = context.preferences.save_folder,
+                             .name = what + ".csv",
+                             .formats = {}},
+                            [&context, what, make = std::move(make)](const FileAnswer& answer) {
+                              const fs::path path = answer.paths.front();
+                              context.preferences.save_folder = path.parent_path().string();
+                              save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
+                                return context.scene.save_text(path, text, overwrite);
+                              });
+                            });
+}
+
+void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
+  const std::vector<RobotId> lost = robots_to_lose(context.scene);
+  if (lost.empty()) {
+    quit();
+    return;
+  }
+  context.log.write("asks", {{"what", "quit"}});
+  const std::string question = lost.size() == 1
+                                   ? "One robot was made or changed here and is not saved."
+                                   : fmt::format("{} robots were made or changed here and are not saved.", lost.size());
+  context.dialogs.ask({.title = "Quit without saving?",
+                       .text = question,
+                       .button = "Quit",
+                       .act = std::move(quit),
+                       .other_button = "Save...",
+                       .other_act = [&context, lost] {
+                         context.scene.clear_selection();
+                         for (const RobotId robot : lost) context.scene.select(robot, false);
+                         save_robots(context);
+                       }});
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/panel_column.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+
+float PanelColumn::pixels(float width) {
+  const float text = ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
+  const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 20.0f, 30.0f);
+  return std::min(lines * text, 0.38f * screen);
+}
+
+bool PanelColumn::has(const std::string& name) const {
+  return std::any_of(panels_.begin(), panels_.end(), [&](const Panel& panel) { return panel.name == name; });
+}
+
+void PanelColumn::draw(PanelContext& context, float top, float bottom, std::string& open, float& width) {
+  if (!has(open)) open = panels_.front().name;
+  const float screen = ImGui::GetIO().DisplaySize.x, size = pixels(width);
+  ImGui::SetNextWindowPos({right_ ? screen - size : 0, top});
+  ImGui::SetNextWindowSize({size, bottom - top});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  ImGui::Begin(id_, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  draw_tabs(context, open);
+  ImGui::Separator();
+  const auto panel =
+      std::find_if(panels_.begin(), panels_.end(), [&](const Panel& other) { return other.name == open; });
+  // Every panel keeps its own place where it is scrolled.
+  if (ImGui::BeginChild(panel->name, {0, 0})) panel->draw();
+  ImGui::EndChild();
+  context.log.item(std::string("panel.") + panel->name);
+  ImGui::End();
+  draw_edge(top, bottom, width);
+}
+
+void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
+  const float spacing = 0.25f * ImGui::GetFontSize(), end = ImGui::GetWindowContentRegionMax().x;
+  bool first = true;
+  for (const Panel& panel : panels_) {
+    const float width = ImGui::CalcTextSize(panel.name).x + 2 * ImGui::GetStyle().FramePadding.x;
+    if (!first) {
+      ImGui::SameLine(0, spacing);
+      if (ImGui::GetCursorPosX() + width > end) ImGui::NewLine();
+    }
+    first = false;
+    const bool on = open == panel.name;
+    ImGui::PushStyleColor(ImGuiCol_Button, on ? ImGui::GetColorU32(ImGuiCol_Header) : IM_COL32_BLACK_TRANS);
+    if (ImGui::Button(panel.name) && !on) {
+      open = panel.name;
+      context.log.write("panel", {{"name", open}});
+    }
+    ImGui::PopStyleColor();
+    // Below the tabs, so that it hides none; the open panel explains itself.
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (!on && ImGui::IsItemHovered()) {
+      ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
+                              {right_ ? 1.0f : 0.0f, 0});
+      tooltip(panel.meaning);
+    }
+    context.log.item(std::string("tab.") + panel.name);
+  }
+}
+
+// The inner edge can be dragged.
+void PanelColumn::draw_edge(float top, float bottom, float& width) {
+  const float grip = 0.4f * ImGui::GetFontSize(), size = pixels(width), screen = ImGui::GetIO().DisplaySize.x;
+  const float edge = right_ ? screen - size : size;
+  ImGui::SetNextWindowPos({edge - grip / 2, top});
+  ImGui::SetNextWindowSize({grip, bottom - top});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin((std::string(id_) + "edge").c_str(), nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::InvisibleButton("edge", {grip, std::max(1.0f, bottom - top)});
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    ImGui::GetWindowDrawList()->AddRectFilled({edge - 1, top}, {edge + 1, bottom}, palette().accent);
+  }
+  if (ImGui::IsItemActive()) {
+    const float x = ImGui::GetIO().MousePos.x;
+    width = std::clamp((right_ ? screen - x : x) / ImGui::GetFontSize(), 14.0f, 60.0f);
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+}
+
+}  // namespace mercury::window

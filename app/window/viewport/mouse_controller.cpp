@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/viewport/mouse_controller.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/window/toolkit/theme.h"
+
+namespace mercury::window {
+namespace {
+
+constexpr double rest = 0.25;   // before figures are shown [s]
+constexpr float wheel = 0.88f;  // of the distance, a notch
+
+bool inside(const ViewportArea& area, ImVec2 p) {
+  return p.x >= area.low.x && p.x < area.high.x && p.y >= area.low.y && p.y < area.high.y;
+}
+
+render::Ray ray_at(const ViewportArea& area, const render::Camera& camera, ImVec2 p) {
+  return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()),
+                    static_cast<int>(area.height()));
+}
+
+ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return {area.low.x + p.x(), area.low.y + p.y()};
+}
+
+Eigen::Vector3f forward_of(const render::Camera& camera) { return (camera.target - camera.eye).normalized(); }
+
+std::string force_text(float newtons) {
+  return newtons >= 1000 ? fmt::format("{:.3g} kN", newtons / 1000) : fmt::format("{:.3g} N", newtons);
+}
+
+void label(ImVec2 at, const std::string& text) {
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float margin = 0.4f * ImGui::GetFontSize();
+  list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + size.x + margin, at.y + size.y + margin / 2},
+                     palette().on_picture, margin);
+  list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+}
+
+}  // namespace
+
+void MouseController::update(const ViewportArea& area, const render::Camera& camera) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool free = !io.WantCaptureMouse && inside(area, io.MousePos);
+  if (drag_ == Drag::none && free) press(area, camera);
+  if (drag_ != Drag::none) {
+    drag(area, camera);
+    if (!ImGui::IsMouseDown(button_)) release(area, camera);
+  }
+  if (free && io.MouseWheel != 0) camera_.zoom(std::pow(wheel, io.MouseWheel));
+  if (drag_ == Drag::none && free)
+    hover(area, camera);
+  else
+    hovered_.reset();
+}
+
+void MouseController::press(const ViewportArea& area, const render::Camera& camera) {
+  const ImGuiIO& io = ImGui::GetIO();
+  for (int button = 0; button < 3; ++button) {
+    if (!ImGui::IsMouseClicked(button)) continue;
+    button_ = button;
+    dragged_ = false;
+    pressed_at_ = io.MousePos;
+    follows_ = button == 0 && ImGui::IsMouseDoubleClicked(0);
+    drag_ = button == 0 ? Drag::turn : Drag::pan;
+    if (button != 0 || !io.KeyCtrl) return;
+    drag_ = Drag::pull;
+    if (const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos))) {
+      pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
+      scene_.begin_pull(*hit);
+      scene_.select(hit->robot);
+      log_.write(
+          "pull",
+          {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x(), hit->point.y(), hit->point.z()}}});
+    }
+    return;
+  }
+}
+
+void MouseController::drag(const ViewportArea& area, const render::Camera& camera) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const float far = std::abs(io.MousePos.x - pressed_at_.x) + std::abs(io.MousePos.y - pressed_at_.y);
+  if (far > 4) dragged_ = true;
+  if (drag_ == Drag::pull) {
+    if (!scene_.pull()) return;
+    const render::Ray ray = ray_at(area, camera, io.MousePos);
+    const float along = pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera)));
+    scene_.move_pull(ray.origin + along * ray.direction);
+    return;
+  }
+  if (!dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  const float right = io.MouseDelta.x / area.height(), up = -io.MouseDelta.y / area.height();
+  if (drag_ == Drag::turn) camera_.turn(right, up);
+  if (drag_ == Drag::pan) camera_.pan(right, up);
+}
+
+void MouseController::release(const ViewportArea& area, const render::Camera& camera) {
+  if (drag_ == Drag::pull) {
+    if (const auto pull = scene_.pull())
+      log_.write("pulled", {{"force", pull->force}, {"at", {pull->at.x(), pull->at.y(), pull->at.z()}}});
+    scene_.end_pull();
+  } else if (drag_ == Drag::turn && !dragged_) {
+    const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
+    const bool add = ImGui::GetIO().KeyShift;
+    if (!hit && !add) scene_.clear_selection();
+    if (hit && add) scene_.toggle_selected(hit->robot);
+    if (hit && !add) scene_.select(hit->robot);
+    if (hit && follows_) {
+      camera_.follow(scene_.moment().robots->index_of(hit->robot));
+      const DocumentRobot* robot = scene_.document().find(hit->robot);
+      toasts_.show(Tone::info, fmt::format("following {} (G to stop)", robot ? robot->body.name : "it"));
+    }
+  }
+  drag_ = Drag::none;
+}
+
+void MouseController::hover(const ViewportArea& area, const render::Camera& camera) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.MousePos.x != rests_at_.x || io.MousePos.y != rests_at_.y) {
+    rests_at_ = io.MousePos;
+    rested_ = 0;
+    hovered_.reset();
+    return;
+  }
+  rested_ += static_cast<double>(io.DeltaTime);
+  if (rested_ >= rest) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+}
+
+void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
+  if (const auto pull = scene_.pull()) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const ImVec2 at = on_screen(area, camera, pull->at), target = on_screen(area, camera, pull->target);
+    const float text = ImGui::GetFontSize();
+    list.AddLine(at, target, palette().warning, 0.13f * text);
+    list.AddCircleFilled(at, 0.28f * text, palette().warning);
+    list.AddCircle(target, 0.4f * text, palette().warning, 0, 0.12f * text);
+    label({target.x + text, target.y - 0.5f * text}, force_text(pull->force));
+  }
+  if (!hovered_) return;
+  const HitFigures figures = scene_.describe(*hovered_);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const float text_height = ImGui::GetFontSize();
+  const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;
+  ImGui::SetNextWindowPos(
+      {mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)}, ImGuiCond_Always,
+      {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
+  ImGui::BeginTooltip();
+  ImGui::TextUnformatted(figures.robot.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
+  ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hovered_->mass), speed.c_str(), figures.mass.springs);
+  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
+              static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
+  if (figures.spring) {
+    ImGui::Text("spring: %s", figures.spring->material_name.c_str());
+    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
+                static_cast<double>(figures.spring->force));
+    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+                static_cast<double>(figures.spring->rest_length));
+  }
+  ImGui::PopStyleColor();
+  ImGui::EndTooltip();
+}
+
+}  // namespace mercury::window

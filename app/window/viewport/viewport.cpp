@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/viewport/viewport.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace mercury::window {
+namespace {
+
+constexpr double slow = 0.045, quick = 0.015;  // a picture [s]
+constexpr std::array<float, 3> shares{1, 0.75f, 0.5f};
+
+}  // namespace
+
+Viewport::Viewport(render::Context& gl_context, render::Quality quality)
+    : renderer_(gl_context, {.width = 64, .height = 64, .quality = quality}), software_(gl_context.is_software()) {
+  if (software_) moving_share_ = shares[2];
+}
+
+void Viewport::place(int x, int y, int width, int height) {
+  x_ = x;
+  y_ = y;
+  width_ = std::max(16, width);
+  height_ = std::max(16, height);
+}
+
+// Between pictures of a movement, steps to a coarser or finer size when the last one was too slow or quick.
+void Viewport::adapt(bool moving) {
+  if (!moving) {
+    share_ = 1;
+    return;
+  }
+  if (share_ == moving_share_ && draw_seconds_ > 0) {
+    const auto now = std::find(shares.begin(), shares.end(), moving_share_);
+    if (draw_seconds_ > slow && now + 1 != shares.end()) moving_share_ = *(now + 1);
+    if (draw_seconds_ < quick && now != shares.begin()) moving_share_ = *(now - 1);
+  }
+  share_ = moving_share_;
+}
+
+void Viewport::draw(const render::Scene& scene, const render::Camera& camera, bool moving) {
+  adapt(moving);
+  const auto begin = std::chrono::steady_clock::now();
+  const int width = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(width_))));
+  const int height = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(height_))));
+  if (width != renderer_.width() || height != renderer_.height()) renderer_.resize(width, height);
+  renderer_.draw(scene, camera);
+  glFinish();
+  draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void Viewport::present(int framebuffer_height) const {
+  renderer_.present(0, x_, framebuffer_height - y_ - height_, width_, height_);
+}
+
+}  // namespace mercury::window

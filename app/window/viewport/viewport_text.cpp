@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/viewport/viewport_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "app/window/toolkit/theme.h"
+#include "render/overlay.h"
+
+namespace mercury::window {
+namespace {
+
+ImU32 text_color() { return ImGui::GetColorU32(ImGuiCol_Text); }
+
+void backing(ImVec2 low, ImVec2 high) {
+  ImGui::GetBackgroundDrawList()->AddRectFilled(low, high, palette().on_picture, 0.35f * ImGui::GetFontSize());
+}
+
+// A line on a ground of its own; its upper left corner.
+void line(ImVec2 at, const std::string& text) {
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float margin = 0.4f * ImGui::GetFontSize();
+  backing({at.x - margin, at.y - 0.6f * margin}, {at.x + size.x + margin, at.y + size.y + 0.6f * margin});
+  ImGui::GetBackgroundDrawList()->AddText(at, text_color(), text.c_str());
+}
+
+void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
+                 const render::Camera& camera) {
+  struct Placed {
+    ImVec2 at;
+    float depth;
+    const std::string* text;
+  };
+  std::vector<Placed> placed;
+  for (const render::Label& label : scene.labels) {
+    if (label.body >= bounds.size() || bounds[label.body].empty()) continue;
+    Eigen::Vector3f top = bounds[label.body].center();
+    top.z() = bounds[label.body].high.z();
+    const Eigen::Vector3f p = camera.project(top, static_cast<int>(area.width()), static_cast<int>(area.height()));
+    if (p.z() > camera.near) placed.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
+  }
+  // Near ones first; those behind go above what they would cover, where there is room, or under it.
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
+  struct Box {
+    ImVec2 low, high;
+    const std::string* text;
+  };
+  std::vector<Box> boxes;
+  for (const Placed& label : placed) {
+    const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
+    Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
+            {label.at.x + size.x / 2, label.at.y - margin},
+            label.text};
+    // Not over an edge, for a robot that is seen.
+    if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
+    if (label.at.x > area.low.x && label.at.x < area.high.x)
+      box.low.x =
+          std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
+    box.high = {box.low.x + size.x, box.low.y + size.y};
+    const float wanted = box.low.y;
+    for (int attempts = 0; attempts < 4; ++attempts) {
+      const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const Box& other) {
+        return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin &&
+               box.low.y < other.high.y + margin && other.low.y < box.high.y + margin;
+      });
+      if (covered == boxes.end()) break;
+      box.low.y = covered->low.y - size.y - margin;
+      box.high.y = covered->low.y - margin;
+    }
+    if (box.low.y < area.low.y || wanted - box.low.y > 5 * text) box.low.y = wanted;
+    box.high.y = box.low.y + size.y;
+    boxes.push_back(box);
+  }
+  for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) line(box->low, *box->text);
+}
+
+void draw_scale(const render::Legend& legend, ImVec2 low, ImVec2 high) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  constexpr int bands = 64;
+  const float text = ImGui::GetFontSize(), right = low.x + text, height = high.y - low.y;
+  for (int i = 0; i < bands; ++i) {
+    const auto t = static_cast<float>(i);
+    list.AddRectFilled({low.x, high.y - (t + 1) / bands * height}, {right, high.y - t / bands * height + 0.5f},
+                       packed(render::color_at(legend.scale->map, (t + 0.5f) / bands)));
+  }
+  const std::vector<float> ticks = render::ticks(legend.scale->low, legend.scale->high);
+  const float span = legend.scale->high - legend.scale->low;
+  for (const float tick : ticks) {
+    const float y = high.y - (tick - legend.scale->low) / (span > 0 ? span : 1) * height;
+    list.AddLine({right, y}, {right + 0.25f * text, y}, text_color());
+    list.AddText({right + 0.4f * text, y - 0.5f * text}, text_color(),
+                 render::tick_text(tick, ticks.size() > 1 ? ticks[1] - ticks[0] : 1).c_str());
+  }
+}
+
+void draw_legend(const render::Legend& legend, const ViewportArea& area) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize(), step = 1.35f * text;
+  const std::string title = legend.unit.empty() ? legend.title : fmt::format("{} [{}]", legend.title, legend.unit);
+  float width = ImGui::CalcTextSize(title.c_str()).x;
+  for (const auto& [color, name] : legend.swatches)
+    width = std::max(width, 1.4f * text + ImGui::CalcTextSize(name.c_str()).x);
+  width = std::max(width, 5 * text);
+  const float rows = legend.scale ? 9 : static_cast<float>(legend.swatches.size());
+  const ImVec2 low{area.high.x - width - 1.6f * text, area.low.y + 1.2f * text};
+  backing({low.x - 0.6f * text, low.y - 0.5f * text},
+          {low.x + width + 0.6f * text, low.y + (rows + 1) * step + 0.4f * text});
+  list.AddText(low, text_color(), title.c_str());
+  if (legend.scale) {
+    draw_scale(legend, {low.x, low.y + 1.6f * text}, {low.x + width, low.y + (rows + 1) * step - 0.3f * text});
+    return;
+  }
+  float y = low.y + step;
+  for (const auto& [color, name] : legend.swatches) {
+    list.AddRectFilled({low.x, y + 0.05f * text}, {low.x + text, y + 1.05f * text}, packed(color), 0.2f * text);
+    list.AddText({low.x + 1.4f * text, y}, text_color(), name.c_str());
+    y += step;
+  }
+}
+
+// A round length at the distance of the camera's target.
+void draw_length(const ViewportArea& area, const render::Camera& camera) {
+  const float depth = (camera.target - camera.eye).norm();
+  const float pixels_a_metre = area.height() / (2 * depth * std::tan(camera.field_of_view / 2));
+  const float metres = render::round_length(0.22f * area.width() / pixels_a_metre), across = metres * pixels_a_metre;
+  const float text = ImGui::GetFontSize();
+  const std::string name = metres < 0.01f ? fmt::format("{:g} mm", 1000 * metres)
+                           : metres < 1   ? fmt::format("{:g} cm", 100 * metres)
+                                          : fmt::format("{:g} m", metres);
+  const ImVec2 end{area.high.x - 1.4f * text, area.high.y - 1.2f * text};
+  backing({end.x - across - 0.5f * text, end.y - 1.7f * text}, {end.x + 0.5f * text, end.y + 0.5f * text});
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled({end.x - across, end.y - 0.12f * text}, {end.x, end.y + 0.12f * text}, text_color());
+  list.AddText({end.x - across / 2 - ImGui::CalcTextSize(name.c_str()).x / 2, end.y - 1.4f * text}, text_color(),
+               name.c_str());
+}
+
+}  // namespace
+
+render::Scene without_text(const render::Scene& scene) {
+  render::Scene bare = scene;
+  bare.labels = {};
+  bare.legend.reset();
+  bare.clock.clear();
+  bare.caption.clear();
+  bare.scale_bar = false;
+  return bare;
+}
+
+void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
+                        const render::Camera& camera, bool clock) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(area.low, area.high);
+  const float text = ImGui::GetFontSize();
+  draw_labels(scene, bounds, area, camera);
+  if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
+  if (clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
+  if (scene.legend) draw_legend(*scene.legend, area);
+  if (scene.scale_bar) draw_length(area, camera);
+  list.PopClipRect();
+}
+
+}  // namespace mercury::window
