@@ -17,32 +17,32 @@ std::string shown(double value) {
 }
 
 template <class Value>
-void require_at_least_zero(const char* option, Value value, const char* unit) {
+void require_at_least_zero(const char* name, Value value, const char* unit) {
   if (!(std::isfinite(value) && value >= 0))
-    throw InputError(option, shown(value) + " is not accepted; give a finite number >= 0" + unit);
+    throw ParameterError(name, shown(value) + " is not accepted; give a finite number >= 0" + unit);
 }
 
-void require_finite(const char* option, Vec3 value, const char* unit) {
+void require_finite(const char* name, Vec3 value, const char* unit) {
   if (!(std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)))
-    throw InputError(option, shown(value.x) + "," + shown(value.y) + "," + shown(value.z) +
-                                 " is not accepted; give three finite numbers" + unit);
+    throw ParameterError(name, shown(value.x) + "," + shown(value.y) + "," + shown(value.z) +
+                                   " is not accepted; give three finite numbers" + unit);
 }
 
 void validate_environment(const Ocean& ocean) {
-  require_at_least_zero("--density", ocean.density, " kg/m3");
-  require_at_least_zero("--drag-coefficient", ocean.drag_coefficient, "");
-  require_at_least_zero("--lift-coefficient", ocean.lift_coefficient, "");
-  require_finite("--flow", ocean.flow, " of m/s");
+  require_at_least_zero("density", ocean.density, " kg/m3");
+  require_at_least_zero("drag_coefficient", ocean.drag_coefficient, "");
+  require_at_least_zero("lift_coefficient", ocean.lift_coefficient, "");
+  require_finite("flow", ocean.flow, " of m/s");
 }
 
 void validate_environment(const OceanSimple& ocean) {
-  require_at_least_zero("--point-drag", ocean.point_drag, " N s/m");
-  require_finite("--flow", ocean.flow, " of m/s");
+  require_at_least_zero("point_drag", ocean.point_drag, " N s/m");
+  require_finite("flow", ocean.flow, " of m/s");
 }
 
 void validate_environment(const Land& land) {
-  require_at_least_zero("--friction", land.friction, "");
-  require_at_least_zero("--contact-stiffness", land.contact_stiffness, " N/m");
+  require_at_least_zero("friction", land.friction, "");
+  require_at_least_zero("contact_stiffness", land.contact_stiffness, " N/m");
 }
 
 }  // namespace
@@ -69,15 +69,15 @@ std::string name_of(const Device& device) {
 Solver solver_named(std::string_view name) {
   if (name == "force") return Solver::force;
   if (name == "xpbd") return Solver::xpbd;
-  throw InputError("--solver", "\"" + std::string(name) + "\" is not a solver; give force or xpbd");
+  throw ParameterError("solver", "\"" + std::string(name) + "\" is not a solver; give force or xpbd");
 }
 
 Environment environment_named(std::string_view name) {
   if (name == Ocean::name) return Ocean{};
   if (name == OceanSimple::name) return OceanSimple{};
   if (name == Land::name) return Land{};
-  throw InputError("--environment",
-                   "\"" + std::string(name) + "\" is not an environment; give ocean, ocean-simple or land");
+  throw ParameterError("environment",
+                       "\"" + std::string(name) + "\" is not an environment; give ocean, ocean-simple or land");
 }
 
 Device device_named(std::string_view name) {
@@ -91,8 +91,8 @@ Device device_named(std::string_view name) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), device.index);
     if (error == std::errc{} && end == digits.data() + digits.size() && device.index >= 0) return device;
   }
-  throw InputError("--device",
-                   "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
+  throw ParameterError("device",
+                       "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
 Vec3 gravity_of(const Environment& environment) {
@@ -105,12 +105,12 @@ float stiffness_scale_of(const Environment& environment) {
 
 void validate(const Configuration& configuration) {
   if (!(std::isfinite(configuration.dt) && configuration.dt > 0))
-    throw InputError("--dt", shown(configuration.dt) + " is not accepted; give a finite number > 0 s");
-  require_at_least_zero("--damping", configuration.damping, " 1/s");
-  require_finite("--gravity", gravity_of(configuration.environment), " of m/s2");
-  require_at_least_zero("--stiffness-scale", stiffness_scale_of(configuration.environment), "");
+    throw ParameterError("dt", shown(configuration.dt) + " is not accepted; give a finite number > 0 s");
+  require_at_least_zero("damping", configuration.damping, " 1/s");
+  require_finite("gravity", gravity_of(configuration.environment), " of m/s2");
+  require_at_least_zero("stiffness_scale", stiffness_scale_of(configuration.environment), "");
   if (configuration.device.threads < 0)
-    throw InputError("--threads", std::to_string(configuration.device.threads) + " is not accepted; give 0 or more");
+    throw ParameterError("threads", std::to_string(configuration.device.threads) + " is not accepted; give 0 or more");
   std::visit([](const auto& kind) { validate_environment(kind); }, configuration.environment);
 }
 

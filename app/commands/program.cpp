@@ -13,6 +13,7 @@
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/options/config_file.h"
+#include "app/options/option_values.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -67,9 +68,10 @@ class Program {
       if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw std::runtime_error("standard output cannot be written");
       return status;
+    } catch (const ParameterError& error) {
+      return refuse(option_of(error.parameter()) + ": " + error.problem());
     } catch (const InputError& error) {
-      say(config_ ? config_->located(error.what()) : error.what());
-      return status_bad_input;
+      return refuse(error.what());
     } catch (const std::bad_alloc&) {
       say("not enough memory");
       return status_failed;
@@ -80,6 +82,11 @@ class Program {
   }
 
  private:
+  int refuse(const std::string& message) const {
+    say(config_ ? config_->located(message) : message);
+    return status_bad_input;
+  }
+
   // The command that the first words name, and how many words that takes.
   std::pair<CLI::App*, std::size_t> command_in(const std::vector<std::string>& arguments) {
     CLI::App* command = &app_;

@@ -10,6 +10,15 @@
 
 namespace mercury {
 
+std::string option_of(std::string_view parameter) {
+  std::string option = "--";
+  for (const char letter : parameter) {
+    option += letter == '_' ? '-' : letter;
+    if (option.ends_with(", ")) option += "--";
+  }
+  return option;
+}
+
 template <class Number>
 Number number_from(const std::string& option, std::string_view text) {
   Number value{};

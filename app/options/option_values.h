@@ -16,6 +16,10 @@
 
 namespace mercury {
 
+// The option of a parameter that a library names: "--drag-coefficient" of "drag_coefficient"; also of several, joined
+// with ", ".
+std::string option_of(std::string_view parameter);
+
 // The whole text as a number of that type. Throws InputError("--dt: \"fast\" is not a number").
 template <class Number>
 Number number_from(const std::string& option, std::string_view text);

@@ -71,46 +71,43 @@ TEST(Configuration, NamesAndTheirReverse) {
 }
 
 TEST(Configuration, UnknownNamesAreAnsweredWithWhatIsAccepted) {
-  EXPECT_EQ(message_of([] { solver_named("euler"); }), "--solver: \"euler\" is not a solver; give force or xpbd");
+  EXPECT_EQ(message_of([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
   EXPECT_EQ(message_of([] { environment_named("lava"); }),
-            "--environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
+            "environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
   for (const char* name : {"gpu", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
     EXPECT_EQ(message_of([&] { device_named(name); }),
-              "--device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
+              "device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
 TEST(Configuration, TimeStepAndDampingAreChecked) {
   EXPECT_EQ(message_of(Configuration{}), "");
-  EXPECT_EQ(message_of(Configuration{.dt = 0}), "--dt: 0 is not accepted; give a finite number > 0 s");
-  EXPECT_EQ(message_of(Configuration{.dt = -0.5}), "--dt: -0.5 is not accepted; give a finite number > 0 s");
-  EXPECT_EQ(message_of(Configuration{.dt = std::nan("")}), "--dt: nan is not accepted; give a finite number > 0 s");
-  EXPECT_EQ(message_of(Configuration{.damping = -1}), "--damping: -1 is not accepted; give a finite number >= 0 1/s");
+  EXPECT_EQ(message_of(Configuration{.dt = 0}), "dt: 0 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.dt = -0.5}), "dt: -0.5 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.dt = std::nan("")}), "dt: nan is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(message_of(Configuration{.damping = -1}), "damping: -1 is not accepted; give a finite number >= 0 1/s");
   EXPECT_EQ(message_of(Configuration{.damping = 0}), "");
-  EXPECT_EQ(message_of(Configuration{.device = {.threads = -2}}), "--threads: -2 is not accepted; give 0 or more");
+  EXPECT_EQ(message_of(Configuration{.device = {.threads = -2}}), "threads: -2 is not accepted; give 0 or more");
 }
 
 TEST(Configuration, EveryParameterOfEveryEnvironmentIsChecked) {
   const float nan_value = std::nanf("");
   const float infinity = std::numeric_limits<float>::infinity();
   const auto in = [](const Environment& environment) { return message_of(Configuration{.environment = environment}); };
-  EXPECT_EQ(in(Ocean{.density = -1}), "--density: -1 is not accepted; give a finite number >= 0 kg/m3");
-  EXPECT_EQ(in(Ocean{.density = infinity}), "--density: inf is not accepted; give a finite number >= 0 kg/m3");
-  EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}),
-            "--drag-coefficient: -0.5 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.density = -1}), "density: -1 is not accepted; give a finite number >= 0 kg/m3");
+  EXPECT_EQ(in(Ocean{.density = infinity}), "density: inf is not accepted; give a finite number >= 0 kg/m3");
+  EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}), "drag_coefficient: -0.5 is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.lift_coefficient = nan_value}),
-            "--lift-coefficient: nan is not accepted; give a finite number >= 0");
-  EXPECT_EQ(in(Ocean{.flow = {0, nan_value, 1}}), "--flow: 0,nan,1 is not accepted; give three finite numbers of m/s");
+            "lift_coefficient: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.flow = {0, nan_value, 1}}), "flow: 0,nan,1 is not accepted; give three finite numbers of m/s");
   EXPECT_EQ(in(Ocean{.gravity = {infinity, 0, 0}}),
-            "--gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");
-  EXPECT_EQ(in(Ocean{.stiffness_scale = -2}), "--stiffness-scale: -2 is not accepted; give a finite number >= 0");
-  EXPECT_EQ(in(OceanSimple{.point_drag = -1}), "--point-drag: -1 is not accepted; give a finite number >= 0 N s/m");
+            "gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");
+  EXPECT_EQ(in(Ocean{.stiffness_scale = -2}), "stiffness_scale: -2 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(OceanSimple{.point_drag = -1}), "point_drag: -1 is not accepted; give a finite number >= 0 N s/m");
   EXPECT_EQ(in(OceanSimple{.flow = {0, 0, infinity}}),
-            "--flow: 0,0,inf is not accepted; give three finite numbers of m/s");
-  EXPECT_EQ(in(Land{.friction = -1}), "--friction: -1 is not accepted; give a finite number >= 0");
-  EXPECT_EQ(in(Land{.contact_stiffness = -1}),
-            "--contact-stiffness: -1 is not accepted; give a finite number >= 0 N/m");
-  EXPECT_EQ(in(Land{.stiffness_scale = nan_value}),
-            "--stiffness-scale: nan is not accepted; give a finite number >= 0");
+            "flow: 0,0,inf is not accepted; give three finite numbers of m/s");
+  EXPECT_EQ(in(Land{.friction = -1}), "friction: -1 is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Land{.contact_stiffness = -1}), "contact_stiffness: -1 is not accepted; give a finite number >= 0 N/m");
+  EXPECT_EQ(in(Land{.stiffness_scale = nan_value}), "stiffness_scale: nan is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.density = 0, .drag_coefficient = 0, .lift_coefficient = 5}), "");
   EXPECT_EQ(in(Land{.friction = 0, .contact_stiffness = 0, .stiffness_scale = 0}), "");
 }

@@ -70,7 +70,7 @@ struct Configuration {
 std::string_view name_of(Solver solver);
 std::string_view name_of(const Environment& environment);
 std::string name_of(const Device& device);
-// The reverse, with the environment's defaults. Throw InputError that lists what is accepted.
+// The reverse, with the environment's defaults. Throw ParameterError that lists what is accepted.
 Solver solver_named(std::string_view name);
 Environment environment_named(std::string_view name);
 Device device_named(std::string_view name);
@@ -78,7 +78,7 @@ Device device_named(std::string_view name);
 Vec3 gravity_of(const Environment& environment);
 float stiffness_scale_of(const Environment& environment);
 
-// Throws InputError naming the program's option (as in "--density: -1 is not accepted; give a number >= 0 kg/m3")
+// Throws ParameterError ("density: -1 is not accepted; give a finite number >= 0 kg/m3")
 // unless dt > 0, damping >= 0, densities, coefficients, friction, drag and stiffness scales >= 0, and everything is
 // finite.
 void validate(const Configuration& configuration);

@@ -149,7 +149,7 @@ TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
   EXPECT_FALSE(scene.set_configuration(configuration));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
-  EXPECT_EQ(messages[0].text, "--dt: -1 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(messages[0].text, "dt: -1 is not accepted; give a finite number > 0 s");
   EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
 }
 
