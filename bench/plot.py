@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what `mercury bench --csv` measured: springs per second against springs evaluated (the paper's figure 4), and
-against robot size when the files hold several sizes.
+"""Plots the output of `mercury bench --csv`: springs per second against springs evaluated (the paper's figure 4), or
+against robot size.
 
     bench/plot.py sweep.csv [more.csv ...] -o sweep.png
     bench/plot.py size5.csv size10.csv ... --against size -o sizes.png
@@ -16,7 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# What the paper states of figure 4 (RTX 2080 Ti): about 6e9 springs/s from 5e8 springs evaluated on, up to 1e11;
+# From the paper's figure 4 (RTX 2080 Ti): about 6e9 springs/s from 5e8 springs evaluated on, up to 1e11;
 # Titan about 1e9 on the same card.
 PAPER = [("Mercury as published, 2080 Ti", [5e8, 1e11], [6e9, 6e9]), ("Titan, 2080 Ti", [5e8, 1e11], [1e9, 1e9])]
 
@@ -33,7 +33,7 @@ def read(paths):
 
 
 def lines(rows, against):
-    """One line for every device, solver and environment; for figure 4 one for every size too."""
+    """One line per device, solver and environment, and for figure 4 per size."""
     groups = defaultdict(list)
     for row in rows:
         label = f"{row['solver']}, {row['environment']}"
@@ -60,7 +60,7 @@ def main():
             axes.annotate(label, (x[0], y[0]), xytext=(0, 5), textcoords="offset points", color="dimgrey", fontsize=8)
         axes.set_xlabel("springs evaluated")
     else:
-        axes.set_xlabel("masses of a robot")
+        axes.set_xlabel("masses per robot")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylabel("springs evaluated per second")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What telemetry of a whole batch adds to a call of 100 steps. Both are timed in turn, so that a clock that changes
-// meets both: bench_telemetry [device] [robots] [turns]
+// Measures what telemetry of a whole batch adds to a call of 100 steps. Calls with and without telemetry take turns, so
+// that a change of the clock rate affects both: bench_telemetry [device] [robots] [turns]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -D FILES=A|B|... -D OUTPUT=FILE.cpp -P EmbedFiles.cmake
-# Puts the files into the program as they are, by the assembler: a compiler would take seconds over so many numbers.
+# Embeds the files into the program by the assembler: a compiler would take seconds for arrays of this size.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(number 0)
 set(blobs "")

@@ -3,7 +3,7 @@
 set(MERCURY_HAS_CUDA OFF)
 set(oldest_cuda 12.0)  # the first with C++20
 
-# Sets `result` to why the compiler cannot be used, or to nothing.
+# Sets `result` to the reason why the compiler cannot be used, or to an empty string.
 function(mercury_check_cuda_compiler result)
   include(CheckLanguage)
   if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX})
@@ -38,7 +38,7 @@ if(why_no_cuda)
   message(STATUS "Mercury: without the CUDA backend (${why_no_cuda})")
 else()
   if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
-    # Turing to Hopper as machine code, anything newer through PTX.
+    # Machine code for Turing to Hopper, PTX for newer cards.
     set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90 CACHE STRING "CUDA architectures")
   endif()
   enable_language(CUDA)

@@ -4,7 +4,8 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 if(TARGET mercury)
-  # Libraries that scripts/bundle packs beside the program, for what these libraries load, too (RPATH, not RUNPATH).
+  # The libraries that scripts/bundle packs beside the program. RPATH, not RUNPATH, so that it also applies to what these
+  # libraries load.
   set_target_properties(mercury PROPERTIES INSTALL_RPATH $ORIGIN/../lib/mercury)
   target_link_options(mercury PRIVATE LINKER:--disable-new-dtags)
   install(TARGETS mercury RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)

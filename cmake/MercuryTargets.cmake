@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every target of Mercury's own shares.
+# Flags of all targets of Mercury.
 set(mercury_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers)
 list(JOIN mercury_warnings "," mercury_warnings_from_nvcc)
 
@@ -8,10 +8,10 @@ target_compile_features(mercury_build_flags INTERFACE cxx_std_20)
 target_compile_options(mercury_build_flags INTERFACE
   "$<$<COMPILE_LANGUAGE:CXX>:${mercury_warnings}>"
   "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${mercury_warnings_from_nvcc}>"
-  # One rounding for an equation on every machine: products and sums are fused only where the source says so.
+  # The same rounding on every machine: products and sums are fused only where the source says so.
   $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
-# GCC 13 takes any reference that comes back from a call with a temporary argument for dangling.
+# GCC 13 reports every reference that a call with a temporary argument returns as dangling.
 target_compile_options(mercury_build_flags INTERFACE
   $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
 if(MERCURY_WERROR)
