@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "bench/cpu_lattice.h"
-#include "sim/backend.h"
+#include "mercury/backend.h"
+#include "mercury/cuda_devices.h"
 
 namespace mercury::bench {
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "bench/published_kernel.cuh"
+#include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 

@@ -65,13 +65,13 @@ float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b) {
   return length(robot.masses[b] - robot.masses[a]);
 }
 
-bool same_build(const Robot& a, const Robot& b) {
+bool same_topology(const Robot& a, const Robot& b) {
   const auto same_ends = [](const Spring& s, const Spring& t) { return s.a == t.a && s.b == t.b; };
   return a.masses.size() == b.masses.size() && std::ranges::equal(a.springs, b.springs, same_ends) &&
          a.faces == b.faces;
 }
 
-std::uint64_t build_key(const Robot& robot) {
+std::uint64_t topology_key(const Robot& robot) {
   std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
   const auto take = [&](std::uint64_t value) { key = (key ^ value) * 0x100000001b3u; };  // as FNV-1a takes bytes
   for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/split_backend.h"
+#include "mercury/backend.h"
 
 #include <algorithm>
 #include <exception>

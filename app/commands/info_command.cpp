@@ -14,11 +14,11 @@
 #include "app/recording/configuration_json.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/robot_file.h"
 #include "mercury/simulation.h"
-#include "sim/chip.h"
 
 namespace mercury {
 namespace {

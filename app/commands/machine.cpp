@@ -11,6 +11,7 @@
 #include "app/base/child_process.h"
 #include "app/video/frame_writer.h"
 #include "app/video/position_bridge.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/simulation.h"
 #include "render/context.h"
 

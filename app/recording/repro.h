@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mercury/clock.h"
 #include "mercury/simulation.h"
-#include "sim/physics/muscle.h"
 
 namespace mercury {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mercury/backend.h"
 #include "mercury/error.h"
-#include "sim/backend.h"
 
 namespace mercury {
 namespace {

@@ -10,12 +10,32 @@
 #include <vector>
 
 #include "app/video/position_bridge.h"
-#include "sim/cuda/memory.h"
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {
 
-using cuda::check;
+void check(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+}
+
+// Floats in device memory.
+class DeviceFloats {
+ public:
+  explicit DeviceFloats(std::size_t size) : size_(size) {
+    if (size > 0) check(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(float)), "allocating device memory");
+  }
+  ~DeviceFloats() { cudaFree(data_); }
+  DeviceFloats(const DeviceFloats&) = delete;
+  DeviceFloats& operator=(const DeviceFloats&) = delete;
+
+  float* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  float* data_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 // A point in a stream that other streams can wait for.
 class Mark {
@@ -66,7 +86,7 @@ class SharedBuffer {
   SharedBuffer& operator=(const SharedBuffer&) = delete;
 
   // Fills its beginning. OpenGL's calls before and after this one see it before and after.
-  void fill(const cuda::DeviceArray<float>& values, cudaStream_t stream) {
+  void fill(const DeviceFloats& values, cudaStream_t stream) {
     check(cudaGraphicsMapResources(1, &resource_, stream), "taking OpenGL's buffer");
     void* memory = nullptr;
     std::size_t bytes = 0;
@@ -85,7 +105,7 @@ class SharedBuffer {
 // Memory of one snapshot.
 struct Store {
   explicit Store(std::size_t masses) : positions(3 * masses) {}
-  cuda::DeviceArray<float> positions;
+  DeviceFloats positions;
   Mark taken, shown;  // it is full; it has been copied on
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU backend: robots are shared out over the cores, each stepped by one of them.
-#include "sim/backend.h"
+#include "mercury/backend.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "sim/backend.h"
+#include "mercury/backend.h"
 #include "sim/cpu/kernel.h"
 
 namespace mercury::cpu {

@@ -15,7 +15,7 @@ Body make_body(const Robot& robot, std::size_t lanes) {
   body.robot = &robot;
   body.measures = measure(robot);
   body.places = arrange(robot, lanes);
-  body.build_key = build_key(robot);
+  body.topology_key = topology_key(robot);
   body.springs = plan_springs(robot, body.places);
   body.face_pairs = pair_faces(robot);
   body.faces = plan_faces(body.face_pairs, body.places);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "sim/backend.h"
+#include "mercury/backend.h"
 #include "sim/cpu/aligned.h"
 #include "sim/cpu/cells.h"
 #include "sim/cpu/near_pairs.h"
@@ -58,7 +58,7 @@ struct Residence {
 struct Body {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  std::uint64_t build_key = 0;  // mercury/robot.h
+  std::uint64_t topology_key = 0;  // mercury/robot.h
   std::vector<FacePair> face_pairs;
   std::vector<Cell> cells;  // sim/cpu/cells.h
   Places places;

@@ -33,12 +33,12 @@ std::size_t footprint(std::size_t slots, std::size_t seats, std::size_t lanes) {
 }
 
 bool alike(const Body& a, const Body& b) {
-  return a.build_key == b.build_key && same_build(*a.robot, *b.robot) && a.face_pairs == b.face_pairs;
+  return a.topology_key == b.topology_key && same_topology(*a.robot, *b.robot) && a.face_pairs == b.face_pairs;
 }
 
 // Groups of as many robots of one build as there are lanes, or nearly; the others are left.
 std::vector<Group> alike_groups(std::span<const Body> bodies, Group& left) {
-  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i].build_key; });
+  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i].topology_key; });
   std::vector<Group> groups;
   Group others;
   for (auto first = left.begin(); first != left.end();) {

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "sim/backend.h"
+#include "mercury/backend.h"
 
 namespace mercury::cpu {
 

@@ -46,13 +46,13 @@ Arrangement arrange(const Robot& robot) {
 
 std::vector<std::uint32_t> first_of_build(std::span<const Robot* const> robots) {
   std::vector<std::uint64_t> keys(robots.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) { keys[i] = build_key(*robots[i]); });
+  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) { keys[i] = topology_key(*robots[i]); });
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_key;
   for (std::uint32_t i = 0; i < robots.size(); ++i) first_of_key.try_emplace(keys[i], i);
   std::vector<std::uint32_t> first(robots.size());
   oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
     const std::uint32_t candidate = first_of_key.at(keys[i]);
-    first[i] = same_build(*robots[candidate], *robots[i]) ? candidate : static_cast<std::uint32_t>(i);
+    first[i] = same_topology(*robots[candidate], *robots[i]) ? candidate : static_cast<std::uint32_t>(i);
   });
   return first;
 }

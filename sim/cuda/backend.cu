@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CUDA backend.
-#include "sim/backend.h"
+#include "mercury/backend.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/chip.h"
+#include "mercury/cuda_devices.h"
 #include "sim/cuda/batch.h"
 #include "sim/cuda/block.cuh"
 #include "sim/cuda/step.h"

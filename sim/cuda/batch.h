@@ -2,7 +2,7 @@
 // A batch in device memory, built from robots.
 #pragma once
 
-#include "sim/backend.h"
+#include "mercury/backend.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/memory.h"
 #include "sim/physics/measures.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands in for the CUDA backend in a build without nvcc.
+#include "mercury/backend.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/error.h"
-#include "sim/backend.h"
-#include "sim/chip.h"
 
 namespace mercury {
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "mercury/telemetry.h"
 #include "sim/physics/integration.h"
 
 namespace mercury {

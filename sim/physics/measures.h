@@ -9,7 +9,7 @@
 
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
-#include "mercury/simulation.h"
+#include "mercury/state.h"
 #include "sim/physics/fixed_point.h"
 
 namespace mercury {

@@ -5,21 +5,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "mercury/clock.h"
 #include "mercury/host_device.h"
 #include "mercury/material.h"
 
 namespace mercury {
-
-// Which instant a step stands at: time = base_time + (step - base_step) dt. The base moves when dt changes.
-struct Clock {
-  double dt = 1e-3;      // [s]
-  double base_time = 0;  // [s]
-  std::int64_t base_step = 0;
-  std::int64_t step = 0;
-};
-MERCURY_HOST_DEVICE double time_of(const Clock& clock) {
-  return clock.base_time + static_cast<double>(clock.step - clock.base_step) * clock.dt;
-}
 
 // A phase counts 2^-64 of a turn and wraps around, so that adding is exact and an hour costs no digit.
 struct MusclePhase {

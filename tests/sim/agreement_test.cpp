@@ -4,6 +4,7 @@
 
 #include "backend.h"
 #include "bodies.h"
+#include "mercury/cuda_devices.h"
 #include "reference.h"
 
 namespace mercury {

@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 
+#include "mercury/cuda_devices.h"
 #include "mercury/simulation.h"
 
 namespace mercury {

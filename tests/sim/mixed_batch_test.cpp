@@ -280,7 +280,7 @@ TEST(Parties, AreMadeOfRobotsOfDifferentBuilds) {
     EXPECT_GE(in_parties.size(), kernel.lanes) << kernel.name;
     std::size_t mixed = 0;
     for (const cpu::Party& party : parties)
-      mixed += party.bodies.size() > 1 && !same_build(robots[party.bodies[0]], robots[party.bodies[1]]);
+      mixed += party.bodies.size() > 1 && !same_topology(robots[party.bodies[0]], robots[party.bodies[1]]);
     EXPECT_GE(mixed, 1u) << kernel.name;
   }
 }

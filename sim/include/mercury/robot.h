@@ -25,8 +25,9 @@ struct Face {
   friend constexpr bool operator==(const Face&, const Face&) = default;
 };
 
-inline constexpr float min_rest_length = 0.001f;  // [m] (paper, III.B)
-inline constexpr std::size_t max_masses = 65535;
+inline constexpr float min_rest_length = 0.001f;         // [m] (paper, III.B)
+inline constexpr std::size_t max_masses = 65535;         // mass indices have 16 bits
+inline constexpr std::uint32_t no_spring = 0xffffffffu;  // stands for no index in Robot::springs
 
 struct Robot {
   std::string name;
@@ -45,10 +46,11 @@ std::span<const Material> materials_of(const Robot& robot);
 // Distance of a spring's two masses at rest [m], the default of rest_length.
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
 
-// Robots of one build have the same masses joined and the same faces, in the same order; materials, lengths and places
-// may differ. Keys are equal for robots of one build, and seldom for others.
-bool same_build(const Robot& a, const Robot& b);
-std::uint64_t build_key(const Robot& robot);
+// Two robots have the same topology if their springs join the same masses and their faces have the same corners, in the
+// same order. Materials, rest lengths and positions may differ. The keys of robots of the same topology are equal;
+// other robots rarely have equal keys.
+bool same_topology(const Robot& a, const Robot& b);
+std::uint64_t topology_key(const Robot& robot);
 
 // Throws InputError, its place a JSON pointer ("/springs/7: mass 912 is out of range, the robot has 300"), unless
 // there are 1 to max_masses masses, all finite and within 1e6 m; every spring joins two different masses of the

@@ -1,138 +1,133 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch of robots that is stepped through time: owns backend, time and configuration.
+// A batch of robots that is stepped through time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "mercury/backend.h"
+#include "mercury/clock.h"
 #include "mercury/configuration.h"
+#include "mercury/material.h"
+#include "mercury/perturbation.h"
 #include "mercury/robot.h"
+#include "mercury/state.h"
 #include "mercury/telemetry.h"
+#include "mercury/vec3.h"
 
 namespace mercury {
 
-class Backend;
-struct Clock;
-
-// One robot's state as it stood at the last step: no reference into the simulation.
-struct State {
-  std::vector<Vec3> positions;   // [m], one a mass
-  std::vector<Vec3> velocities;  // [m/s]
-  // As in Telemetry.
-  bool exploded = false;
-  double exploded_at = 0;
-  std::uint32_t culprit_spring = no_spring;
-};
-
-// A pull on one mass by a spring of rest length 0 to a point in the robot's own frame, as a hand on a mouse does.
-struct Perturbation {
-  std::size_t robot = 0;
-  std::uint16_t mass = 0;
-  Vec3 target;           // [m]
-  float stiffness = 50;  // [N/m]
-};
-
-// Robots of a batch do not meet: each lives in its own space, at the coordinates of its file.
-// On land, a robot is set down with its lowest mass at z = 0.
+// Owns the robots, their materials, the configuration, the clock and a backend that does the stepping.
 //
-// On one backend a robot's trajectory is bit for bit the same from run to run, alone or in any batch, in any order and
-// with any number of threads; the CPU and CUDA agree within rounding.
+//     mercury::Simulation simulation({.dt = 1e-3, .environment = mercury::Land{}}, robots);
+//     simulation.step(1000);
+//     for (const mercury::Telemetry& robot : simulation.telemetry()) use(robot.center_of_mass);
+//
+// Robots of a batch do not meet: each lives in its own space, in the coordinates of its file. On land, each starts with
+// its lowest mass at z = 0.
+//
+// Results are reproducible. On one backend a robot's trajectory is the same bit for bit from run to run, alone or in
+// any batch, in any order and with any number of threads. The CPU and CUDA agree within rounding.
+//
+// Functions that take the index of a robot throw std::out_of_range if there is no such robot. One thread at a time may
+// use a simulation.
 class Simulation {
  public:
-  // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), DeviceError
-  // when the device asked for is not there.
+  // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), and
+  // DeviceError if the device does not exist.
   explicit Simulation(const Configuration& configuration = {}, std::span<const Robot> robots = {});
-  // Stepped by a backend of the caller's (sim/backend.h), as a recording that is played back; the configuration's
-  // device counts for nothing.
+  // Uses the given backend. The configuration's device has no effect.
   Simulation(const Configuration& configuration, std::span<const Robot> robots, std::unique_ptr<Backend> backend);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Adds robots at the present time; the others keep their state. Returns the index of the first one added.
+  // Adds robots, at rest at the present time; the others keep their state. Returns the index of the first new robot.
+  // Throws InputError as the constructor does.
   std::size_t add(std::span<const Robot> robots);
   std::size_t add(const Robot& robot) { return add(std::span(&robot, 1)); }
 
-  // Keeps these robots, in this order, with their state, materials and explosions; the others leave, pulls let go, and
-  // time stays. Throws std::out_of_range for one that is not there, std::invalid_argument for one named twice.
+  // Keeps these robots, in this order, with their states and materials, and removes the others and all perturbations.
+  // Time does not change. Throws std::invalid_argument if an index appears twice.
   void keep(std::span<const std::size_t> robots);
 
-  std::size_t size() const;                     // robots
+  std::size_t size() const;                     // number of robots
   const Robot& robot(std::size_t index) const;  // as it was added
   const Configuration& configuration() const;
   double time() const;         // [s]
-  std::int64_t steps() const;  // since the start or the last reset
-  // The instant, exactly (sim/physics/muscle.h). Set, all goes on from there as it would have there; robots keep their
-  // state.
+  std::int64_t steps() const;  // since the start or the last reset()
+
+  // The exact instant. After set_clock() the simulation goes on as it would have at that instant; robots keep their
+  // state. Throws std::invalid_argument unless clock.dt is the configuration's dt and 0 <= base_step <= step.
   const Clock& clock() const;
   void set_clock(const Clock& clock);
 
-  // What runs it, for people: "CPU, 2 threads, AVX2" or "NVIDIA H100 80GB HBM3".
+  // What runs the simulation, for people: "CPU, 2 threads, AVX2" or "NVIDIA H100 80GB HBM3".
   std::string device_name() const;
-  // Things worth a line to the user, such as a robot too large for the chip; empty = nothing.
+  // Lines worth showing to the user, such as that a robot is too large for the chip. Usually empty.
   std::vector<std::string> notes() const;
 
-  // How many of its robots the device steps at the same time; batches of a multiple of that leave nothing idle.
+  // How many of its robots the device steps at the same time. Batches of a multiple of this leave no core idle.
   std::size_t robots_at_once() const;
-  // Springs a second that the device could evaluate if nothing but its busiest pipe counted (docs/performance.md), or 0
-  // where that is not known.
+  // Springs per second that the device could evaluate if only its busiest unit limited it (docs/performance.md); 0 if
+  // unknown.
   double spring_limit() const;
-  // How long all calls of step() took so far [s], by the device's own clock.
+  // How long all calls of step() have taken so far, by the device's own clock [s].
   double busy_seconds() const;
 
-  // Advances every robot that has not exploded by `steps` time steps. Returns when done.
+  // Advances every robot that has not exploded by `steps` >= 0 time steps. Returns when done.
   void step(std::int64_t steps = 1);
 
-  // Every robot back to its rest pose at time 0, nothing exploded; materials keep their changes.
+  // Puts every robot back to its rest pose at time 0; none has exploded. Materials keep their changes.
   void reset();
-  // Changes solver, environment, dt or damping from here on; state and time stay. The device must be the same.
+  // Changes solver, environment, dt or damping from now on. State and time stay, except that robots that come to land
+  // are set down on the floor. Throws InputError for a bad value, std::invalid_argument if the device differs.
   void configure(const Configuration& configuration);
 
   State state(std::size_t robot) const;
-  std::vector<Vec3> positions(std::size_t robot) const;
-  // Positions of all robots, one after the other, robot i's first at offsets()[i]. `out` has mass_count() elements.
+  std::vector<Vec3> positions(std::size_t robot) const;  // one per mass [m]
+
+  std::size_t mass_count() const;                     // of all robots together
+  std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements; robot i's masses begin at element i
+  // All robots, one after the other: `out` has mass_count() elements, otherwise they throw std::invalid_argument.
   void read_positions(std::span<Vec3> out) const;
   void read_velocities(std::span<Vec3> out) const;
-  // The CUDA device that holds all robots, -1 = none or several.
+  // The CUDA device that holds all robots; -1 = none, or several.
   int cuda_device() const;
-  // As read_positions(), into memory of that device, 3 * mass_count() floats: queued in its legacy default stream and
-  // not waited for. Throws std::logic_error where cuda_device() is -1.
+  // Like read_positions(), into memory of that device (3 * mass_count() floats). Queues the copy in the device's legacy
+  // default stream and does not wait for it. Throws std::logic_error if cuda_device() is -1.
   void copy_positions(float* device_out) const;
-  std::size_t mass_count() const;                     // of all robots together
-  std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements
-  // Throws std::invalid_argument unless both have one element a mass.
-  // The robot has not exploded then.
+
+  // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterwards.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
-  // The same, with the explosion if it had exploded.
+  // Restores an explosion as well.
   void set_state(std::size_t robot, const State& state);
 
-  // One a robot, reduced on the device.
+  // One element per robot, computed on the device.
   std::vector<Telemetry> telemetry() const;
   Telemetry telemetry(std::size_t robot) const;
-  // FNV-1a over the bits of the positions and velocities.
+  // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
 
-  // A robot's material as it is now. Springs of that material change at the next step.
+  // A robot's present material. Throws std::out_of_range if the robot's table has no such id.
   Material material(std::size_t robot, MaterialId id) const;
+  // Applies to all springs of that material from the next step on. Throws InputError if the material is not valid.
   void set_material(std::size_t robot, MaterialId id, const Material& material);
-  // All robots' tables in one call: `tables` has size() * max_materials elements, robot-major; unused ids are ignored.
+  // The tables of all robots: size() * max_materials elements, all materials of robot 0 first. Ids that a robot does
+  // not use are ignored. Throws std::invalid_argument for another size, InputError if a material is not valid.
   void set_materials(std::span<const Material> tables);
-  std::vector<Material> materials() const;  // the same shape
+  std::vector<Material> materials() const;
 
-  // Replaces all pulls of before; empty = let go.
+  // Replaces all perturbations; an empty span removes them. Throws std::out_of_range for a mass that does not exist.
   void set_perturbations(std::span<const Perturbation> perturbations);
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-
-// Whether a CUDA device can be used, how many, and their names; 0 in a build without CUDA.
-int cuda_device_count();
-std::string cuda_device_name(int index);
-bool built_with_cuda();
 
 }  // namespace mercury

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a batch tells about each robot without reading its masses.
+// A summary of one robot's state. The device computes it, so that nobody has to read all masses.
 #pragma once
 
 #include <cstdint>
 
+#include "mercury/robot.h"
 #include "mercury/vec3.h"
 
 namespace mercury {
 
-inline constexpr std::uint32_t no_spring = 0xffffffffu;
-
+// Sums and maxima over one robot at the end of the last step. They agree with the formulas of mercury/observables.h
+// within rounding.
 struct Telemetry {
   Vec3 center_of_mass;                       // [m]
-  Vec3 velocity;                             // of the centre of mass [m/s]
-  double kinetic_energy = 0;                 // [J]
-  double elastic_energy = 0;                 // of all springs at their present rest lengths [J]
+  Vec3 velocity;                             // of the center of mass [m/s]
+  double kinetic_energy = 0;                 // sum of |v|^2 / 2 [J]
+  double elastic_energy = 0;                 // sum of k (|d| - L)^2 / 2, L the present rest lengths [J]
   float largest_strain = 0;                  // max | |d| - L0 | / L0 over the springs [1]
-  bool exploded = false;                     // left the finite, and was frozen
-  double exploded_at = 0;                    // [s], if exploded
-  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs, if exploded and a spring is to blame
+  bool exploded = false;                     // the robot is frozen, see State
+  double exploded_at = 0;                    // when the step began that failed [s], if exploded
+  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs, if exploded and a spring is known as the cause
 };
 
 }  // namespace mercury

@@ -10,6 +10,7 @@
 
 #include "app/scene/group_scene.h"
 #include "app/video/studio.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 #include "render/readback.h"

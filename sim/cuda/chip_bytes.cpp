@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/chip.h"
+#include "mercury/cuda_devices.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a robot needs of the chip, and what the CUDA device here says to it.
-#include "sim/chip.h"
+#include "mercury/cuda_devices.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Simulation requires of the code that steps its robots.
+//
+// The library has a backend for CPUs and one for CUDA devices, and Simulation chooses one by Configuration::device. A
+// program can bring its own: derive from Backend and pass it to Simulation's constructor. The program `mercury` plays
+// recordings this way.
+//
+//     Simulation   checks arguments, owns robots, materials, configuration and clock
+//         |
+//         v        load, configure, step, read, write, report
+//     Backend      owns the state: positions and velocities of all masses, the status of each robot
+//
+// Simulation checks every argument before it calls a backend: indices are in range and spans have the right sizes. One
+// thread calls at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mercury/clock.h"
+#include "mercury/configuration.h"
+#include "mercury/material.h"
+#include "mercury/perturbation.h"
+#include "mercury/robot.h"
+#include "mercury/telemetry.h"
+#include "mercury/vec3.h"
+
+namespace mercury {
+
+inline constexpr std::uint32_t no_mass = 0xffffffffu;
+
+// Whether a robot has exploded.
+struct RobotStatus {
+  std::int64_t exploded_step = -1;   // Clock::step at which the failed step began; -1 = the robot has not exploded
+  std::uint32_t bad_mass = no_mass;  // a mass whose position or force left the accepted range, if one is known
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  // For people: "CPU, 2 threads, AVX2". See Simulation::device_name().
+  virtual std::string device_name() const = 0;
+  // Lines for the user, see Simulation::notes().
+  virtual std::vector<std::string> notes() const = 0;
+  // See the functions of the same names in Simulation.
+  virtual std::size_t robots_at_once() const = 0;
+  virtual double spring_limit() const = 0;  // [1/s], 0 = unknown
+  virtual double busy_seconds() const = 0;  // [s]
+
+  // Replaces all robots. Each begins with the positions of its `masses`, at rest, not exploded, with its own materials,
+  // and without perturbations. The robots outlive the backend or the next load(). Throws DeviceError if they do not
+  // fit.
+  virtual void load(std::span<const Robot* const> robots, const Configuration& configuration) = 0;
+  // Applies to all later steps. The device does not change.
+  virtual void configure(const Configuration& configuration) = 0;
+  // Advances every robot that has not exploded by `steps` > 0 steps; the first begins at `clock`. A robot that explodes
+  // is frozen in the step that failed, and the others go on. Returns when all are done.
+  virtual void step(const Clock& clock, std::int64_t steps) = 0;
+
+  // State of one robot, one element per mass.
+  virtual void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const = 0;
+  virtual void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
+  // All robots, one after the other, one element per mass.
+  virtual void read_positions(std::span<Vec3> out) const = 0;
+  virtual void read_velocities(std::span<Vec3> out) const = 0;
+
+  // See the functions of the same names in Simulation. The defaults are right unless one CUDA device holds all robots.
+  virtual int cuda_device() const { return -1; }
+  virtual void copy_positions(float* /*device_out*/) const {
+    throw std::logic_error("these robots are on no CUDA device");
+  }
+
+  virtual RobotStatus status(std::size_t robot) const = 0;
+  virtual std::vector<RobotStatus> statuses() const = 0;  // one per robot
+  // A robot whose exploded_step is not negative is not stepped.
+  virtual void set_status(std::size_t robot, const RobotStatus& status) = 0;
+
+  // Material tables by id. All robots: max_materials elements per robot; one robot: max_materials elements. Ids that no
+  // spring uses are ignored.
+  virtual void write_materials(std::span<const Material> tables) = 0;
+  virtual void write_materials(std::size_t robot, std::span<const Material> table) = 0;
+
+  // Replaces all perturbations.
+  virtual void set_perturbations(std::span<const Perturbation> perturbations) = 0;
+
+  // Fills one element per robot: its telemetry except `exploded`, `exploded_at` and `culprit_spring`, which Simulation
+  // derives from the status, and its status.
+  virtual void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const = 0;
+};
+
+// The backend that a configuration asks for. Throws DeviceError if this build or machine does not have the device.
+std::unique_ptr<Backend> make_backend(const Device& device);
+
+// The same with the kind of device given; `device.kind` is ignored.
+std::unique_ptr<Backend> make_cpu_backend(const Device& device);
+std::unique_ptr<Backend> make_cuda_backend(const Device& device);  // one device, by index
+
+// Several backends as one. Each part gets an equal share of the robots, and all parts step at the same time. A robot
+// gives the same results bit for bit as in its part alone. `parts` is not empty.
+std::unique_ptr<Backend> make_split_backend(std::vector<std::unique_ptr<Backend>> parts);
+
+}  // namespace mercury

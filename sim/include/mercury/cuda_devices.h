@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CUDA devices of this machine, and how well a robot fits on them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// False in a build without nvcc. It then finds no devices.
+bool built_with_cuda();
+// Usable CUDA devices; 0 without a driver or in a build without CUDA.
+int cuda_device_count();
+// For example "NVIDIA H100 80GB HBM3"; empty in a build without CUDA. Throws DeviceError if the device does not exist.
+std::string cuda_device_name(int index);
+
+// The shared memory that a thread block needs to step this robot on the chip, without any that only serves speed
+// [bytes]: 36 per mass (paper, Table II), the material table, the rest lengths, and on land the grid that finds
+// contacts. A robot stays on the chip, contacts included, on devices whose blocks may have this much. Works in every
+// build.
+std::size_t chip_bytes(const Robot& robot, const Configuration& configuration);
+
+// How a large batch of one robot is laid out on a device.
+struct ChipFit {
+  std::size_t most_bytes = 0;      // shared memory that a block of this device may have [bytes]
+  bool on_chip = false;            // the masses stay in shared memory; otherwise in device memory, which is slower
+  bool contacts_on_chip = false;   // the contact lists stay in shared memory, too
+  std::size_t robots_at_once = 0;  // robots of this kind that the device steps at the same time
+};
+
+// Throws DeviceError if there is no CUDA device of that index.
+ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int device);
+
+}  // namespace mercury

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Simulation owns. Its functions are in simulation.cpp (robots and time), simulation_state.cpp (states,
+// explosions, telemetry) and simulation_controls.cpp (materials, perturbations).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mercury/simulation.h"
+
+namespace mercury {
+
+// The states of all robots, to restore them after the backend has loaded other robots.
+struct BatchState {
+  std::vector<State> states;
+  std::vector<RobotStatus> statuses;
+};
+
+// When a robot exploded and by which spring. A backend reports only the step and perhaps a mass; the rest takes a
+// search over the frozen robot, so it is done when somebody first asks, and kept. The frozen state cannot change
+// meanwhile.
+struct KnownExplosion {
+  std::int64_t step = -1;  // RobotStatus::exploded_step that this belongs to; -1 = nothing is known yet
+  double at = 0;           // [s]
+  std::uint32_t culprit_spring = no_spring;
+};
+
+struct Simulation::Parts {
+  Configuration configuration;
+  Clock clock;
+  std::vector<std::unique_ptr<Robot>> robots;      // the backend refers to them, so their addresses must not change
+  std::vector<std::size_t> offsets{0};             // mass_offsets()
+  std::vector<Material> materials;                 // [robot][max_materials]
+  mutable std::vector<KnownExplosion> explosions;  // one per robot
+  mutable std::vector<RobotStatus> reported;       // one per robot, used by telemetry()
+  std::unique_ptr<Backend> backend;                // last: released before the robots
+
+  std::size_t size() const { return robots.size(); }
+  std::size_t masses(std::size_t robot) const { return offsets[robot + 1] - offsets[robot]; }
+  std::span<Material> table(std::size_t robot) {
+    return std::span(materials).subspan(robot * max_materials, max_materials);
+  }
+
+  // Throw std::out_of_range.
+  void require(std::size_t robot) const;
+  void require_material(std::size_t robot, MaterialId id) const;
+
+  void load();
+  void put_at_rest(std::size_t robot);
+
+  // Without the explosion.
+  State state(std::size_t robot) const;
+  BatchState save() const;
+  void restore(const BatchState& saved);
+
+  const KnownExplosion& explosion(std::size_t robot, const RobotStatus& status) const;
+  // Fills in the explosion, if there is one. `out` is a State or a Telemetry.
+  void add_explosion(auto& out, std::size_t robot, const RobotStatus& status) const {
+    if (status.exploded_step < 0) return;
+    const KnownExplosion& known = explosion(robot, status);
+    out.exploded = true;
+    out.exploded_at = known.at;
+    out.culprit_spring = known.culprit_spring;
+  }
+  void change_clock(const Clock& changed);
+};
+
+// How far a robot is lifted (or lowered) so that its lowest mass is at z = 0 on land [m]; 0 in other environments.
+float lift_to_floor(std::span<const Vec3> positions, const Environment& environment);
+
+}  // namespace mercury

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// States, explosions and telemetry of a Simulation.
+#include <bit>
+#include <stdexcept>
+
+#include "mercury/simulation.h"
+#include "sim/physics/measures.h"
+#include "sim/simulation_parts.h"
+
+namespace mercury {
+namespace {
+
+std::uint64_t fnv1a(std::span<const Vec3> values, std::uint64_t hash) {
+  const auto add = [&](float value) {
+    auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int byte = 0; byte < 4; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 0x100000001b3u;
+  };
+  for (const Vec3 value : values) {
+    add(value.x);
+    add(value.y);
+    add(value.z);
+  }
+  return hash;
+}
+
+}  // namespace
+
+State Simulation::Parts::state(std::size_t robot) const {
+  State state{std::vector<Vec3>(masses(robot)), std::vector<Vec3>(masses(robot))};
+  backend->read(robot, state.positions, state.velocities);
+  return state;
+}
+
+BatchState Simulation::Parts::save() const {
+  BatchState saved;
+  for (std::size_t i = 0; i < size(); ++i) {
+    saved.states.push_back(state(i));
+    saved.statuses.push_back(backend->status(i));
+  }
+  return saved;
+}
+
+void Simulation::Parts::restore(const BatchState& saved) {
+  for (std::size_t i = 0; i < saved.states.size(); ++i) {
+    backend->write(i, saved.states[i].positions, saved.states[i].velocities);
+    backend->set_status(i, saved.statuses[i]);
+  }
+}
+
+const KnownExplosion& Simulation::Parts::explosion(std::size_t robot, const RobotStatus& status) const {
+  KnownExplosion& known = explosions[robot];
+  if (known.step == status.exploded_step) return known;
+  Clock then = clock;
+  then.step = status.exploded_step;
+  const State frozen = state(robot);
+  const std::uint32_t mass = culprit_mass(*robots[robot], frozen, status.bad_mass);
+  known = {status.exploded_step, time_of(then), culprit_spring(*robots[robot], frozen.positions, mass)};
+  return known;
+}
+
+// Steps before the change have their times by the old clock, so explosions are looked up while it is still there.
+void Simulation::Parts::change_clock(const Clock& changed) {
+  const std::vector<RobotStatus> statuses = backend->statuses();
+  for (std::size_t i = 0; i < statuses.size(); ++i)
+    if (statuses[i].exploded_step >= 0) explosion(i, statuses[i]);
+  clock = changed;
+}
+
+State Simulation::state(std::size_t robot) const {
+  parts_->require(robot);
+  State state = parts_->state(robot);
+  parts_->add_explosion(state, robot, parts_->backend->status(robot));
+  return state;
+}
+
+std::vector<Vec3> Simulation::positions(std::size_t robot) const {
+  parts_->require(robot);
+  return parts_->state(robot).positions;
+}
+
+void Simulation::read_positions(std::span<Vec3> out) const {
+  if (out.size() != mass_count()) throw std::invalid_argument("one position per mass is needed");
+  parts_->backend->read_positions(out);
+}
+void Simulation::read_velocities(std::span<Vec3> out) const {
+  if (out.size() != mass_count()) throw std::invalid_argument("one velocity per mass is needed");
+  parts_->backend->read_velocities(out);
+}
+int Simulation::cuda_device() const { return parts_->backend->cuda_device(); }
+void Simulation::copy_positions(float* device_out) const { parts_->backend->copy_positions(device_out); }
+
+void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  parts_->require(robot);
+  const std::size_t masses = parts_->masses(robot);
+  if (positions.size() != masses || velocities.size() != masses)
+    throw std::invalid_argument("one position and one velocity per mass are needed");
+  parts_->backend->write(robot, positions, velocities);
+  parts_->backend->set_status(robot, {});
+  parts_->explosions[robot] = {};
+}
+
+void Simulation::set_state(std::size_t robot, const State& state) {
+  set_state(robot, state.positions, state.velocities);
+  if (!state.exploded) return;
+  parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
+  parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
+}
+
+std::vector<Telemetry> Simulation::telemetry() const {
+  std::vector<Telemetry> all(size());
+  std::vector<RobotStatus>& statuses = parts_->reported;
+  statuses.resize(all.size());
+  parts_->backend->report(parts_->clock, all, statuses);
+  for (std::size_t i = 0; i < all.size(); ++i) parts_->add_explosion(all[i], i, statuses[i]);
+  return all;
+}
+Telemetry Simulation::telemetry(std::size_t robot) const {
+  parts_->require(robot);
+  return telemetry()[robot];
+}
+
+std::uint64_t Simulation::hash(std::size_t robot) const {
+  const State now = parts_->state(robot);
+  constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
+  return fnv1a(now.velocities, fnv1a(now.positions, offset_basis));
+}
+
+}  // namespace mercury
