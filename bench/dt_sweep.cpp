@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the time steps at which each solver stays bounded. Runs the same robots in every environment, with both solvers,
-// at longer and longer steps, and prints a table in Markdown: bench_dt_sweep [SECONDS] [cpu|cuda]
+// Finds the time steps at which each solver stays bounded. Runs the same robots in every environment, with both
+// solvers, at longer and longer steps, and prints a table in Markdown: bench_dt_sweep [SECONDS] [cpu|cuda]
 //
-// The robots are those of `--random voxel:8 --seed 1`. A cell holds the largest strain of any spring of any robot during
-// the run, or the time at which the first robot exploded.
+// The robots are those of `--random voxel:8 --seed 1`. A cell holds the largest strain of any spring of any robot
+// during the run, or the time at which the first robot exploded.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
