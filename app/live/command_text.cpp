@@ -171,10 +171,10 @@ OptionValues options_of(const ViewSettings& settings) {
   Options options;
   const ViewSettings usual;
   const bool race = settings.layout == Layout::race;
-  options.text("--color", std::string(name_of(settings.color)), "material");
+  options.text("--color", std::string(settings.color->key), std::string(material_color().key));
   if (settings.scale) options.text("--scale", fmt::format("{},{}", settings.scale->first, settings.scale->second), "");
   Shown shown;
-  shown.legend = settings.color != ColorBy::material;
+  shown.legend = settings.color->has_values();
   shown.labels = shown.path = race;
   const std::string text = shown_text(settings.shown);
   if (!text.empty()) options.text("--show", text, shown_text(shown));

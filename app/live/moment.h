@@ -69,7 +69,7 @@ struct Moment {
   std::vector<Vec3> velocities;      // as many; empty while robots play and nobody asks for them
   std::vector<Telemetry> telemetry;  // one a robot
   SceneDetails details;
-  ColorBy color = ColorBy::material;  // what details.values are values of
+  const ColorQuantity* color = &material_color();  // whose values details.values are
   std::vector<LivePerturbation> perturbations;
 
   bool playing = false;

@@ -146,10 +146,8 @@ void Physics::Parts::watch() {
   details.reset();
   const Environment& environment = simulation.configuration().environment;
   ViewSettings known = view;
-  if (!has_face_forces(environment)) {
-    known.shown.arrows.drag = known.shown.arrows.lift = false;
-    if (known.color == ColorBy::pressure) known.color = ColorBy::material;
-  }
+  if (!known.color->exists_in(environment)) known.color = &material_color();
+  if (!has_face_forces(environment)) known.shown.arrows.drag = known.shown.arrows.lift = false;
   if (!std::holds_alternative<Land>(environment)) known.shown.arrows.contact = false;
   details.emplace(simulation, known);
 }
@@ -178,7 +176,7 @@ void Physics::Parts::tell() {
   if (with_velocities) simulation.read_velocities(next->velocities);
   next->telemetry = telemetry;
   next->details = details ? details->observe(telemetry) : SceneDetails{};
-  next->color = details ? details->color() : ColorBy::material;
+  next->color = details ? &details->color() : &material_color();
   next->perturbations.clear();
   for (const LivePerturbation& perturbation : perturbations)
     if (!population.perturbations_of({&perturbation, 1}).empty()) next->perturbations.push_back(perturbation);

@@ -70,9 +70,9 @@ Shown shown_from(const std::string& text) {
 
 void ViewOptions::add_to(CLI::App& command) {
   const auto add = [](CLI::Option* option) { option->group("View"); };
-  add(add_choice(command, "--color", color_,
-                 {"material", "activation", "strain", "force", "speed", "pressure", "energy", "stiffness"},
-                 "Colour by (default material)"));
+  std::vector<std::string> colors;
+  for (const ColorQuantity& quantity : color_quantities()) colors.emplace_back(quantity.key);
+  add(add_choice(command, "--color", color_, std::move(colors), fmt::format("Colour by (default {})", color_)));
   add(add_value(command, "--scale", scale_, "Ends of the colours' scale (default: fits)", "LOW,HIGH", range_from));
   add(add_value(command, "--show", shown_,
                 "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
@@ -99,7 +99,8 @@ void ViewOptions::add_to(CLI::App& command) {
 }
 
 ViewSettings ViewOptions::settings() const {
-  ViewSettings settings{.color = color_named(color_), .scale = scale_, .smooth = smooth_, .cut = cut_, .grid = grid_};
+  ViewSettings settings{
+      .color = &color_quantity(color_), .scale = scale_, .smooth = smooth_, .cut = cut_, .grid = grid_};
   settings.theme = theme_ == "light" ? render::Theme::light : render::Theme::dark;
   settings.layout = layout_ == "race" ? Layout::race : Layout::grid;
   if (follow_ && !camera_.empty()) throw InputError("--follow", "not together with --camera; give one of them");
@@ -121,7 +122,7 @@ ViewSettings ViewOptions::settings() const {
     require_positive("--zoom", *zoom_, "");
     settings.camera.zoom = *zoom_;
   }
-  settings.shown.legend = settings.color != ColorBy::material;
+  settings.shown.legend = settings.color->has_values();
   if (shown_) settings.shown = shown_from(*shown_);
   return settings;
 }

@@ -21,7 +21,7 @@ class ViewOptions {
   ViewSettings settings() const;
 
  private:
-  std::string color_ = "material", theme_ = "dark", layout_ = "grid", camera_;
+  std::string color_{material_color().key}, theme_ = "dark", layout_ = "grid", camera_;
   std::optional<std::pair<float, float>> scale_;
   std::optional<std::string> shown_;
   std::optional<render::CutPlane> cut_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <variant>
 
+#include "app/scene/color_scale.h"
 #include "app/scene/eigen_vec3.h"
 #include "app/scene/face_forces.h"
 #include "app/scene/floor_forces.h"

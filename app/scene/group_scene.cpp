@@ -92,7 +92,7 @@ Group group_of(const Simulation& simulation) {
 }
 
 GroupScene::GroupScene(const Group& given, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
-    : settings_(settings), scale_(settings.color, settings.scale), names_(given.names),
+    : settings_(settings), scale_(*settings.color, settings.scale), names_(given.names),
       environment_(given.environment) {
   Group group = given;
   if (group.shapes.empty())
@@ -122,7 +122,8 @@ void GroupScene::show_surroundings() {
 }
 
 void GroupScene::set_settings(const ViewSettings& settings) {
-  if (settings.color != settings_.color || settings.scale != settings_.scale) scale_ = {settings.color, settings.scale};
+  if (settings.color != settings_.color || settings.scale != settings_.scale)
+    scale_ = {*settings.color, settings.scale};
   settings_ = settings;
   for (std::size_t i = 0; i < placements_.size(); ++i) placements_[i].smooth = settings.smooth || grown_[i];
   // What is no longer shown.
@@ -282,8 +283,9 @@ void GroupScene::color(SceneDetails details) {
   scene_.arrows = details_.arrows;
   scene_.caption = details_.arrow_key;
   if (!settings_.shown.legend) return;
-  scene_.legend = settings_.color == ColorBy::material ? render::Legend{.title = "material", .swatches = swatches_}
-                                                       : scale_.legend();
+  scene_.legend = settings_.color->has_values()
+                      ? scale_.legend()
+                      : render::Legend{.title = std::string(settings_.color->key), .swatches = swatches_};
 }
 
 }  // namespace mercury

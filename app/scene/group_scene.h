@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/scene/appearance.h"
+#include "app/scene/color_scale.h"
 #include "app/scene/group_layout.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"

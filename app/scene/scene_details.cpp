@@ -4,7 +4,7 @@
 namespace mercury {
 
 DetailObserver::DetailObserver(const Simulation& simulation, const ViewSettings& settings) : simulation_(simulation) {
-  if (settings.color != ColorBy::material) coloring_.emplace(simulation, settings.color);
+  if (settings.color->has_values()) coloring_.emplace(simulation, *settings.color);
   if (settings.shown.arrows.any()) arrows_.emplace(simulation, settings.shown.arrows);
 }
 

@@ -26,8 +26,8 @@ class DetailObserver {
   // Throws InputError when the environment has no such quantity.
   DetailObserver(const Simulation& simulation, const ViewSettings& settings);
   SceneDetails observe(std::span<const Telemetry> telemetry);
-  // What the values are values of.
-  ColorBy color() const { return coloring_ ? coloring_->by() : ColorBy::material; }
+  // The quantity whose values observe() returns.
+  const ColorQuantity& color() const { return coloring_ ? coloring_->quantity() : material_color(); }
 
  private:
   const Simulation& simulation_;

@@ -7,7 +7,7 @@
 
 #include "app/scene/arrows.h"
 #include "app/scene/camera_plan.h"
-#include "app/scene/coloring.h"
+#include "app/scene/color_quantity.h"
 #include "app/scene/group_layout.h"
 #include "render/scene.h"
 
@@ -24,7 +24,7 @@ struct Shown {
 };
 
 struct ViewSettings {
-  ColorBy color = ColorBy::material;
+  const ColorQuantity* color = &material_color();
   std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits what was seen so far
   Shown shown;
   render::Theme theme = render::Theme::dark;

@@ -115,7 +115,7 @@ void Panels::change_view(Action action, int number) {
       break;
     case Action::color:
       if (!color_by_number(view, number, environment)) return;
-      context_.toasts.show(Tone::info, fmt::format("coloured by {}", name_of(view.color)));
+      context_.toasts.show(Tone::info, fmt::format("coloured by {}", view.color->key));
       break;
     case Action::springs:
       view.shown.springs = !view.shown.springs;

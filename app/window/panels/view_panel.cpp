@@ -15,26 +15,11 @@
 namespace mercury::window {
 namespace {
 
-struct ColorChoice {
-  ColorBy by;
-  const char* meaning;
-};
-constexpr std::array<ColorChoice, 8> colorings{{
-    {ColorBy::material, "each material's own colour; muscles glow as they contract"},
-    {ColorBy::activation, "how far the muscles are contracted"},
-    {ColorBy::strain, "how far springs are stretched (red) or pressed together (blue)"},
-    {ColorBy::force, "force of the springs: pulling (red) or pushing (blue)"},
-    {ColorBy::speed, "speed of the masses"},
-    {ColorBy::pressure, "pressure of the water on the skin"},
-    {ColorBy::energy, "elastic energy of the springs"},
-    {ColorBy::stiffness, "stiffness of the springs"},
-}};
-
 // As on the command line, the legend comes with numbers.
-void color(ViewSettings& view, ColorBy by) {
-  view.color = by;
+void color(ViewSettings& view, const ColorQuantity& quantity) {
+  view.color = &quantity;
   view.scale.reset();
-  view.shown.legend = by != ColorBy::material;
+  view.shown.legend = quantity.has_values();
 }
 
 bool is_ocean(const Environment& environment) { return std::holds_alternative<Ocean>(environment); }
@@ -44,36 +29,30 @@ bool has_gravity(const Environment& environment) {
   return g.x != 0 || g.y != 0 || g.z != 0;
 }
 
-bool is_offered(ColorBy by, const Environment& environment) { return by != ColorBy::pressure || is_ocean(environment); }
-
-std::string capital(std::string_view text) {
-  std::string result(text);
-  if (!result.empty() && result[0] >= 'a' && result[0] <= 'z') result[0] = static_cast<char>(result[0] - 'a' + 'A');
-  return result;
-}
-
 bool color_section(ViewSettings& view, const Environment& environment, EventLog& log) {
   heading("Colour by");
   bool changed = false;
   const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
-  for (std::size_t i = 0; i < colorings.size(); ++i) {
-    if (i % 4 != 0) ImGui::SameLine(0, gap);
-    const bool offered = is_offered(colorings[i].by, environment), on = view.color == colorings[i].by;
+  int number = 0;
+  for (const ColorQuantity& quantity : color_quantities()) {
+    if (number++ % 4 != 0) ImGui::SameLine(0, gap);
+    const bool offered = quantity.exists_in(environment), on = view.color == &quantity;
     ImGui::BeginDisabled(!offered);
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
     if (on) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
-    const std::string name(name_of(colorings[i].by));
-    if (ImGui::Button(capital(name).c_str(), {width, 0}) && !on) {
-      color(view, colorings[i].by);
+    if (ImGui::Button(std::string(quantity.name).c_str(), {width, 0}) && !on) {
+      color(view, quantity);
       changed = true;
     }
     if (on) ImGui::PopStyleColor(2);
     ImGui::EndDisabled();
-    log.item("color." + name);
-    tooltip(fmt::format("{} (key {}){}", colorings[i].meaning, i + 1, offered ? "" : "; only in the ocean environment")
-                .c_str());
+    log.item(fmt::format("color.{}", quantity.key));
+    std::string text(quantity.help);
+    if (number <= 9) text += fmt::format(" (key {})", number);
+    if (!offered) text += fmt::format("; only in: {}", environments_of(quantity));
+    tooltip(text.c_str());
   }
-  if (view.color == ColorBy::material) return changed;
+  if (!view.color->has_values()) return changed;
   bool fixed = view.scale.has_value();
   if (ImGui::Checkbox("Fixed scale", &fixed)) {
     view.scale = fixed ? std::optional(std::pair(0.0f, 1.0f)) : std::nullopt;
@@ -248,10 +227,11 @@ bool draw_view_panel(ViewSettings& view, OrbitController& camera, Preferences& p
 void toggle_drag_arrows(ViewSettings& view) { view.shown.arrows.drag = !view.shown.arrows.drag; }
 
 bool color_by_number(ViewSettings& view, int number, const Environment& environment) {
-  if (number < 1 || number > static_cast<int>(colorings.size())) return false;
-  const ColorBy by = colorings[static_cast<std::size_t>(number - 1)].by;
-  if (!is_offered(by, environment)) return false;
-  color(view, by);
+  const auto quantities = color_quantities();
+  if (number < 1 || number > static_cast<int>(quantities.size())) return false;
+  const ColorQuantity& quantity = quantities[static_cast<std::size_t>(number - 1)];
+  if (!quantity.exists_in(environment)) return false;
+  color(view, quantity);
   return true;
 }
 

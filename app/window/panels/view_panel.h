@@ -16,7 +16,7 @@ bool draw_view_panel(ViewSettings& view, OrbitController& camera, Preferences& p
 
 // What a key does to the settings.
 void toggle_drag_arrows(ViewSettings& view);
-// `number` from 1, in the order of ColorBy. False if there is no such colouring in that environment.
+// `number` from 1, in the order of color_quantities(). False if the environment does not have that quantity.
 bool color_by_number(ViewSettings& view, int number, const Environment& environment);
 
 }  // namespace mercury::window

@@ -35,7 +35,7 @@ constexpr Binding table[] = {
     {Action::save, "Ctrl S", "save robots", "Robots", U's', 0, true, false},
 
     {Action::drag_arrows, "D", "arrows of the water's drag", "Picture", U'd', 0, false, false},
-    {Action::color, "1 - 8", "colour by, in the order of the panel View", "Picture", U'1', 0, false, false},
+    {Action::color, "1 - 9", "colour by, in the order of the panel View", "Picture", U'1', 0, false, false},
     {Action::springs, "S", "springs in place of the skin", "Picture", U's', 0, false, false},
     {Action::labels, "L", "names and distances", "Picture", U'l', 0, false, false},
     {Action::legend, "K", "key of the colours", "Picture", U'k', 0, false, false},
@@ -71,7 +71,7 @@ bool is_enter(const Press& press) {
 std::optional<Command> command_of(const Press& press) {
   const char32_t letter =
       press.character < 128 ? static_cast<char32_t>(std::tolower(static_cast<int>(press.character))) : press.character;
-  if (!press.control && !press.repeated && letter >= U'1' && letter <= U'8')
+  if (!press.control && !press.repeated && letter >= U'1' && letter <= U'9')
     return Command{Action::color, static_cast<int>(letter - U'0')};
   for (const Binding& binding : table) {
     const bool typed = letter != 0 && binding.character == letter && binding.action != Action::color;

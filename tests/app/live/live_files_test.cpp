@@ -174,7 +174,7 @@ TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
   LiveSceneOptions options = test::on_cpu(Ocean{.density = 900.5f, .flow = {-0.1f, 0, 2}, .gravity = {0, 0, -1}});
   options.configuration.dt = 5e-4;
   options.configuration.solver = Solver::xpbd;
-  options.view.color = ColorBy::strain;
+  options.view.color = &color_quantity("strain");
   options.view.scale = {-7.5f, 7.5f};
   options.view.shown.springs = options.view.shown.arrows.drag = options.view.shown.labels = true;
   options.view.theme = render::Theme::light;
@@ -247,7 +247,7 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   const auto file = folder_ / "mercury" / "scene.toml";
   EXPECT_EQ(load_remembered(file, messages).generation.count, Generation{}.count);
   Remembered remembered{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
-  remembered.view.color = ColorBy::force;
+  remembered.view.color = &color_quantity("force");
   remembered.view.shown = {.skin = false, .springs = true, .scale_bar = true};
   remembered.view.theme = render::Theme::light;
   remembered.view.layout = Layout::race;
@@ -257,7 +257,7 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   save_remembered(file, remembered, messages);
   const Remembered back = load_remembered(file, messages);
   EXPECT_THAT(messages.take(), IsEmpty());
-  EXPECT_EQ(back.view.color, ColorBy::force);
+  EXPECT_EQ(back.view.color, &color_quantity("force"));
   EXPECT_FALSE(back.view.shown.skin);
   EXPECT_TRUE(back.view.shown.springs && back.view.shown.scale_bar && back.view.shown.clock);
   EXPECT_EQ(back.view.theme, render::Theme::light);
@@ -270,7 +270,7 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   EXPECT_EQ(back.generation.network.points, 100u);
   EXPECT_EQ(back.generation.voxel.air, 0.001);
   write("mercury/scene.toml", "color = \"tartan\"\n");
-  EXPECT_EQ(load_remembered(file, messages).view.color, ColorBy::material);
+  EXPECT_EQ(load_remembered(file, messages).view.color, &material_color());
   EXPECT_THAT(messages.take(), SizeIs(1));
   EXPECT_EQ(read("mercury/scene.toml.broken"), "color = \"tartan\"\n");
   save_remembered(folder_ / "mercury" / "scene.toml.broken" / "x.toml", remembered, messages);

@@ -56,7 +56,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
   }
   ViewSettings view() {
     ViewSettings wanted;
-    wanted.color = static_cast<ColorBy>(below(8));
+    wanted.color = &color_quantities()[below(color_quantities().size())];
     wanted.shown = {.skin = below(2) == 0,
                     .springs = below(2) == 0,
                     .path = below(2) == 0,

@@ -194,21 +194,21 @@ TEST(LivePhysics, RobotsThatCannotBeSimulatedAreToldAndTheNextSceneIsSimulated) 
 TEST(LivePhysics, ViewsThatTheEnvironmentLacksAreLeftOut) {
   Messages messages;
   Physics physics(on_cpu(), messages);
-  ViewSettings view{.color = ColorBy::pressure};
+  ViewSettings view{.color = &color_quantity("pressure")};
   view.shown.arrows.drag = true;
   physics.set_view(view);
   physics.set_scene(some_robots(1), on_cpu());
   physics.step(3);
   physics.wait_until_done();
-  EXPECT_EQ(physics.newest()->color, ColorBy::pressure);
+  EXPECT_EQ(physics.newest()->color, &color_quantity("pressure"));
   EXPECT_FALSE(physics.newest()->details.values.face.empty());
   physics.set_scene(some_robots(1), on_cpu(Land{}));
   physics.wait_until_done();
-  EXPECT_EQ(physics.newest()->color, ColorBy::material);
+  EXPECT_EQ(physics.newest()->color, &material_color());
   EXPECT_TRUE(physics.newest()->details.arrows.empty());
   physics.set_scene(some_robots(1), on_cpu());
   physics.wait_until_done();
-  EXPECT_EQ(physics.newest()->color, ColorBy::pressure);
+  EXPECT_EQ(physics.newest()->color, &color_quantity("pressure"));
   EXPECT_TRUE(messages.take().empty());
 }
 

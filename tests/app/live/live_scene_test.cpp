@@ -245,7 +245,7 @@ TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
   const auto revision = scene.picture().bodies_revision();
   scene.step(10);
   ViewSettings view = scene.view();
-  view.color = ColorBy::strain;
+  view.color = &color_quantity("strain");
   view.shown.arrows.drag = view.shown.legend = view.shown.labels = true;
   scene.set_view(view);
   scene.scale_materials(ids_of(scene), {.stiffness = 2});

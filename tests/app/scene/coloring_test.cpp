@@ -2,11 +2,15 @@
 // The numbers that robots are coloured by.
 #include "app/scene/coloring.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <string>
 
 #include "app/scene/arrows.h"
+#include "app/scene/color_scale.h"
 #include "app/scene/face_forces.h"
 #include "app/scene/floor_forces.h"
 #include "mercury/error.h"
@@ -39,7 +43,8 @@ const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
 
 TEST(Coloring, StrainIsTheChangeOfLength) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
-  const ColorValues values = Coloring(simulation, ColorBy::strain).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  const ColorValues values =
+      Coloring(simulation, color_quantity("strain")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
   ASSERT_EQ(values.spring.size(), 1u);
   EXPECT_NEAR(values.spring[0], 25, 1e-4);
   EXPECT_NEAR(values.mass[0], 25, 1e-4);  // of a mass: the mean of its springs
@@ -48,13 +53,15 @@ TEST(Coloring, StrainIsTheChangeOfLength) {
 
 TEST(Coloring, ForceFollowsHooksLawFromThePresentRestLength) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
-  const ColorValues values = Coloring(simulation, ColorBy::force).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  const ColorValues values =
+      Coloring(simulation, color_quantity("force")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
   EXPECT_NEAR(values.spring[0], 50 * (1.25 - 1.1), 1e-4);
 }
 
 TEST(Coloring, EnergyIsThatOfHookesLaw) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
-  const ColorValues values = Coloring(simulation, ColorBy::energy).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
+  const ColorValues values =
+      Coloring(simulation, color_quantity("energy")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
   EXPECT_NEAR(values.spring[0], 1000 * 50 * 0.15 * 0.15 / 2, 1e-2);
   EXPECT_EQ(values.mass, (std::vector<float>(2, values.spring[0])));  // the mean of its springs
 }
@@ -62,33 +69,59 @@ TEST(Coloring, EnergyIsThatOfHookesLaw) {
 TEST(Coloring, StiffnessIsTheMaterialsTimesThatOfTheEnvironment) {
   const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device},
                               std::vector<Robot>{pair()});
-  EXPECT_NEAR(Coloring(simulation, ColorBy::stiffness).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], 150, 1e-4);
+  EXPECT_NEAR(Coloring(simulation, color_quantity("stiffness")).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0],
+              150, 1e-4);
 }
 
 TEST(Coloring, ActivationIsTheContraction) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
-  EXPECT_NEAR(Coloring(simulation, ColorBy::activation).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0], -10, 1e-4);
+  EXPECT_NEAR(Coloring(simulation, color_quantity("activation")).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0],
+              -10, 1e-4);
 }
 
 TEST(Coloring, SpeedIsThatOfTheMass) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
-  const ColorValues values = Coloring(simulation, ColorBy::speed).values(state({{0, 0, 0}, {1, 0, 0}}, {0, 3, 4}));
+  const ColorValues values =
+      Coloring(simulation, color_quantity("speed")).values(state({{0, 0, 0}, {1, 0, 0}}, {0, 3, 4}));
   EXPECT_EQ(values.mass, (std::vector<float>{5, 5}));
 }
 
 // Moved face on, all of equation 1 lies along the flow: F = rho A / 2 C_D v^2.
 TEST(Coloring, PressureOfAFaceMovedHeadOn) {
   const Simulation simulation(cpu, std::vector<Robot>{plate()});
-  const ColorValues values = Coloring(simulation, ColorBy::pressure).values(state(plate().masses, {0, 0, 0.5f}));
+  const ColorValues values =
+      Coloring(simulation, color_quantity("pressure")).values(state(plate().masses, {0, 0, 0.5f}));
   ASSERT_EQ(values.face.size(), 1u);
   EXPECT_NEAR(values.face[0], 1000.0 / 2 * 1 * 0.25, 0.01);
 }
 
 TEST(Coloring, EnvironmentMustKnowTheQuantity) {
   const Simulation simulation({.environment = Land{}, .device = cpu.device}, std::vector<Robot>{plate()});
-  EXPECT_THROW(Coloring(simulation, ColorBy::pressure), InputError);
+  EXPECT_THROW(Coloring(simulation, color_quantity("pressure")), InputError);
   EXPECT_THROW(Arrows(simulation, {.drag = true}), InputError);
-  EXPECT_NO_THROW(Coloring(simulation, ColorBy::speed));
+  EXPECT_NO_THROW(Coloring(simulation, color_quantity("speed")));
+}
+
+// "| force | N | force of the springs: ... |"
+std::string docs_row(const ColorQuantity& quantity) {
+  const std::string unit = quantity.unit.empty() ? " " : fmt::format(" {} ", quantity.unit);
+  const std::string environments = environments_of(quantity);
+  return fmt::format("| {} |{}| {}{} |\n", quantity.key, unit, quantity.help,
+                     environments.empty() ? "" : fmt::format(" ({})", environments));
+}
+
+TEST(ColorQuantities, AreListedInTheDocs) {
+  std::ifstream file(MERCURY_DOCS "/rendering.md");
+  const std::string docs(std::istreambuf_iterator<char>(file), {});
+  std::string rows;
+  for (const ColorQuantity& quantity : color_quantities()) rows += docs_row(quantity);
+  EXPECT_NE(docs.find("| `--color` | unit | shows |\n|---|---|---|\n" + rows + "\n"), std::string::npos) << rows;
+}
+
+TEST(ColorQuantities, AreFoundByTheirKeys) {
+  for (const ColorQuantity& quantity : color_quantities()) EXPECT_EQ(&color_quantity(quantity.key), &quantity);
+  EXPECT_EQ(material_color().key, "material");
+  EXPECT_THROW(color_quantity("mood"), InputError);
 }
 
 TEST(FaceForce, DragOpposesMotionAndLiftLiesAcrossIt) {
@@ -181,7 +214,7 @@ TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
 }
 
 TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
-  GrowingScale scale(ColorBy::force, std::nullopt);
+  GrowingScale scale(color_quantity("force"), std::nullopt);
   scale.fit({.spring = {3, -4}});
   EXPECT_FLOAT_EQ(scale.scale().high, 5);
   EXPECT_FLOAT_EQ(scale.scale().low, -5);
@@ -191,7 +224,7 @@ TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
 }
 
 TEST(GrowingScale, StaysWhereTheUserPutIt) {
-  GrowingScale scale(ColorBy::speed, std::pair(0.5f, 2.0f));
+  GrowingScale scale(color_quantity("speed"), std::pair(0.5f, 2.0f));
   scale.fit({.mass = {100}});
   EXPECT_EQ(scale.scale().low, 0.5f);
   EXPECT_EQ(scale.scale().high, 2.0f);

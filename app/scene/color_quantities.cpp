@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "app/scene/color_quantity.h"
+#include "app/scene/face_forces.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+float length_of(const RobotState& state, const Spring& spring) {
+  return length(state.positions[spring.b] - state.positions[spring.a]);
+}
+
+// |d| - L(t) [m]
+float stretch_of(const RobotState& state, const Spring& spring) {
+  return length_of(state, spring) - spring.rest_length * state.materials[spring.material].length_factor;
+}
+
+// (L0 - L(t)) / L0 [%]
+float contraction(const MaterialNow& material) { return 100 * (1 - material.length_factor); }
+
+float activation_of_spring(const RobotState& state, const Spring& spring) {
+  return contraction(state.materials[spring.material]);
+}
+
+float activation_of_face(const RobotState& state, std::size_t face) {
+  return contraction(state.materials[state.face_materials[face]]);
+}
+
+// (|d| - L0) / L0 [%]
+float strain(const RobotState& state, const Spring& spring) {
+  return 100 * (length_of(state, spring) / spring.rest_length - 1);
+}
+
+// Hooke's law [N]; positive = the spring pulls its ends together.
+float force(const RobotState& state, const Spring& spring) {
+  return state.materials[spring.material].stiffness * stretch_of(state, spring);
+}
+
+float speed(const RobotState& state, std::size_t mass) { return length(state.velocities[mass]); }
+
+// Of the water on a face, |F| / A [Pa].
+float pressure(const RobotState& state, std::size_t face) {
+  const FaceForce force = face_force(state.environment, state.robot.faces[face], state.positions, state.velocities);
+  return force.area > 0 ? length(force.drag + force.lift) / force.area : 0;
+}
+
+// Elastic, k (|d| - L)^2 / 2 [mJ]
+float energy(const RobotState& state, const Spring& spring) {
+  const float stretch = stretch_of(state, spring);
+  return 1000 * state.materials[spring.material].stiffness * stretch * stretch / 2;
+}
+
+// Times the environment's scale [N/m].
+float stiffness(const RobotState& state, const Spring& spring) { return state.materials[spring.material].stiffness; }
+
+constexpr std::array quantities{
+    ColorQuantity{.key = "material",
+                  .name = "Material",
+                  .unit = "",
+                  .help = "each material's own colour; muscles glow as they contract"},
+    ColorQuantity{.key = "activation",
+                  .name = "Activation",
+                  .unit = "%",
+                  .help = "how far the muscles are contracted",
+                  .map = render::Colormap::diverging,
+                  .is_signed = true,
+                  .of_spring = activation_of_spring,
+                  .of_face = activation_of_face},
+    ColorQuantity{.key = "strain",
+                  .name = "Strain",
+                  .unit = "%",
+                  .help = "how far springs are stretched (red) or pressed together (blue)",
+                  .map = render::Colormap::diverging,
+                  .is_signed = true,
+                  .of_spring = strain},
+    ColorQuantity{.key = "force",
+                  .name = "Force",
+                  .unit = "N",
+                  .help = "force of the springs: pulling (red) or pushing (blue)",
+                  .map = render::Colormap::diverging,
+                  .is_signed = true,
+                  .smallest_end = 0.01f,
+                  .of_spring = force},
+    ColorQuantity{.key = "speed",
+                  .name = "Speed",
+                  .unit = "m/s",
+                  .help = "speed of the masses",
+                  .smallest_end = 0.001f,
+                  .of_mass = speed},
+    ColorQuantity{.key = "pressure",
+                  .name = "Pressure",
+                  .unit = "Pa",
+                  .help = "pressure of the water on the skin",
+                  .map = render::Colormap::turbo,
+                  .smallest_end = 0.001f,
+                  .of_face = pressure,
+                  .has = has_face_forces,
+                  .requirement = "drag on faces"},
+    ColorQuantity{.key = "energy",
+                  .name = "Energy",
+                  .unit = "mJ",
+                  .help = "elastic energy of the springs",
+                  .smallest_end = 0.01f,
+                  .of_spring = energy},
+    ColorQuantity{.key = "stiffness",
+                  .name = "Stiffness",
+                  .unit = "N/m",
+                  .help = "stiffness of the springs",
+                  .of_spring = stiffness},
+};
+
+}  // namespace
+
+std::span<const ColorQuantity> color_quantities() { return quantities; }
+
+const ColorQuantity& color_quantity(std::string_view key) {
+  std::vector<std::string_view> keys;
+  for (const ColorQuantity& quantity : quantities) {
+    if (quantity.key == key) return quantity;
+    keys.push_back(quantity.key);
+  }
+  throw InputError("--color", fmt::format("\"{}\" is not accepted; give {}", key, fmt::join(keys, ", ")));
+}
+
+std::string environments_of(const ColorQuantity& quantity) {
+  if (!quantity.has) return "";
+  std::vector<std::string_view> names;
+  const auto add = [&](const Environment& environment) {
+    if (quantity.exists_in(environment)) names.push_back(name_of(environment));
+  };
+  [&]<std::size_t... kind>(std::index_sequence<kind...>) { (add(Environment(std::in_place_index<kind>)), ...); }
+  (std::make_index_sequence<std::variant_size_v<Environment>>{});
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace mercury
