@@ -3,47 +3,61 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "mercury/error.h"
 
 namespace mercury {
 namespace {
 
-std::string shown(double value) {
+template <class Number>
+std::string shown(Number value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value);
   return {text, end.ptr};
 }
 
-template <class Value>
-void require_at_least_zero(const char* name, Value value, const char* unit) {
-  if (!(std::isfinite(value) && value >= 0))
-    throw ParameterError(name, shown(value) + " is not accepted; give a finite number >= 0" + unit);
+bool is_accepted(double value, Accepts accepts) {
+  return std::isfinite(value) &&
+         (accepts == Accepts::any || value > 0 || (accepts == Accepts::at_least_zero && value == 0));
 }
 
-void require_finite(const char* name, Vec3 value, const char* unit) {
-  if (!(std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)))
-    throw ParameterError(name, shown(value.x) + "," + shown(value.y) + "," + shown(value.z) +
-                                   " is not accepted; give three finite numbers" + unit);
+std::string bounds(Accepts accepts) {
+  return accepts == Accepts::above_zero ? " > 0" : accepts == Accepts::at_least_zero ? " >= 0" : "";
 }
 
-void validate_environment(const Ocean& ocean) {
-  require_at_least_zero("density", ocean.density, " kg/m3");
-  require_at_least_zero("drag_coefficient", ocean.drag_coefficient, "");
-  require_at_least_zero("lift_coefficient", ocean.lift_coefficient, "");
-  require_finite("flow", ocean.flow, " of m/s");
-}
+// Throws ParameterError if the value is not accepted.
+struct Check {
+  template <class Parameter, class Number>
+  void operator()(const Parameter& parameter, Number value) const {
+    const auto number = static_cast<double>(value);
+    if (is_accepted(number, parameter.accepts)) return;
+    refuse(parameter, shown(value), "a finite number" + bounds(parameter.accepts), " ");
+  }
+  template <class Parameter>
+  void operator()(const Parameter& parameter, int value) const {
+    if (!is_accepted(value, parameter.accepts)) refuse(parameter, std::to_string(value), "0 or more", " ");
+  }
+  template <class Parameter>
+  void operator()(const Parameter& parameter, Vec3 value) const {
+    for (const float component : {value.x, value.y, value.z})
+      if (!is_accepted(static_cast<double>(component), parameter.accepts))
+        refuse(parameter, shown(value.x) + "," + shown(value.y) + "," + shown(value.z),
+               "three finite numbers" + bounds(parameter.accepts), " of ");
+  }
+  template <class Parameter>
+  void operator()(const Parameter&, bool) const {}
 
-void validate_environment(const OceanSimple& ocean) {
-  require_at_least_zero("point_drag", ocean.point_drag, " N s/m");
-  require_finite("flow", ocean.flow, " of m/s");
-}
-
-void validate_environment(const Land& land) {
-  require_at_least_zero("friction", land.friction, "");
-  require_at_least_zero("contact_stiffness", land.contact_stiffness, " N/m");
-}
+  template <class Parameter>
+  [[noreturn]] static void refuse(const Parameter& parameter, const std::string& value, const std::string& accepted,
+                                  const char* before_unit) {
+    const std::string unit(parameter.unit);
+    throw ParameterError(std::string(parameter.name),
+                         value + " is not accepted; give " + accepted + (unit.empty() ? unit : before_unit + unit));
+  }
+};
 
 }  // namespace
 
@@ -73,11 +87,17 @@ Solver solver_named(std::string_view name) {
 }
 
 Environment environment_named(std::string_view name) {
-  if (name == Ocean::name) return Ocean{};
-  if (name == OceanSimple::name) return OceanSimple{};
-  if (name == Land::name) return Land{};
-  throw ParameterError("environment",
-                       "\"" + std::string(name) + "\" is not an environment; give ocean, ocean-simple or land");
+  std::optional<Environment> found;
+  std::vector<std::string_view> names;
+  for_each_environment([&](const auto& kind) {
+    if (kind.name == name) found = kind;
+    names.push_back(kind.name);
+  });
+  if (found) return *found;
+  std::string accepted;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    accepted.append(i == 0 ? "" : i + 1 < names.size() ? ", " : " or ").append(names[i]);
+  throw ParameterError("environment", "\"" + std::string(name) + "\" is not an environment; give " + accepted);
 }
 
 Device device_named(std::string_view name) {
@@ -104,14 +124,9 @@ float stiffness_scale_of(const Environment& environment) {
 }
 
 void validate(const Configuration& configuration) {
-  if (!(std::isfinite(configuration.dt) && configuration.dt > 0))
-    throw ParameterError("dt", shown(configuration.dt) + " is not accepted; give a finite number > 0 s");
-  require_at_least_zero("damping", configuration.damping, " 1/s");
-  require_finite("gravity", gravity_of(configuration.environment), " of m/s2");
-  require_at_least_zero("stiffness_scale", stiffness_scale_of(configuration.environment), "");
-  if (configuration.device.threads < 0)
-    throw ParameterError("threads", std::to_string(configuration.device.threads) + " is not accepted; give 0 or more");
-  std::visit([](const auto& kind) { validate_environment(kind); }, configuration.environment);
+  for_each_parameter(configuration, Check{});
+  for_each_parameter(configuration.device, Check{});
+  for_each_parameter(configuration.environment, Check{});
 }
 
 }  // namespace mercury

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <type_traits>
 
+#include "app/options/option_values.h"
+
 namespace mercury {
 namespace {
 
@@ -18,16 +20,16 @@ namespace {
 class Options {
  public:
   template <class Value>
-  void number(const char* name, Value value, Value usual) {
+  void number(const std::string& name, Value value, Value usual) {
     if (value != usual) values_.emplace_back(name, fmt::format("{}", value));
   }
-  void vector(const char* name, Vec3 value, Vec3 usual) {
+  void vector(const std::string& name, Vec3 value, Vec3 usual) {
     if (value != usual) values_.emplace_back(name, fmt::format("{},{},{}", value.x, value.y, value.z));
   }
-  void text(const char* name, const std::string& value, std::string_view usual) {
+  void text(const std::string& name, const std::string& value, std::string_view usual) {
     if (value != usual) values_.emplace_back(name, value);
   }
-  void flag(const char* name, bool given) {
+  void flag(const std::string& name, bool given) {
     if (given) values_.emplace_back(name, "");
   }
   OptionValues take() { return std::move(values_); }
@@ -36,24 +38,17 @@ class Options {
   OptionValues values_;
 };
 
-void add(Options& options, const Ocean& e) {
-  const Ocean usual;
-  options.number("--density", e.density, usual.density);
-  options.number("--drag-coefficient", e.drag_coefficient, usual.drag_coefficient);
-  options.number("--lift-coefficient", e.lift_coefficient, usual.lift_coefficient);
-  options.vector("--flow", e.flow, usual.flow);
-}
-
-void add(Options& options, const OceanSimple& e) {
-  options.number("--point-drag", e.point_drag, OceanSimple{}.point_drag);
-  options.vector("--flow", e.flow, OceanSimple{}.flow);
-}
-
-void add(Options& options, const Land& e) {
-  const Land usual;
-  options.number("--friction", e.friction, usual.friction);
-  options.number("--contact-stiffness", e.contact_stiffness, usual.contact_stiffness);
-  options.flag("--no-self-collision", !e.self_collision);
+template <class Struct>
+void add_parameters(Options& options, const Struct& values) {
+  for_each_parameter(values, [&]<class Value>(const auto& parameter, const Value& value) {
+    const Value usual = parameter.default_value();
+    if constexpr (std::is_same_v<Value, bool>)
+      options.flag(switch_of(parameter.name, usual), value != usual);
+    else if constexpr (std::is_same_v<Value, Vec3>)
+      options.vector(option_of(parameter.name), value, usual);
+    else
+      options.number(option_of(parameter.name), value, usual);
+  });
 }
 
 std::string size_text(const std::array<int, 3>& size) { return fmt::format("{}x{}x{}", size[0], size[1], size[2]); }
@@ -151,19 +146,12 @@ OptionValues options_of(const Configuration& configuration) {
   Options options;
   const Configuration usual;
   options.text("--device", name_of(configuration.device), "auto");
-  options.number("--threads", configuration.device.threads, 0);
-  // Always told: without it the robots would choose.
+  add_parameters(options, configuration.device);
+  // Always given: without it the robots would choose.
   options.text("--environment", std::string(name_of(configuration.environment)), "");
   options.text("--solver", std::string(name_of(configuration.solver)), name_of(usual.solver));
-  options.number("--dt", configuration.dt, usual.dt);
-  options.number("--damping", configuration.damping, usual.damping);
-  std::visit(
-      [&]<class Kind>(const Kind& kind) {
-        add(options, kind);
-        options.vector("--gravity", kind.gravity, Kind{}.gravity);
-        options.number("--stiffness-scale", kind.stiffness_scale, Kind{}.stiffness_scale);
-      },
-      configuration.environment);
+  add_parameters(options, configuration);
+  add_parameters(options, configuration.environment);
   return options.take();
 }
 

@@ -19,6 +19,10 @@ std::string option_of(std::string_view parameter) {
   return option;
 }
 
+std::string switch_of(std::string_view parameter, bool is_on_by_default) {
+  return option_of(is_on_by_default ? "no_" + std::string(parameter) : std::string(parameter));
+}
+
 template <class Number>
 Number number_from(const std::string& option, std::string_view text) {
   Number value{};

@@ -19,6 +19,8 @@ namespace mercury {
 // The option of a parameter that a library names: "--drag-coefficient" of "drag_coefficient"; also of several, joined
 // with ", ".
 std::string option_of(std::string_view parameter);
+// The option of a switch: "--no-self-collision" if it is on by default.
+std::string switch_of(std::string_view parameter, bool is_on_by_default);
 
 // The whole text as a number of that type. Throws InputError("--dt: \"fast\" is not a number").
 template <class Number>

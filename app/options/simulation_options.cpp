@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 #include <type_traits>
-#include <variant>
+#include <utility>
 
 #include "app/options/option_values.h"
 #include "mercury/error.h"
@@ -16,127 +18,154 @@
 namespace mercury {
 namespace {
 
-// One member of an environment, told by a function that exists only for the environments that have it.
-constexpr auto density = [](auto& e) -> decltype((e.density)) { return e.density; };
-constexpr auto drag_coefficient = [](auto& e) -> decltype((e.drag_coefficient)) { return e.drag_coefficient; };
-constexpr auto lift_coefficient = [](auto& e) -> decltype((e.lift_coefficient)) { return e.lift_coefficient; };
-constexpr auto flow = [](auto& e) -> decltype((e.flow)) { return e.flow; };
-constexpr auto point_drag = [](auto& e) -> decltype((e.point_drag)) { return e.point_drag; };
-constexpr auto gravity = [](auto& e) -> decltype((e.gravity)) { return e.gravity; };
-constexpr auto friction = [](auto& e) -> decltype((e.friction)) { return e.friction; };
-constexpr auto contact_stiffness = [](auto& e) -> decltype((e.contact_stiffness)) { return e.contact_stiffness; };
-constexpr auto stiffness_scale = [](auto& e) -> decltype((e.stiffness_scale)) { return e.stiffness_scale; };
-constexpr auto self_collision = [](auto& e) -> decltype((e.self_collision)) { return e.self_collision; };
+constexpr const char* simulation_group = "Simulation";
+constexpr const char* environment_group = "Environment";
 
-// The environments that have the member, as "ocean and ocean-simple".
-template <class Member, std::size_t... i>
-std::string environments_with(Member, std::index_sequence<i...>) {
-  std::string names;
-  const auto add = [&names]<class Kind>(std::type_identity<Kind>) {
-    if constexpr (std::is_invocable_v<Member, Kind&>) names += (names.empty() ? "" : " and ") + std::string(Kind::name);
-  };
-  (add(std::type_identity<std::variant_alternative_t<i, Environment>>{}), ...);
+// The text of a default value.
+std::string text_of(double value) { return fmt::format("{}", value); }
+std::string text_of(float value) { return fmt::format("{}", value); }
+std::string text_of(int value) { return fmt::format("{}", value); }
+std::string text_of(Vec3 value) { return fmt::format("{},{},{}", value.x, value.y, value.z); }
+std::string text_of(bool value) { return value ? "on" : "off"; }
+
+std::string joined(const std::vector<std::string_view>& names, const char* last_separator) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text.append(i == 0 ? "" : i + 1 < names.size() ? ", " : last_separator).append(names[i]);
+  return text;
+}
+
+std::vector<std::string_view> environment_names() {
+  std::vector<std::string_view> names;
+  for_each_environment([&](const auto& kind) { names.push_back(kind.name); });
   return names;
 }
 
-template <class Value, class Member>
-void set(Environment& environment, const char* option, const std::optional<Value>& value, Member member) {
-  if (!value) return;
-  std::visit(
-      [&]<class Kind>(Kind& kind) {
-        if constexpr (std::is_invocable_v<Member, Kind&>)
-          member(kind) = *value;
-        else
-          throw InputError(
-              option,
-              fmt::format("{} has no such parameter; it applies to {}", Kind::name,
-                          environments_with(member, std::make_index_sequence<std::variant_size_v<Environment>>{})));
-      },
-      environment);
+// The environments that have a parameter, by its default there.
+std::vector<std::pair<std::string, std::vector<std::string_view>>> environments_by_default(std::string_view name) {
+  std::vector<std::pair<std::string, std::vector<std::string_view>>> groups;
+  for_each_environment([&](const auto& kind) {
+    for_each_parameter(kind, [&](const auto& parameter, const auto& value) {
+      if (parameter.name != name) return;
+      auto group = std::ranges::find(groups, text_of(value), &decltype(groups)::value_type::first);
+      if (group == groups.end()) group = groups.insert(groups.end(), {text_of(value), {}});
+      group->second.push_back(kind.name);
+    });
+  });
+  return groups;
 }
 
-bool is_environment(std::string_view name) {
-  return [&]<std::size_t... i>(std::index_sequence<i...>) {
-    return ((name == std::variant_alternative_t<i, Environment>::name) || ...);
-  }
-  (std::make_index_sequence<std::variant_size_v<Environment>>{});
+// The environments that have a parameter, as "ocean and ocean-simple".
+std::string environments_with(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const auto& [value, environments] : environments_by_default(name))
+    names.insert(names.end(), environments.begin(), environments.end());
+  return joined(names, " and ");
 }
 
-// One number is a pull downwards.
+// "(ocean, ocean-simple; default 0,0,0)", or "(default 1 in ocean and ocean-simple, 200 in land)".
+std::string where_and_default(std::string_view name) {
+  const auto groups = environments_by_default(name);
+  if (groups.size() == 1)
+    return fmt::format("({}; default {})", fmt::join(groups.front().second, ", "), groups.front().first);
+  std::vector<std::string> defaults;
+  for (const auto& [value, environments] : groups)
+    defaults.push_back(fmt::format("{} in {}", value, joined(environments, " and ")));
+  return fmt::format("(default {})", fmt::join(defaults, ", "));
+}
+
+// How the help shows a value: "KG/M3", or "X" for a number without unit.
+std::string form_of(std::string_view unit) {
+  std::string form(unit.empty() ? "X" : unit);
+  for (char& letter : form) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return form;
+}
+
+// One number is a magnitude, downwards.
 Vec3 gravity_from(const std::string& option, const std::string& text) {
   if (text.find(',') != std::string::npos) return vector_from(option, text);
   return {0, 0, -number_from<float>(option, text)};
 }
 
+// Adds an option for each parameter of a struct, read into its member.
+template <class Struct>
+void add_parameters(CLI::App& command, Struct& values) {
+  for_each_parameter(values, [&](const auto& parameter, auto& value) {
+    const std::string help = fmt::format("{} (default {})", parameter.help, text_of(parameter.default_value()));
+    add_number(command, option_of(parameter.name), value, help, form_of(parameter.unit))->group(simulation_group);
+  });
+}
+
 }  // namespace
 
 void SimulationOptions::add_to(CLI::App& command) {
-  const auto group = [](CLI::Option* option, const char* name) { option->group(name); };
-  group(add_value(command, "--device", device_,
-                  "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
-                  "auto|cpu|cuda[:N]",
-                  [](const std::string&, const std::string& text) { return name_of(device_named(text)); }),
-        "Simulation");
-  group(add_number(command, "--threads", threads_, "CPU threads (default 0 = all cores)", "N"), "Simulation");
-  group(add_value(
-            command, "--environment", environment_,
-            "Where the robots live (default: what they are made for, else ocean)", "ocean|ocean-simple|land",
-            [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }),
-        "Simulation");
-  group(add_value(command, "--solver", solver_, "Solver (default force)", "force|xpbd",
-                  [](const std::string&, const std::string& text) { return std::string(name_of(solver_named(text))); }),
-        "Simulation");
-  group(add_number(command, "--dt", dt_, "Time step (default 0.001)", "S"), "Simulation");
-  group(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S"), "Simulation");
-  group(add_number(command, "--damping", damping_, "Damping of all velocities (default 0.1)", "1/S"), "Simulation");
-  group(add_number(command, "--stiffness-scale", stiffness_scale_,
-                   "Multiplies every stiffness (default 1 in water, 200 on land)", "X"),
-        "Environment");
-  group(add_value(command, "--gravity", gravity_,
-                  "Gravity, downwards or as a vector (default 0 in water, 9.81 on land)", "G|X,Y,Z", gravity_from),
-        "Environment");
-  group(add_number(command, "--density", density_, "Density of the water (ocean; default 1000)", "KG/M3"),
-        "Environment");
-  group(add_number(command, "--drag-coefficient", drag_coefficient_, "Drag coefficient (ocean; default 1)", "C"),
-        "Environment");
-  group(add_number(command, "--lift-coefficient", lift_coefficient_, "Lift coefficient (ocean; default 0.2)", "C"),
-        "Environment");
-  group(add_value(command, "--flow", flow_, "Velocity of the water (ocean, ocean-simple; default 0,0,0)", "X,Y,Z",
-                  vector_from),
-        "Environment");
-  group(add_number(command, "--point-drag", point_drag_, "Drag of a mass (ocean-simple; default 1)", "N S/M"),
-        "Environment");
-  group(add_number(command, "--friction", friction_, "Friction of the ground (land; default 0.8)", "MU"),
-        "Environment");
-  group(add_number(command, "--contact-stiffness", contact_stiffness_,
-                   "Stiffness of a robot's contact with itself (land; default 100)", "N/M"),
-        "Environment");
-  group(command.add_flag("--no-self-collision", no_self_collision_, "Robots pass through themselves (land)"),
-        "Environment");
+  const auto add = [](CLI::Option* option) { option->group(simulation_group); };
+  add(command
+          .add_option_function<std::string>(
+              "--device",
+              [this](const std::string& text) {
+                const Device device = device_named(text);
+                given_.device.kind = device.kind;
+                given_.device.index = device.index;
+              },
+              "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)")
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+          ->type_name("auto|cpu|cuda[:N]"));
+  add_parameters(command, given_.device);
+  add(add_value(
+      command, "--environment", environment_, "Where the robots live (default: what they are made for, else ocean)",
+      fmt::format("{}", fmt::join(environment_names(), "|")),
+      [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }));
+  add(add_value(command, "--solver", given_.solver, "Solver (default force)", "force|xpbd",
+                [](const std::string&, const std::string& text) { return solver_named(text); }));
+  add(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S"));
+  add_parameters(command, given_);
+  add_environment_parameters(command);
 }
 
-void SimulationOptions::set_parameters(Environment& environment) const {
-  set(environment, "--density", density_, density);
-  set(environment, "--drag-coefficient", drag_coefficient_, drag_coefficient);
-  set(environment, "--lift-coefficient", lift_coefficient_, lift_coefficient);
-  set(environment, "--flow", flow_, flow);
-  set(environment, "--point-drag", point_drag_, point_drag);
-  set(environment, "--gravity", gravity_, gravity);
-  set(environment, "--friction", friction_, friction);
-  set(environment, "--contact-stiffness", contact_stiffness_, contact_stiffness);
-  set(environment, "--stiffness-scale", stiffness_scale_, stiffness_scale);
-  if (no_self_collision_) set(environment, "--no-self-collision", std::optional<bool>(false), self_collision);
+// One option for all environments that have a parameter of that name.
+void SimulationOptions::add_environment_parameters(CLI::App& command) {
+  const auto add = [&]<class Value>(const auto& parameter, const Value& usual) {
+    const std::string name(parameter.name);
+    if (parameter_options_.contains(name)) return;  // of an earlier environment
+    ParameterOption& target = parameter_options_[name];
+    CLI::Option* option = nullptr;
+    if constexpr (std::is_same_v<Value, bool>) {
+      target.option = switch_of(name, usual);
+      option = command.add_flag_callback(
+          target.option, [&target, usual] { target.value = !usual; },
+          fmt::format("{}{} ({})", usual ? "Switch off: " : "", parameter.help, environments_with(name)));
+    } else {
+      target.option = option_of(name);
+      const std::string help =
+          fmt::format("{}{} {}", parameter.help, parameter.takes_downward_magnitude ? ", downwards or as a vector" : "",
+                      where_and_default(name));
+      if constexpr (!std::is_same_v<Value, Vec3>)
+        option = add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>);
+      else if (parameter.takes_downward_magnitude)
+        option = add_value(command, target.option, target.value, help, "G|X,Y,Z", gravity_from);
+      else
+        option = add_value(command, target.option, target.value, help, "X,Y,Z", vector_from);
+    }
+    option->group(environment_group);
+  };
+  for_each_environment([&](const auto& kind) { for_each_parameter(kind, add); });
 }
 
 Configuration SimulationOptions::configuration_in(std::string_view environment) const {
-  Configuration configuration;
-  configuration.dt = dt_;
-  configuration.damping = damping_;
-  configuration.solver = solver_named(solver_);
-  configuration.device = device_named(device_);
-  configuration.device.threads = threads_;
+  Configuration configuration = given_;
   configuration.environment = environment_named(environment);
-  set_parameters(configuration.environment);
+  std::set<std::string> applicable;
+  for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, Value& value) {
+    const std::string name(parameter.name);
+    applicable.insert(name);
+    const auto option = parameter_options_.find(name);
+    if (option != parameter_options_.end() && option->second.value) value = std::get<Value>(*option->second.value);
+  });
+  for (const auto& [name, option] : parameter_options_)
+    if (option.value && !applicable.contains(name))
+      throw InputError(option.option,
+                       fmt::format("{} has no such parameter; it applies to {}", environment, environments_with(name)));
   validate(configuration);
   return configuration;
 }
@@ -145,10 +174,11 @@ Configuration SimulationOptions::configuration() const { return configuration_in
 
 Configuration SimulationOptions::configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const {
   if (environment_) return configuration();
+  const auto names = environment_names();
   std::set<std::string> wanted;
   for (const Robot& robot : robots) {
     const std::string environment = environment_of(robot);
-    if (is_environment(environment)) wanted.insert(environment);
+    if (std::ranges::count(names, environment) > 0) wanted.insert(environment);
   }
   if (wanted.size() == 1) return configuration_in(*wanted.begin());
   if (wanted.size() > 1)
@@ -161,10 +191,11 @@ double SimulationOptions::seconds(double otherwise) const {
   const double seconds = seconds_.value_or(otherwise);
   if (!(std::isfinite(seconds) && seconds >= 0))
     throw InputError("--seconds", fmt::format("{} is not accepted; give a finite number >= 0 s", seconds));
-  if (seconds / dt_ > 1e15) throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds, dt_));
+  if (seconds / given_.dt > 1e15)
+    throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds, given_.dt));
   return seconds;
 }
 
-std::int64_t SimulationOptions::steps() const { return std::llround(seconds() / dt_); }
+std::int64_t SimulationOptions::steps() const { return std::llround(seconds() / given_.dt); }
 
 }  // namespace mercury

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of every command that simulates: device, environment, solver and their parameters.
+// The options of every command that simulates: device, solver, environment and their parameters. All options of
+// parameters are derived from the tables in mercury/configuration.h.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "mercury/configuration.h"
@@ -21,13 +24,14 @@ class SimulationOptions {
   // Adds the options to a command. The object must outlive it.
   void add_to(CLI::App& command);
 
-  // What was chosen. Throws InputError naming the option that cannot be used or does not apply to the environment.
+  // The configuration that the options describe. Throws InputError for an option that cannot be used or does not apply
+  // to the environment.
   Configuration configuration() const;
-  // The same; without --environment, the one that the robots are made for, if they agree. What the user should know
-  // about that is added to `notes`.
+  // The same, but without --environment the robots choose: the environment that they are made for, if they agree.
+  // Appends to `notes` what the user should know about that.
   Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;
 
-  // What --environment was given; empty = it was not.
+  // The value of --environment; empty = not given.
   std::string chosen_environment() const { return environment_.value_or(""); }
 
   // Time to simulate [s]. Throws InputError unless it is finite and >= 0 and has at most 1e15 steps of dt.
@@ -35,18 +39,19 @@ class SimulationOptions {
   std::int64_t steps() const;  // nearest to seconds() / dt
 
  private:
-  Configuration configuration_in(std::string_view environment) const;
-  void set_parameters(Environment& environment) const;
+  // The option of an environment's parameter.
+  struct ParameterOption {
+    std::string option;                                    // "--density"
+    std::optional<std::variant<float, bool, Vec3>> value;  // if given
+  };
 
-  std::string device_ = "auto", solver_ = "force";
+  void add_environment_parameters(CLI::App& command);
+  Configuration configuration_in(std::string_view environment) const;
+
+  Configuration given_;  // all but the environment
   std::optional<std::string> environment_;
-  int threads_ = 0;
-  double dt_ = Configuration{}.dt, damping_ = Configuration{}.damping;
+  std::map<std::string, ParameterOption> parameter_options_;  // by the parameter's name
   std::optional<double> seconds_;
-  std::optional<float> density_, drag_coefficient_, lift_coefficient_, point_drag_, friction_, contact_stiffness_,
-      stiffness_scale_;
-  std::optional<Vec3> flow_, gravity_;
-  bool no_self_collision_ = false;
 };
 
 }  // namespace mercury

@@ -12,49 +12,46 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json json_of(float value) { return shortest(value); }
+Json json_of(double value) { return value; }
+Json json_of(int value) { return value; }
+Json json_of(bool value) { return value; }
 Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
 
-void add(Json& json, const Ocean& ocean) {
-  json["density"] = shortest(ocean.density);
-  json["drag_coefficient"] = shortest(ocean.drag_coefficient);
-  json["lift_coefficient"] = shortest(ocean.lift_coefficient);
-  json["flow"] = json_of(ocean.flow);
+double number_from(const std::string& name, const Json& json) {
+  if (!json.is_number()) throw InputError(name, "is not a number");
+  return json.get<double>();
 }
 
-void add(Json& json, const OceanSimple& ocean) {
-  json["point_drag"] = shortest(ocean.point_drag);
-  json["flow"] = json_of(ocean.flow);
+void read(const std::string& name, const Json& json, double& value) { value = number_from(name, json); }
+void read(const std::string& name, const Json& json, float& value) {
+  value = static_cast<float>(number_from(name, json));
+}
+void read(const std::string& name, const Json& json, int& value) { value = static_cast<int>(number_from(name, json)); }
+void read(const std::string& name, const Json& json, bool& value) {
+  if (!json.is_boolean()) throw InputError(name, "is not true or false");
+  value = json.get<bool>();
+}
+void read(const std::string& name, const Json& json, Vec3& value) {
+  if (!json.is_array() || json.size() != 3) throw InputError(name, "is not a list of three numbers");
+  read(name, json[0], value.x);
+  read(name, json[1], value.y);
+  read(name, json[2], value.z);
 }
 
-void add(Json& json, const Land& land) {
-  json["friction"] = shortest(land.friction);
-  json["self_collision"] = land.self_collision;
-  json["contact_stiffness"] = shortest(land.contact_stiffness);
+template <class Struct>
+void write_parameters(Json& json, const Struct& values) {
+  for_each_parameter(
+      values, [&](const auto& parameter, const auto& value) { json[std::string(parameter.name)] = json_of(value); });
 }
 
-// A parameter of an environment from its member of a document.
-struct Reader {
-  const Json& json;
-  void operator()(const std::string& name, float& value) const {
-    if (json.contains(name)) value = static_cast<float>(number(name, json[name]));
-  }
-  void operator()(const std::string& name, bool& value) const {
-    if (!json.contains(name)) return;
-    if (!json[name].is_boolean()) throw InputError(name, "is not true or false");
-    value = json[name].get<bool>();
-  }
-  void operator()(const std::string& name, Vec3& value) const {
-    if (!json.contains(name)) return;
-    const Json& list = json[name];
-    if (!list.is_array() || list.size() != 3) throw InputError(name, "is not a list of three numbers");
-    value = {static_cast<float>(number(name, list[0])), static_cast<float>(number(name, list[1])),
-             static_cast<float>(number(name, list[2]))};
-  }
-  static double number(const std::string& name, const Json& value) {
-    if (!value.is_number()) throw InputError(name, "is not a number");
-    return value.get<double>();
-  }
-};
+template <class Struct>
+void read_parameters(const Json& json, Struct& values) {
+  for_each_parameter(values, [&](const auto& parameter, auto& value) {
+    const std::string name(parameter.name);
+    if (json.contains(name)) read(name, json[name], value);
+  });
+}
 
 }  // namespace
 
@@ -75,24 +72,23 @@ Configuration configuration_from(const Json& json) {
   };
   Configuration configuration;
   configuration.device = device_named(text("device", "auto"));
-  if (json.contains("threads"))
-    configuration.device.threads = static_cast<int>(Reader::number("threads", json["threads"]));
   configuration.solver = solver_named(text("solver", "force"));
   configuration.environment = environment_named(text("environment", "ocean"));
-  if (json.contains("dt")) configuration.dt = Reader::number("dt", json["dt"]);
-  if (json.contains("damping")) configuration.damping = Reader::number("damping", json["damping"]);
-  std::visit([&](auto& environment) { visit_parameters(environment, Reader{json}); }, configuration.environment);
+  read_parameters(json, configuration.device);
+  read_parameters(json, configuration);
+  read_parameters(json, configuration.environment);
   validate(configuration);
   return configuration;
 }
 
 nlohmann::ordered_json json_of(const Configuration& configuration) {
-  Json json{{"device", name_of(configuration.device)}, {"threads", configuration.device.threads},
-            {"solver", name_of(configuration.solver)}, {"dt", configuration.dt},
-            {"damping", configuration.damping},        {"environment", name_of(configuration.environment)}};
-  std::visit([&](const auto& environment) { add(json, environment); }, configuration.environment);
-  json["gravity"] = json_of(gravity_of(configuration.environment));
-  json["stiffness_scale"] = shortest(stiffness_scale_of(configuration.environment));
+  Json json;
+  json["device"] = name_of(configuration.device);
+  write_parameters(json, configuration.device);
+  json["solver"] = name_of(configuration.solver);
+  write_parameters(json, configuration);
+  json["environment"] = name_of(configuration.environment);
+  write_parameters(json, configuration.environment);
   return json;
 }
 

@@ -8,14 +8,14 @@
 
 namespace mercury {
 
-// Its members by the names of the program's options: {"device": "cpu", "threads": 0, "solver": "force", "dt": 0.001,
-// "damping": 0.1, "environment": "ocean", "density": 1000, ...}; vectors as [x, y, z].
+// Members have the names of the parameters (mercury/parameters.h): {"device": "cpu", "threads": 0, "solver": "force",
+// "dt": 0.001, "damping": 0.1, "environment": "ocean", "density": 1000, ...}; vectors as [x, y, z].
 nlohmann::ordered_json json_of(const Configuration& configuration);
 
-// The reverse: a parameter that is missing has its default. Throws InputError for what is no configuration.
+// The reverse. A missing parameter has its default. Throws InputError if the document is not a configuration.
 Configuration configuration_from(const nlohmann::ordered_json& json);
 
-// The number whose shortest decimal gives this float again: 0.2, not 0.20000000298023224.
+// The double with the shortest decimal that converts back to this float: 0.2, not 0.20000000298023224.
 double shortest(float value);
 
 }  // namespace mercury

@@ -43,15 +43,11 @@ std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memo
   return rows;
 }
 
+// A parameter that an older program did not have keeps its default.
 Configuration read_configuration(hid_t parameters) {
-  Configuration configuration;
-  configuration.device = device_named(read_text(parameters, "device"));
-  configuration.device.threads = read_attribute<std::int32_t>(parameters, "threads");
-  configuration.solver = solver_named(read_text(parameters, "solver"));
-  configuration.dt = read_attribute<double>(parameters, "dt");
-  configuration.damping = read_attribute<double>(parameters, "damping");
-  configuration.environment = environment_named(read_text(parameters, "environment"));
-  const auto read = [&]<class Value>(const char* name, Value& value) {
+  const auto read = [&]<class Value>(const auto& parameter, Value& value) {
+    const std::string name(parameter.name);
+    if (!has_attribute(parameters, name)) return;
     if constexpr (std::is_same_v<Value, Vec3>) {
       const auto [x, y, z] = read_attributes<float, 3>(parameters, name);
       value = {x, y, z};
@@ -61,7 +57,13 @@ Configuration read_configuration(hid_t parameters) {
       value = read_attribute<Value>(parameters, name);
     }
   };
-  std::visit([&](auto& environment) { visit_parameters(environment, read); }, configuration.environment);
+  Configuration configuration;
+  configuration.device = device_named(read_text(parameters, "device"));
+  for_each_parameter(configuration.device, read);
+  configuration.solver = solver_named(read_text(parameters, "solver"));
+  for_each_parameter(configuration, read);
+  configuration.environment = environment_named(read_text(parameters, "environment"));
+  for_each_parameter(configuration.environment, read);
   validate(configuration);
   return configuration;
 }

@@ -143,14 +143,9 @@ void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
   write_text_dataset(parameters_, "material_names", names);
 }
 
-void TrajectoryWriter::write_configuration(hid_t parameters, Configuration configuration) {
-  write_text(parameters, "device", name_of(configuration.device));
-  write_attribute(parameters, "threads", std::int32_t{configuration.device.threads});
-  write_text(parameters, "solver", name_of(configuration.solver));
-  write_attribute(parameters, "dt", configuration.dt);
-  write_attribute(parameters, "damping", configuration.damping);
-  write_text(parameters, "environment", name_of(configuration.environment));
-  const auto write = [&]<class Value>(const char* name, const Value& value) {
+void TrajectoryWriter::write_configuration(hid_t parameters, const Configuration& configuration) {
+  const auto write = [&]<class Value>(const auto& parameter, const Value& value) {
+    const std::string name(parameter.name);
     if constexpr (std::is_same_v<Value, Vec3>)
       write_attribute(parameters, name, std::span<const float>(std::array{value.x, value.y, value.z}));
     else if constexpr (std::is_same_v<Value, bool>)
@@ -158,7 +153,12 @@ void TrajectoryWriter::write_configuration(hid_t parameters, Configuration confi
     else
       write_attribute(parameters, name, value);
   };
-  std::visit([&](auto& environment) { visit_parameters(environment, write); }, configuration.environment);
+  write_text(parameters, "device", name_of(configuration.device));
+  for_each_parameter(configuration.device, write);
+  write_text(parameters, "solver", name_of(configuration.solver));
+  for_each_parameter(configuration, write);
+  write_text(parameters, "environment", name_of(configuration.environment));
+  for_each_parameter(configuration.environment, write);
 }
 
 void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials) {

@@ -54,7 +54,7 @@ class TrajectoryWriter {
 
  private:
   void write_header(const TrajectoryHeader& header);
-  void write_configuration(hid_t parameters, Configuration configuration);
+  void write_configuration(hid_t parameters, const Configuration& configuration);
   void write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials);
   void write_connectivity(const std::string& group, const Robot& robot, hid_t particles);
   void write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials);

@@ -1,56 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/tune_panel.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {
 
-bool edit(Ocean& ocean) {
-  static const Ocean standard;
-  bool changed =
-      slider("density", "of the water, rho", ocean.density, standard.density, {0, 2000, "%.0f kg/m\xc2\xb3"});
-  changed |= slider("drag coefficient", "C_D of a face across the flow", ocean.drag_coefficient,
-                    standard.drag_coefficient, {0, 3, "%.2f"});
-  changed |=
-      slider("lift coefficient", "C_L of a face", ocean.lift_coefficient, standard.lift_coefficient, {0, 1, "%.2f"});
-  changed |= slider("flow", "velocity of the water [m/s]", ocean.flow, standard.flow, {-2, 2, "%.2f"});
-  return changed;
+// "drag coefficient"
+std::string label_of(std::string_view name) {
+  std::string label(name);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
 }
 
-bool edit(OceanSimple& ocean) {
-  static const OceanSimple standard;
-  bool changed = slider("drag of a mass", "force over speed through the water", ocean.point_drag, standard.point_drag,
-                        {0, 10, "%.2f N s/m"});
-  changed |= slider("flow", "velocity of the water [m/s]", ocean.flow, standard.flow, {-2, 2, "%.2f"});
-  return changed;
+// "kg/m3" with a raised 3.
+std::string unit_text(std::string_view unit) {
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool is_power = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1]));
+    text += is_power && unit[i] == '2' ? "\xc2\xb2" : is_power && unit[i] == '3' ? "\xc2\xb3" : std::string(1, unit[i]);
+  }
+  return text;
 }
 
-bool edit(Land& land) {
-  static const Land standard;
-  bool changed =
-      slider("friction", "Coulomb coefficient of the floor", land.friction, standard.friction, {0, 2, "%.2f"});
-  ImGui::PushID("collision");
-  row("self-collision", "masses of one robot that no spring joins repel each other");
-  changed |= ImGui::Checkbox("##on", &land.self_collision);
+bool edit(const std::string& label, const std::string& hint, bool& value) {
+  ImGui::PushID(label.c_str());
+  row(label.c_str(), hint.c_str());
+  const bool changed = ImGui::Checkbox("##on", &value);
   ImGui::PopID();
-  ImGui::BeginDisabled(!land.self_collision);
-  changed |= slider("contact stiffness", "k_c of that repulsion, times the stiffness scale", land.contact_stiffness,
-                    standard.contact_stiffness, {0, 1000, "%.0f N/m"});
-  ImGui::EndDisabled();
   return changed;
 }
 
+// A slider per parameter of an environment, or a box for a switch.
 template <class Kind>
-bool edit_common(Kind& environment) {
-  static const Kind standard;
-  bool changed =
-      slider("gravity", "acceleration [m/s\xc2\xb2]", environment.gravity, standard.gravity, {-20, 20, "%.2f"});
-  changed |= slider("stiffness scale", "multiplies every spring's stiffness", environment.stiffness_scale,
-                    standard.stiffness_scale, {0.01f, 1000, "\xc3\x97 %.2f", true});
+bool edit_parameters(Kind& environment) {
+  bool changed = false;
+  for_each_parameter(environment, [&]<class Value>(const auto& parameter, Value& value) {
+    const std::string label = label_of(parameter.name), unit = unit_text(parameter.unit);
+    std::string hint(parameter.help);
+    if constexpr (std::is_same_v<Value, bool>) {
+      changed |= edit(label, hint, value);
+    } else {
+      const TypicalRange& range = parameter.typical;
+      std::string format = range.high - range.low >= 500 && !range.logarithmic ? "%.0f" : "%.2f";
+      if constexpr (std::is_same_v<Value, Vec3>)
+        hint += unit.empty() ? "" : " [" + unit + "]";
+      else
+        format += unit.empty() ? "" : " " + unit;
+      const bool is_disabled = parameter.enabled_by != nullptr && !(environment.*parameter.enabled_by);
+      ImGui::BeginDisabled(is_disabled);
+      changed |= slider(label.c_str(), hint.c_str(), value, parameter.default_value(),
+                        {range.low, range.high, format.c_str(), range.logarithmic});
+      ImGui::EndDisabled();
+    }
+  });
   return changed;
 }
 
@@ -74,7 +84,7 @@ bool solver_section(Configuration& configuration, EventLog& log) {
   }
   log.item("tune.dt");
   auto damping = static_cast<float>(configuration.damping);
-  if (slider("damping", "velocities shrink by exp(-damping dt) a step", damping, static_cast<float>(standard.damping),
+  if (slider("damping", "velocities shrink by exp(-damping dt) per step", damping, static_cast<float>(standard.damping),
              {0, 5, "%.2f 1/s"}) &&
       damping >= 0) {
     configuration.damping = static_cast<double>(damping);
@@ -87,21 +97,21 @@ bool solver_section(Configuration& configuration, EventLog& log) {
 bool environment_section(Configuration& configuration, EventLog& log) {
   heading("Environment");
   bool changed = false;
+  std::vector<const char*> names;
+  std::vector<Environment> defaults;
+  std::string hint;
+  for_each_environment([&](const auto& kind) {
+    names.push_back(kind.name.data());
+    defaults.emplace_back(kind);
+    hint.append(hint.empty() ? "" : ". ").append(kind.name).append(": ").append(kind.help);
+  });
   auto kind = static_cast<int>(configuration.environment.index());
-  if (combo("where", "ocean: drag on the skin. Simple ocean: drag on each mass. Land: floor, friction, gravity", kind,
-            {"ocean", "simple ocean", "land"})) {
-    configuration.environment = kind == 0   ? Environment(Ocean{})
-                                : kind == 1 ? Environment(OceanSimple{})
-                                            : Environment(Land{});
+  if (combo("where", hint.c_str(), kind, names)) {
+    configuration.environment = defaults[static_cast<std::size_t>(kind)];
     changed = true;
   }
   log.item("tune.environment");
-  changed |= std::visit(
-      [](auto& environment) {
-        const bool own = edit(environment);
-        return edit_common(environment) || own;
-      },
-      configuration.environment);
+  changed |= std::visit([](auto& environment) { return edit_parameters(environment); }, configuration.environment);
   return changed;
 }
 
@@ -116,9 +126,7 @@ bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
     const Device device = edited.device;
     edited = Configuration{};
     edited.device = device;
-    // Robots stay where they are: on land or in the water.
-    if (std::holds_alternative<Land>(configuration.environment)) edited.environment = Land{};
-    if (std::holds_alternative<OceanSimple>(configuration.environment)) edited.environment = OceanSimple{};
+    edited.environment = environment_named(name_of(configuration.environment));  // robots stay where they are
     changed = true;
   }
   log.item("tune.reset");
