@@ -54,7 +54,7 @@ void FrameReport::write(PanelContext& context, Window& window, const ShownPictur
   if (!log) return;
   write_robots(context);
   // When all that was pressed was taken, too.
-  const bool caught_up = !window.input().behind() && window.input().taken() != input_;
+  const bool caught_up = !window.input().has_backlog() && window.input().taken() != input_;
   if (seconds() - written_at_ < pause && !caught_up) return;
   input_ = window.input().taken();
   written_at_ = seconds();

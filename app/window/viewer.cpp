@@ -147,12 +147,12 @@ void Viewer::fill_scene() {
 int Viewer::run() {
   auto last = Clock::now();
   while (!interrupted() && !panels_.quits()) {
-    if (window_.asked_to_close()) {
-      window_.stay_open();
+    if (window_.close_requested()) {
+      window_.cancel_close();
       panels_.quit();
     }
     const double spent = since(last);
-    window_.poll(window_.input().behind() ? 0 : anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
+    window_.poll(window_.input().has_backlog() ? 0 : anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
     const double dt = since(last);
     last = Clock::now();
     if (window_.take_activity()) redraw_ = std::max(redraw_, 3);
@@ -163,8 +163,8 @@ int Viewer::run() {
 
 bool Viewer::anything_moves() const {
   return redraw_ > 0 || turned_ || scene_.playing() || camera_.gliding() || camera_.mode() == CameraMode::turntable ||
-         !toasts_.empty() || panels_.busy() || panels_.film().busy() || screenshot_.under_way() ||
-         !scene_.work().empty() || mouse_.busy() || viewport_.coarse();
+         !toasts_.empty() || panels_.busy() || panels_.film().busy() || screenshot_.busy() || !scene_.work().empty() ||
+         mouse_.busy() || viewport_.coarse();
 }
 
 void Viewer::listen(const std::vector<InputEvent>& events) {
@@ -173,7 +173,7 @@ void Viewer::listen(const std::vector<InputEvent>& events) {
     log_.write("dropped", {{"files", files.size()}});
   }
   const bool typing = ImGui::GetIO().WantTextInput;
-  for (const Press& press : presses_of(events)) {
+  for (const KeyPress& press : key_presses_in(events)) {
     const std::optional<Command> command = command_of(press);
     if (dialogs_.open()) {
       if (command && command->action == Action::deselect)
@@ -211,7 +211,7 @@ void Viewer::frame(double dt) {
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_, !preferences_.panels);
   mouse_.draw(area_, shown_);
   cost_.panels = since(panels_begin);
-  if (window_.input().behind() && since(seen_) < unseen_share * seeing_) {
+  if (window_.input().has_backlog() && since(seen_) < unseen_share * seeing_) {
     imgui_.discard_frame();
   } else {
     const auto drawing = Clock::now();
@@ -273,7 +273,7 @@ void Viewer::finish_picture() {
   if (pixels.width > 0 && pixels.height > 0) viewport_.present(pixels.height);
   imgui_.end_frame();
   panels_.film().frame(context_, pixels);
-  if (panels_.take_screenshot_wish()) take_screenshot();
+  if (panels_.take_screenshot_request()) take_screenshot();
   std::filesystem::path path;
   std::string error;
   if (screenshot_.done(path, error)) {
@@ -283,11 +283,11 @@ void Viewer::finish_picture() {
       toasts_.show(Tone::error, error);
     log_.write("screenshot", {{"file", path.string()}});
   }
-  window_.show_picture();
+  window_.swap_buffers();
 }
 
 void Viewer::take_screenshot() {
-  screenshot_.take(read_window(window_.pixels()), fresh_name(picture_folder(context_), ".png"));
+  screenshot_.take(read_window(window_.pixels()), unused_path(picture_folder(context_), ".png"));
 }
 
 }  // namespace

@@ -11,27 +11,27 @@ namespace mercury::window {
 
 void Dialogs::ask(Question question) {
   question_ = std::move(question);
-  act_with_text_ = nullptr;
-  open_ = fresh_ = true;
-  accepted_ = refused_ = false;
+  on_text_ = nullptr;
+  open_ = just_opened_ = true;
+  accepted_ = cancelled_ = false;
 }
 
 void Dialogs::ask_text(std::string title, std::string question, std::string text, std::string button,
-                       std::function<void(const std::string&)> act) {
-  ask({.title = std::move(title), .text = std::move(question), .button = std::move(button), .act = {}});
+                       std::function<void(const std::string&)> on_accept) {
+  ask({.title = std::move(title), .text = std::move(question), .button = std::move(button), .on_accept = {}});
   files_.forget();
   text_ = std::move(text);
-  act_with_text_ = std::move(act);
+  on_text_ = std::move(on_accept);
 }
 
 void Dialogs::close() {
   if (open_)
-    refused_ = true;
+    cancelled_ = true;
   else
     files_.close();
 }
 
-void Dialogs::press(const Press& press) {
+void Dialogs::press(const KeyPress& press) {
   if (files_.open() && !open_) files_.press(press);
   if (open_ && is_enter(press)) accepted_ = true;
 }
@@ -44,7 +44,7 @@ void Dialogs::draw(EventLog& log) {
 void Dialogs::draw_question(EventLog& log) {
   if (!open_ && !shown_) return;
   const std::string id = question_.title + "###dialog";
-  if (open_ && fresh_) ImGui::OpenPopup(id.c_str());
+  if (open_ && just_opened_) ImGui::OpenPopup(id.c_str());
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({screen.x / 2, 0.42f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -58,47 +58,59 @@ void Dialogs::draw_question(EventLog& log) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(question_.text.c_str());
   ImGui::PopTextWrapPos();
-  // What was typed before Enter counts.
-  bool accepted = accepted_ && !fresh_, other = false;
-  if (act_with_text_) {
-    if (fresh_) ImGui::SetKeyboardFocusHere();
+  // Not in the first frame: the text field has yet to receive what was typed before Enter.
+  bool accepted = accepted_ && !just_opened_;
+  if (on_text_) {
+    if (just_opened_) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1);
     accepted |= text_field("##text", text_);
     log.item("dialog.text");
   }
-  fresh_ = false;
+  just_opened_ = false;
+  Button pressed = draw_buttons(log);
+  if (cancelled_) pressed = Button::cancel;
+  if (accepted && pressed == Button::none) pressed = Button::accept;
+  if (pressed != Button::none) {
+    open_ = shown_ = accepted_ = cancelled_ = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+  answer(pressed);
+}
+
+Dialogs::Button Dialogs::draw_buttons(EventLog& log) {
+  Button pressed = Button::none;
+  const float text = ImGui::GetFontSize();
   const float width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
   ImGui::Dummy({0, 0.2f * text});
   const float buttons = question_.other_button.empty() ? 2 : 3;
   const float room =
       ImGui::GetContentRegionAvail().x - buttons * width - (buttons - 1) * ImGui::GetStyle().ItemSpacing.x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, room));
-  const bool refused = ImGui::Button("Cancel", {width, 0}) || refused_;
+  if (ImGui::Button("Cancel", {width, 0})) pressed = Button::cancel;
   log.item("dialog.cancel");
   ImGui::SameLine();
   if (!question_.other_button.empty()) {
-    other = ImGui::Button(question_.other_button.c_str(), {width, 0});
+    if (ImGui::Button(question_.other_button.c_str(), {width, 0})) pressed = Button::other;
     log.item("dialog.other");
     ImGui::SameLine();
   }
-  accepted |= ImGui::Button(question_.button.c_str(), {width, 0});
+  if (ImGui::Button(question_.button.c_str(), {width, 0})) pressed = Button::accept;
   log.item("dialog.accept");
-  if (accepted || refused || other) {
-    open_ = shown_ = accepted_ = refused_ = false;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
-  // Any of them may open the next dialog, in the place of this one.
-  const Question asked = question_;
-  const auto with_text = act_with_text_;
-  if (refused && asked.refused) asked.refused();
-  if (refused) return;
-  if (other)
-    asked.other_act();
-  else if (accepted && with_text)
-    with_text(text_);
-  else if (accepted)
-    asked.act();
+  return pressed;
+}
+
+// Works on copies, since each callback may open the next dialog.
+void Dialogs::answer(Button pressed) {
+  const Question question = question_;
+  const auto on_text = on_text_;
+  if (pressed == Button::cancel && question.on_cancel) question.on_cancel();
+  if (pressed == Button::other) question.on_other();
+  if (pressed != Button::accept) return;
+  if (on_text)
+    on_text(text_);
+  else
+    question.on_accept();
 }
 
 }  // namespace mercury::window

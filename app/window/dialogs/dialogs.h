@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions in the middle of the window: one at a time.
+// Modal dialogs in the middle of the window, one at a time.
 #pragma once
 
 #include <functional>
@@ -10,45 +10,49 @@
 
 namespace mercury::window {
 
-// A question with a button that does something, perhaps a second one, and "Cancel".
+// A message with a button, perhaps a second one, and "Cancel".
 struct Question {
   std::string title, text;
   std::string button;
-  std::function<void()> act;
+  std::function<void()> on_accept;
   std::string other_button = {};
-  std::function<void()> other_act = {};
-  std::function<void()> refused = {};  // Cancel or Esc; nothing = nothing happens
+  std::function<void()> on_other = {};
+  std::function<void()> on_cancel = {};  // Cancel or Esc; may be empty
 };
 
 class Dialogs {
  public:
   void ask(Question question);
-  // Asks for a line of text that begins with `text`; `act` is given what was typed.
+  // Asks for a line of text, which starts as `text`; calls `on_accept` with what was typed.
   void ask_text(std::string title, std::string question, std::string text, std::string button,
-                std::function<void(const std::string&)> act);
-  // Asks for files or a folder.
-  void ask_files(FileQuestion question, std::function<void(const FileAnswer&)> act) {
-    files_.ask(std::move(question), std::move(act));
+                std::function<void(const std::string&)> on_accept);
+  // Asks for files or a folder; calls `on_accept` with the choice.
+  void ask_files(FileRequest request, std::function<void(const FileChoice&)> on_accept) {
+    files_.ask(std::move(request), std::move(on_accept));
   }
-  // Asks for the files that were asked for last once more.
-  void ask_files_again() { files_.ask_again(); }
+  // Shows the last file dialog again, as the user left it.
+  void reopen_file_dialog() { files_.reopen(); }
 
   bool open() const { return open_ || files_.open(); }
-  // Esc.
+  // Closes the open dialog as Esc does.
   void close();
-  // A key pressed while one is open.
-  void press(const Press& press);
+  // Handles a key press while a dialog is open.
+  void press(const KeyPress& press);
   void draw(EventLog& log);
 
  private:
+  enum class Button { none, accept, other, cancel };
   void draw_question(EventLog& log);
+  Button draw_buttons(EventLog& log);
+  void answer(Button pressed);
 
   Question question_;
   std::string text_;
-  std::function<void(const std::string&)> act_with_text_;  // of a question that wants text
-  bool open_ = false, fresh_ = false;
-  bool accepted_ = false, refused_ = false;  // by a key
-  bool shown_ = false;                       // ImGui has it open
+  std::function<void(const std::string&)> on_text_;  // of a question that asks for text
+  bool open_ = false;
+  bool just_opened_ = false;
+  bool accepted_ = false, cancelled_ = false;  // by a key
+  bool shown_ = false;                         // ImGui has the popup open
   FileDialog files_;
 };
 

@@ -14,7 +14,7 @@ namespace mercury::window {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = FileQuestion::Kind;
+using Kind = FileRequest::Kind;
 
 constexpr int page = 10;  // rows of Page Up and Page Down
 
@@ -22,18 +22,18 @@ bool is_path(const std::string& text) { return text.find('/') != std::string::np
 
 }  // namespace
 
-void FileDialog::ask(FileQuestion question, std::function<void(const FileAnswer&)> act) {
-  question_ = std::move(question);
-  act_ = std::move(act);
-  view_ = FolderListing(question_.extensions);
-  if (question_.folder.empty() || !view_.enter(question_.folder)) view_.enter(".");
-  place_ = view_.folder().string();
+void FileDialog::ask(FileRequest request, std::function<void(const FileChoice&)> on_accept) {
+  request_ = std::move(request);
+  on_accept_ = std::move(on_accept);
+  view_ = FolderListing(request_.extensions);
+  if (request_.folder.empty() || !view_.enter(request_.folder)) view_.enter(".");
+  folder_text_ = view_.folder().string();
   error_.clear();
-  set_text(question_.name);
+  set_text(request_.name);
   format_ = 0;
-  for (std::size_t i = 0; i < question_.extensions.size(); ++i)
-    if (fs::path(text_).extension() == question_.extensions[i]) format_ = static_cast<int>(i);
-  open_ = fresh_ = true;
+  for (std::size_t i = 0; i < request_.extensions.size(); ++i)
+    if (fs::path(text_).extension() == request_.extensions[i]) format_ = static_cast<int>(i);
+  open_ = just_opened_ = true;
 }
 
 void FileDialog::set_text(std::string text) {
@@ -42,11 +42,11 @@ void FileDialog::set_text(std::string text) {
   focus_ = true;
 }
 
-// What is typed is looked for in the list; a path is not.
+// Typed text filters the list, unless it is a path.
 void FileDialog::typed() {
   error_.clear();
   view_.clear_marks();
-  if (question_.kind != Kind::open) return;
+  if (request_.kind != Kind::open) return;
   view_.set_filter(is_path(text_) ? "" : text_);
   if (!text_.empty() && !is_path(text_) && !view_.items().empty()) view_.mark(0);
 }
@@ -54,18 +54,18 @@ void FileDialog::typed() {
 void FileDialog::enter(const fs::path& folder) {
   error_.clear();
   if (!view_.enter(folder)) error_ = view_.error();
-  place_ = view_.folder().string();
-  if (question_.kind == Kind::open) set_text("");
+  folder_text_ = view_.folder().string();
+  if (request_.kind == Kind::open) set_text("");
   focus_ = true;
 }
 
 void FileDialog::go_up() {
   if (!view_.up()) return;
-  place_ = view_.folder().string();
+  folder_text_ = view_.folder().string();
   reveal_ = focus_ = true;
 }
 
-void FileDialog::press(const Press& press) {
+void FileDialog::press(const KeyPress& press) {
   if (press.character != 0 || !open_) return;
   const auto move = [&](int rows) {
     view_.move(rows);
@@ -85,7 +85,7 @@ void FileDialog::press(const Press& press) {
       move(page);
       break;
     case GLFW_KEY_BACKSPACE:
-      if (text_.empty() && !place_active_) go_up();
+      if (text_.empty() && !folder_active_) go_up();
       break;
     default:
       entered_ = entered_ || is_enter(press);
@@ -99,17 +99,17 @@ void FileDialog::click(std::size_t index) {
   if (ImGui::IsMouseDoubleClicked(0)) {
     if (item.folder)
       enter(view_.folder() / item.name);
-    else if (question_.kind != Kind::folder)
+    else if (request_.kind != Kind::folder)
       accept();
     return;
   }
-  if (question_.kind == Kind::open && io.KeyCtrl)
+  if (request_.kind == Kind::open && io.KeyCtrl)
     view_.toggle(index);
-  else if (question_.kind == Kind::open && io.KeyShift)
+  else if (request_.kind == Kind::open && io.KeyShift)
     view_.mark_to(index);
   else
     view_.mark(index);
-  if (question_.kind == Kind::save && !item.folder) set_text(item.name);
+  if (request_.kind == Kind::save && !item.folder) set_text(item.name);
 }
 
 void FileDialog::accept() {
@@ -118,11 +118,11 @@ void FileDialog::accept() {
     enter(view_.folder() / marked.front().name);
     return;
   }
-  if (question_.kind == Kind::folder) {
+  if (request_.kind == Kind::folder) {
     finish({text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)});
     return;
   }
-  if (question_.kind == Kind::save || marked.empty()) {
+  if (request_.kind == Kind::save || marked.empty()) {
     accept_typed();
     return;
   }
@@ -137,25 +137,25 @@ void FileDialog::accept_typed() {
   std::error_code unknown;
   if (path.empty() || fs::is_directory(path, unknown)) {
     if (path.empty())
-      error_ = question_.kind == Kind::open ? "mark a file in the list, or type its name" : "a name is missing";
+      error_ = request_.kind == Kind::open ? "select a file in the list or type its name" : "type a name";
     else
       enter(path);
     return;
   }
-  if (question_.kind == Kind::open && !fs::exists(path, unknown)) {
-    error_ = path.string() + ": there is no such file";
+  if (request_.kind == Kind::open && !fs::exists(path, unknown)) {
+    error_ = path.string() + ": no such file";
     return;
   }
-  const std::vector<std::string>& known = question_.extensions;
-  if (question_.kind == Kind::save && !known.empty() &&
+  const std::vector<std::string>& known = request_.extensions;
+  if (request_.kind == Kind::save && !known.empty() &&
       std::find(known.begin(), known.end(), path.extension()) == known.end())
-    path += known[static_cast<std::size_t>(question_.formats.empty() ? 0 : format_)];
+    path += known[static_cast<std::size_t>(request_.formats.empty() ? 0 : format_)];
   finish({std::move(path)});
 }
 
 void FileDialog::finish(std::vector<fs::path> paths) {
-  answer_ = {std::move(paths), static_cast<std::size_t>(format_)};
-  answered_ = true;
+  choice_ = {std::move(paths), static_cast<std::size_t>(format_)};
+  chosen_ = true;
   open_ = false;
 }
 

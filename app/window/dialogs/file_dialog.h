@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks for files or a folder, in the middle of the window.
+// The dialog that opens and saves files.
 #pragma once
 
 #include <filesystem>
@@ -13,33 +13,32 @@
 
 namespace mercury::window {
 
-struct FileQuestion {
-  // Files that there are; a name for one that there need not be; a folder. A name typed for the latter need not be
-  // there.
+struct FileRequest {
+  // open: existing files. save: one file, which may be new. folder: one folder, which may be new.
   enum class Kind { open, save, folder } kind = Kind::open;
   std::string title, button;
-  std::vector<std::string> extensions;  // of the files shown; the first is given to a name without one
-  std::filesystem::path folder;         // at the beginning; where it is missing, the present one
-  std::string name;                     // at the beginning
-  std::vector<const char*> formats;     // to choose from; of Kind::save, one an extension
+  std::vector<std::string> extensions;  // of the files listed; the first is the default
+  std::filesystem::path folder;         // shown first; the working directory if it does not exist
+  std::string name;                     // shown first
+  std::vector<const char*> formats;     // to choose from, may be empty; for Kind::save, one per extension
 };
 
-struct FileAnswer {
-  std::vector<std::filesystem::path> paths;  // one, but for Kind::open
-  std::size_t format = 0;
+struct FileChoice {
+  std::vector<std::filesystem::path> paths;  // not empty; several only for Kind::open
+  std::size_t format = 0;                    // index into FileRequest::formats
 };
 
 class FileDialog {
  public:
-  void ask(FileQuestion question, std::function<void(const FileAnswer&)> act);
-  // The last question once more, as it was left; nothing if it is forgotten.
-  void ask_again() { open_ = fresh_ = act_ != nullptr; }
-  void forget() { act_ = nullptr; }
+  void ask(FileRequest request, std::function<void(const FileChoice&)> on_accept);
+  // Shows the last request again, as the user left it; does nothing after forget().
+  void reopen() { open_ = just_opened_ = on_accept_ != nullptr; }
+  void forget() { on_accept_ = nullptr; }
 
   bool open() const { return open_; }
   void close() { open_ = false; }
-  // A key pressed while it is open.
-  void press(const Press& press);
+  // Handles a key press while the dialog is open.
+  void press(const KeyPress& press);
   void draw(EventLog& log);
 
  private:
@@ -57,17 +56,20 @@ class FileDialog {
   void accept_typed();
   void finish(std::vector<std::filesystem::path> paths);
 
-  FileQuestion question_;
-  std::function<void(const FileAnswer&)> act_;
+  FileRequest request_;
+  std::function<void(const FileChoice&)> on_accept_;
   FolderListing view_;
-  std::string text_, place_, error_;  // name, folder as they are typed; why nothing came of them
-  int text_edition_ = 0;              // counts what was put into the name's field by us
+  std::string text_, folder_text_;  // the fields for name and folder
+  std::string error_;               // why they cannot be used; empty = no error
+  int text_edition_ = 0;            // grows when the program sets text_, so that ImGui drops its own copy
   int format_ = 0;
-  bool open_ = false, fresh_ = false, shown_ = false;
-  bool focus_ = false, reveal_ = false;          // to come: the name's field is typed into, the marked row is seen
-  bool place_active_ = false, entered_ = false;  // the folder's field is typed into; Enter was pressed
-  FileAnswer answer_;
-  bool answered_ = false;
+  bool open_ = false, just_opened_ = false, shown_ = false;
+  bool focus_ = false;          // the next frame gives the name field the keyboard
+  bool reveal_ = false;         // the next frame scrolls to the marked row
+  bool folder_active_ = false;  // the folder field has the keyboard
+  bool entered_ = false;        // Enter was pressed
+  FileChoice choice_;
+  bool chosen_ = false;
 };
 
 }  // namespace mercury::window

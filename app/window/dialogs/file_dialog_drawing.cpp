@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the file dialog looks.
+// The part of the file dialog that draws it with ImGui.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -17,7 +17,7 @@ namespace mercury::window {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = FileQuestion::Kind;
+using Kind = FileRequest::Kind;
 
 std::string size_text(std::uintmax_t bytes) {
   if (bytes < 1000) return fmt::format("{} B", bytes);
@@ -30,8 +30,8 @@ std::string date_text(std::time_t time) {
   return time == 0 || !localtime_r(&time, &local) ? "" : fmt::format("{:%Y-%m-%d %H:%M}", local);
 }
 
-// A sign before the name, as high as a line.
-void sign(bool folder) {
+// The icon before a name, drawn since the font has none.
+void draw_icon(bool folder) {
   const float text = ImGui::GetFontSize();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -48,7 +48,7 @@ void sign(bool folder) {
   ImGui::SameLine(0, 0);
 }
 
-// Before an item that takes the rest of the row.
+// A label before an item that takes the rest of the row.
 void label(const char* text, float width) {
   const float left = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
@@ -62,13 +62,13 @@ void label(const char* text, float width) {
 
 void FileDialog::draw(EventLog& log) {
   if (!open_ && !shown_) return;
-  const std::string id = question_.title + "###files";
-  if (open_ && fresh_) {
+  const std::string id = request_.title + "###files";
+  if (open_ && just_opened_) {
     ImGui::OpenPopup(id.c_str());
     focus_ = true;
     entered_ = false;
   }
-  fresh_ = false;
+  just_opened_ = false;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -85,8 +85,8 @@ void FileDialog::draw(EventLog& log) {
     draw_name(log);
     draw_buttons(log);
     if (std::exchange(entered_, false)) {
-      if (place_active_)
-        enter(typed_path(view_.folder(), place_));
+      if (folder_active_)
+        enter(typed_path(view_.folder(), folder_text_));
       else
         accept();
     }
@@ -97,13 +97,13 @@ void FileDialog::draw(EventLog& log) {
   }
   ImGui::EndPopup();
   // It may open the next dialog.
-  if (std::exchange(answered_, false)) act_(answer_);
+  if (std::exchange(chosen_, false)) on_accept_(choice_);
 }
 
 void FileDialog::draw_places(EventLog& log) {
   if (ImGui::Button("Up")) go_up();
   log.item("files.up");
-  tooltip("the folder above (Backspace where no name is typed)");
+  tooltip("parent folder (Backspace while the name is empty)");
   ImGui::SameLine();
   if (const char* home = std::getenv("HOME"); home && *home) {
     if (ImGui::Button("Home")) enter(home);
@@ -116,16 +116,16 @@ void FileDialog::draw_places(EventLog& log) {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID(view_.folder().string().c_str());
-  text_field("##place", place_);
-  place_active_ = ImGui::IsItemActive() || (place_active_ && entered_);
+  text_field("##place", folder_text_);
+  folder_active_ = ImGui::IsItemActive() || (folder_active_ && entered_);
   ImGui::PopID();
   log.item("files.place");
-  tooltip("a folder's name, then Enter");
+  tooltip("type a folder, then Enter");
 }
 
 void FileDialog::draw_items(EventLog& log) {
-  const float lines = (error_.empty() ? 2.0f : 3.0f) + (question_.formats.empty() ? 0.0f : 1.0f) +
-                      (question_.kind == Kind::folder ? 1.0f : 0.0f);
+  const float lines = (error_.empty() ? 2.0f : 3.0f) + (request_.formats.empty() ? 0.0f : 1.0f) +
+                      (request_.kind == Kind::folder ? 1.0f : 0.0f);
   const float height = ImGui::GetContentRegionAvail().y - lines * ImGui::GetFrameHeightWithSpacing();
   const auto flags =
       ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Sortable;
@@ -153,7 +153,7 @@ void FileDialog::draw_items(EventLog& log) {
   const fs::path folder = view_.folder();
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      // A click may have gone to another folder.
+      // A click on an earlier row may have changed the folder.
       if (static_cast<std::size_t>(i) < view_.items().size() && view_.folder() == folder)
         draw_row(static_cast<std::size_t>(i), log);
   ImGui::EndTable();
@@ -168,8 +168,8 @@ void FileDialog::draw_row(std::size_t index, EventLog& log) {
                                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
   if (index < 20) log.item(fmt::format("file.{}", item.name));
   ImGui::SameLine(0, 0);
-  sign(item.folder);
-  const bool dim = !item.folder && question_.kind == Kind::folder;
+  draw_icon(item.folder);
+  const bool dim = !item.folder && request_.kind == Kind::folder;
   if (dim) ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   ImGui::TextUnformatted(shortened(item.name, ImGui::GetContentRegionAvail().x, true).c_str());
   if (dim) ImGui::PopStyleColor();
@@ -190,37 +190,37 @@ void FileDialog::draw_name(EventLog& log) {
     ImGui::PopStyleColor();
   }
   static constexpr const char* names[] = {"name", "name", "folder"};
-  static constexpr const char* wanted[] = {"part of a name, or a path", "a name, or a path",
-                                           "a folder in this one, or none"};
-  const auto kind = static_cast<std::size_t>(question_.kind);
+  static constexpr const char* placeholders[] = {"part of a name, or a path", "a name, or a path",
+                                                 "a folder inside this one; empty = this one"};
+  const auto kind = static_cast<std::size_t>(request_.kind);
   const float names_width = 6 * ImGui::GetFontSize();
   label(names[kind], names_width);
   if (std::exchange(focus_, false)) ImGui::SetKeyboardFocusHere();
   const std::string before = text_;
   ImGui::PushID(text_edition_);
-  text_field("##name", text_, wanted[kind]);
+  text_field("##name", text_, placeholders[kind]);
   ImGui::PopID();
   log.item("dialog.text");
-  if (question_.kind != Kind::open) tooltip("folders that are missing are made");
+  if (request_.kind != Kind::open) tooltip("missing folders are created");
   if (text_ != before) typed();
-  if (question_.kind == Kind::folder)
+  if (request_.kind == Kind::folder)
     note(shortened(
-             question_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(),
+             request_.button + ": " + (text_.empty() ? view_.folder() : typed_path(view_.folder(), text_)).string(),
              ImGui::GetContentRegionAvail().x, true)
              .c_str());
-  if (question_.formats.empty()) return;
+  if (request_.formats.empty()) return;
   label("kind", names_width);
-  if (ImGui::Combo("##kind", &format_, question_.formats.data(), static_cast<int>(question_.formats.size())) &&
-      question_.kind == Kind::save)
-    set_text(fs::path(text_).replace_extension(question_.extensions[static_cast<std::size_t>(format_)]).string());
+  if (ImGui::Combo("##kind", &format_, request_.formats.data(), static_cast<int>(request_.formats.size())) &&
+      request_.kind == Kind::save)
+    set_text(fs::path(text_).replace_extension(request_.extensions[static_cast<std::size_t>(format_)]).string());
   log.item("files.format");
-  tooltip("JSON can be read by people; CBOR is the same, and smaller");
+  tooltip("JSON is text; CBOR is the same data in a smaller file");
 }
 
 void FileDialog::draw_buttons(EventLog& log) {
   const float text = ImGui::GetFontSize(),
-              width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
-  if (question_.kind == Kind::open) {
+              width = std::max(7 * text, ImGui::CalcTextSize(request_.button.c_str()).x + 2 * text);
+  if (request_.kind == Kind::open) {
     ImGui::BeginDisabled(view_.file_count() == 0);
     if (ImGui::Button(fmt::format("All {} shown", view_.file_count()).c_str())) {
       std::vector<fs::path> all;
@@ -230,7 +230,7 @@ void FileDialog::draw_buttons(EventLog& log) {
     }
     log.item("files.all");
     ImGui::EndDisabled();
-    tooltip("opens every file of this folder that the name leaves in the list");
+    tooltip("open all files that the list shows");
     ImGui::SameLine();
   }
   const float room = ImGui::GetContentRegionAvail().x - 2 * width - ImGui::GetStyle().ItemSpacing.x;
@@ -240,7 +240,7 @@ void FileDialog::draw_buttons(EventLog& log) {
   ImGui::SameLine();
   const std::vector<FolderItem> marked = view_.marked();
   const bool into = marked.size() == 1 && marked.front().folder;
-  if (ImGui::Button(into ? "Open folder###accept" : (question_.button + "###accept").c_str(), {width, 0})) accept();
+  if (ImGui::Button(into ? "Open folder###accept" : (request_.button + "###accept").c_str(), {width, 0})) accept();
   log.item("files.accept");
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most = 20'000;  // entries that are listed
+constexpr std::size_t max_entries = 20'000;  // per folder
 
 std::string lower(std::string text) {
   for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
@@ -52,7 +52,7 @@ bool FolderListing::enter(const fs::path& folder) {
   if (!wanted.has_filename() && wanted.has_parent_path() && wanted != wanted.root_path()) wanted = wanted.parent_path();
   fs::directory_iterator entries(wanted, failure);
   std::vector<FolderItem> found;
-  for (; !failure && entries != fs::directory_iterator() && found.size() < most; entries.increment(failure))
+  for (; !failure && entries != fs::directory_iterator() && found.size() < max_entries; entries.increment(failure))
     if (!entries->path().filename().string().starts_with(".")) found.push_back(item_of(*entries));
   if (failure) {
     error_ = wanted.string() + ": " + failure.message();
@@ -63,7 +63,7 @@ bool FolderListing::enter(const fs::path& folder) {
   all_ = std::move(found);
   filter_.clear();
   cursor_.reset();
-  choose();
+  update_items();
   return true;
 }
 
@@ -79,14 +79,14 @@ void FolderListing::set_filter(const std::string& text) {
   if (lower(text) == filter_) return;
   filter_ = lower(text);
   clear_marks();
-  choose();
+  update_items();
 }
 
 void FolderListing::sort(Order order, bool descending) {
   if (order == order_ && descending == descending_) return;
   order_ = order;
   descending_ = descending;
-  choose();
+  update_items();
 }
 
 std::size_t FolderListing::file_count() const {
@@ -101,8 +101,8 @@ bool FolderListing::is_shown(const FolderItem& item) const {
          extensions_.end();
 }
 
-// From all_, keeping what is marked.
-void FolderListing::choose() {
+// Fills shown_ from all_ and keeps the marks.
+void FolderListing::update_items() {
   const std::vector<FolderItem> before = std::exchange(shown_, {});
   const std::string at = cursor_ ? before[*cursor_].name : "";
   for (const FolderItem& item : all_)

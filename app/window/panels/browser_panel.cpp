@@ -71,14 +71,14 @@ void BrowserPanel::draw_bar(PanelContext& context) {
   ImGui::SameLine();
   if (ImGui::Button("Folder...")) {
     context.dialogs.ask_files(
-        {.kind = FileQuestion::Kind::folder,
+        {.kind = FileRequest::Kind::folder,
          .title = "Folder of robots",
          .button = "Show",
          .extensions = {".json", ".cbor"},
          .folder = folder,
          .name = "",
          .formats = {}},
-        [&context](const FileAnswer& answer) { context.preferences.folder = answer.paths.front().string(); });
+        [&context](const FileChoice& answer) { context.preferences.folder = answer.paths.front().string(); });
   }
   context.log.item("browser.choose");
   tooltip("shows the robots of a folder");

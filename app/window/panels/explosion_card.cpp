@@ -23,14 +23,14 @@ std::string advice_for(const ExplodedRobot& robot) {
 }
 
 void ask_for_repro(PanelContext& context, const ExplodedRobot& robot) {
-  context.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+  context.dialogs.ask_files({.kind = FileRequest::Kind::folder,
                              .title = "Save what explodes, to see it again",
                              .button = "Save here",
                              .extensions = {".repro"},
                              .folder = context.preferences.save_folder,
                              .name = "repro",
                              .formats = {}},
-                            [&context, id = robot.robot](const FileAnswer& answer) {
+                            [&context, id = robot.robot](const FileChoice& answer) {
                               save_with_confirmation(context, "repro",
                                                      [&context, id, folder = answer.paths.front()](bool overwrite) {
                                                        return context.scene.save_repro(id, folder, overwrite);

@@ -18,14 +18,14 @@ void save_one(PanelContext& context, const RobotEntry& robot) {
   const fs::path file = robot.file.empty()
                             ? fs::path(context.preferences.save_folder) / (file_name_of(robot.name) + ".json")
                             : fs::path(robot.file);
-  context.dialogs.ask_files({.kind = FileQuestion::Kind::save,
+  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
                              .title = "Save " + robot.name,
                              .button = "Save",
                              .extensions = robot_extensions,
                              .folder = file.parent_path(),
                              .name = file.filename().string(),
                              .formats = robot_formats},
-                            [&context, id = robot.id](const FileAnswer& answer) {
+                            [&context, id = robot.id](const FileChoice& answer) {
                               const fs::path path = answer.paths.front();
                               context.preferences.save_folder = path.parent_path().string();
                               save_with_confirmation(context, "robot", [&context, id, path](bool overwrite) {
@@ -35,14 +35,14 @@ void save_one(PanelContext& context, const RobotEntry& robot) {
 }
 
 void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
-  context.dialogs.ask_files({.kind = FileQuestion::Kind::folder,
+  context.dialogs.ask_files({.kind = FileRequest::Kind::folder,
                              .title = fmt::format("Save {} robots, one file each", robots.size()),
                              .button = "Save here",
                              .extensions = robot_extensions,
                              .folder = context.preferences.save_folder,
                              .name = "",
                              .formats = robot_formats},
-                            [&context, robots](const FileAnswer& answer) {
+                            [&context, robots](const FileChoice& answer) {
                               const fs::path folder = answer.paths.front();
                               const RobotFormat format = answer.format == 1 ? RobotFormat::cbor : RobotFormat::json;
                               context.preferences.save_folder = folder.string();
@@ -67,14 +67,14 @@ std::vector<RobotId> robots_to_lose(const LiveScene& scene) {
 }  // namespace
 
 void open_robots(PanelContext& context) {
-  context.dialogs.ask_files({.kind = FileQuestion::Kind::open,
+  context.dialogs.ask_files({.kind = FileRequest::Kind::open,
                              .title = "Open robots",
                              .button = "Open",
                              .extensions = {".json", ".cbor", ".repro", ".h5"},
                              .folder = context.preferences.open_folder,
                              .name = "",
                              .formats = {}},
-                            [&context](const FileAnswer& answer) {
+                            [&context](const FileChoice& answer) {
                               context.preferences.open_folder = answer.paths.front().parent_path().string();
                               context.scene.open(answer.paths);
                             });
@@ -95,14 +95,14 @@ void save_robots(PanelContext& context) {
 }
 
 void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make) {
-  context.dialogs.ask_files({.kind = FileQuestion::Kind::save,
+  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
                              .title = "Save " + what,
                              .button = "Save",
                              .extensions = {".csv"},
                              .folder = context.preferences.save_folder,
                              .name = what + ".csv",
                              .formats = {}},
-                            [&context, what, make = std::move(make)](const FileAnswer& answer) {
+                            [&context, what, make = std::move(make)](const FileChoice& answer) {
                               const fs::path path = answer.paths.front();
                               context.preferences.save_folder = path.parent_path().string();
                               save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
@@ -124,9 +124,9 @@ void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
   context.dialogs.ask({.title = "Quit without saving?",
                        .text = question,
                        .button = "Quit",
-                       .act = std::move(quit),
+                       .on_accept = std::move(quit),
                        .other_button = "Save...",
-                       .other_act = [&context, lost] {
+                       .on_other = [&context, lost] {
                          context.scene.clear_selection();
                          for (const RobotId robot : lost) context.scene.select(robot, false);
                          save_robots(context);

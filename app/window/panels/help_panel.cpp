@@ -31,7 +31,7 @@ bool begin_lines(const char* id) {
 void group(const std::string& name) {
   heading(name.c_str());
   if (!begin_lines(name.c_str())) return;
-  for (const Binding& binding : bindings())
+  for (const KeyBinding& binding : key_bindings())
     if (binding.group == name) line(binding.keys, binding.meaning);
   ImGui::EndTable();
 }
@@ -39,7 +39,7 @@ void group(const std::string& name) {
 void mouse() {
   heading("Mouse");
   if (!begin_lines("mouse")) return;
-  for (const MouseUse& use : mouse_uses()) line(use.gesture, use.meaning);
+  for (const MouseGesture& use : mouse_gestures()) line(use.gesture, use.meaning);
   ImGui::EndTable();
 }
 

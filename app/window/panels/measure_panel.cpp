@@ -71,7 +71,7 @@ void MeasurePanel::draw_plots(PanelContext& context) {
   std::vector<PlotLine> names;
   for (std::size_t k = 0; k < curves.size(); ++k)
     names.push_back({curves[k].name, render::category_color(static_cast<int>(k)), {}, {}});
-  plot_key(names);
+  plot_legend(names);
 }
 
 void MeasurePanel::draw_exports(PanelContext& context) {

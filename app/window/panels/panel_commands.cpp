@@ -30,7 +30,7 @@ void Panels::execute(const Command& command) {
     case Action::real_time:
       scene.set_speed(1);
       break;
-    case Action::as_fast_as_it_goes:
+    case Action::fastest:
       scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed);
       break;
     case Action::reset:
@@ -89,7 +89,7 @@ void Panels::execute(const Command& command) {
       window_.toggle_full_screen();
       break;
     case Action::screenshot:
-      screenshot_wanted_ = true;
+      screenshot_requested_ = true;
       break;
     case Action::record:
       film_.toggle(context_);

@@ -74,8 +74,8 @@ void save_with_confirmation(PanelContext& context, const std::string& what,
   context.dialogs.ask({.title = "Replace?",
                        .text = question,
                        .button = "Replace",
-                       .act = [&context, what, save] { report(context, what, save(true)); },
-                       .refused = [&context] { context.dialogs.ask_files_again(); }});
+                       .on_accept = [&context, what, save] { report(context, what, save(true)); },
+                       .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
 }
 
 }  // namespace mercury::window

@@ -53,15 +53,16 @@ Panels::Panels(PanelContext& context, Window& window, Viewport& picture)
             {{"Robots", "the robots of the scene", [this] { robots_.draw(context_, aspect_); }},
              {"Browser", "folders of robots, as pictures", [this] { browser_.draw(context_); }},
              {"Ranking", "who went farthest", [this] { ranking_.draw(context_, aspect_); }}}),
-      right_("##right", true,
-             {{"View", "colours, arrows, camera, looks", [this] { draw_view(context_); }},
-              {"Tune", "solver, environment, materials", [this] { draw_tune(context_, materials_); }},
-              {"Measure", "plots over time", [this] { measure_.draw(context_); }},
-              {"Video", "videos and pictures", [this] { film_.draw(context_, [this] { screenshot_wanted_ = true; }); }},
-              {"Stats", "where the computer's time goes", [this] {
-                 performance_.draw(context_.scene.moment(), picture_, context_.scene.device_name(),
-                                   window_.gl_context().describe());
-               }}}) {}
+      right_(
+          "##right", true,
+          {{"View", "colours, arrows, camera, looks", [this] { draw_view(context_); }},
+           {"Tune", "solver, environment, materials", [this] { draw_tune(context_, materials_); }},
+           {"Measure", "plots over time", [this] { measure_.draw(context_); }},
+           {"Video", "videos and pictures", [this] { film_.draw(context_, [this] { screenshot_requested_ = true; }); }},
+           {"Stats", "where the computer's time goes", [this] {
+              performance_.draw(context_.scene.moment(), picture_, context_.scene.device_name(),
+                                window_.gl_context().describe());
+            }}}) {}
 
 ViewportArea Panels::draw_frame() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -99,7 +100,7 @@ void Panels::show(const std::string& panel) {
 
 void Panels::menu_item(const char* name, Action action, bool enabled, bool checked) {
   const char* keys = "";
-  for (const Binding& binding : bindings())
+  for (const KeyBinding& binding : key_bindings())
     if (binding.action == action) keys = binding.keys;
   if (ImGui::MenuItem(name, keys, checked, enabled)) execute({action});
 }

@@ -35,7 +35,7 @@ class Panels {
   // Opens a panel by its name.
   void show(const std::string& panel);
 
-  bool take_screenshot_wish() { return std::exchange(screenshot_wanted_, false); }
+  bool take_screenshot_request() { return std::exchange(screenshot_requested_, false); }
   Generation& generation() { return robots_.random.generation; }
   VideoPanel& film() { return film_; }
   const VideoPanel& film() const { return film_; }
@@ -59,7 +59,7 @@ class Panels {
   VideoPanel film_;
   ExplosionCard explosions_;
   PanelColumn left_, right_;
-  bool help_ = false, screenshot_wanted_ = false, quits_ = false;
+  bool help_ = false, screenshot_requested_ = false, quits_ = false;
   float aspect_ = 16.0f / 9;
 };
 

@@ -91,7 +91,7 @@ void PerformancePanel::draw(const Moment& moment, const Viewport& picture, const
         .x_unit = "",
         .height = 8 * ImGui::GetFontSize()},
        lines);
-  plot_key(lines);
+  plot_legend(lines);
   if (!picture.renderer().times().empty() && ImGui::CollapsingHeader("Parts of the picture")) {
     if (begin_figures("passes")) {
       for (const render::PassTime& pass : picture.renderer().times())

@@ -8,8 +8,8 @@
 
 namespace mercury::window {
 
-RobotFolderReader::RobotFolderReader(const std::filesystem::path& folder, std::size_t most)
-    : folder_(folder.lexically_normal()), most_(most) {
+RobotFolderReader::RobotFolderReader(const std::filesystem::path& folder, std::size_t max_files)
+    : folder_(folder.lexically_normal()), max_files_(max_files) {
   list();
   thread_ = std::jthread([this](std::stop_token stop) { read(std::move(stop)); });
 }
@@ -29,7 +29,7 @@ void RobotFolderReader::list() {
   }
   std::sort(folders_.begin(), folders_.end());
   std::sort(files_.begin(), files_.end());
-  if (files_.size() > most_) files_.resize(most_);
+  if (files_.size() > max_files_) files_.resize(max_files_);
   if (folder_.has_parent_path() && folder_ != folder_.root_path())
     folders_.insert(folders_.begin(), folder_.parent_path());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robots of a folder, read one after the other on a thread of their own.
+// Reads the robots of a folder on a background thread.
 #pragma once
 
 #include <filesystem>
@@ -15,27 +15,27 @@
 
 namespace mercury::window {
 
-// A robot file, or why it cannot be used.
+// A robot file, or the reason why it cannot be used.
 struct RobotFolderEntry {
   std::filesystem::path path;
-  std::shared_ptr<const Robot> robot;  // nothing if it cannot be used
+  std::shared_ptr<const Robot> robot;  // null if the file cannot be used
   Inspection figures;
   std::string error;
 };
 
 class RobotFolderReader {
  public:
-  // Begins to read; the reading ends early when the reader is destroyed. At most `most` files are read.
-  explicit RobotFolderReader(const std::filesystem::path& folder, std::size_t most = 500);
+  // Starts to read at max_files `max_files` files. The destructor stops early.
+  explicit RobotFolderReader(const std::filesystem::path& folder, std::size_t max_files = 500);
 
   const std::filesystem::path& folder() const { return folder_; }
-  // Folders in it, the one above first; by name.
+  // The parent folder, then the folders inside, sorted by name.
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
-  // Files in it that look like robots.
+  // How many files look like robots.
   std::size_t files() const { return files_.size(); }
-  // Those read since the last call.
+  // The robots read since the last call.
   std::vector<RobotFolderEntry> take();
-  // Why the folder itself cannot be read; empty = it can.
+  // Why the folder cannot be read; empty = no error.
   const std::string& error() const { return error_; }
 
  private:
@@ -43,7 +43,7 @@ class RobotFolderReader {
   void read(std::stop_token stop);
 
   std::filesystem::path folder_;
-  std::size_t most_;
+  std::size_t max_files_;
   std::vector<std::filesystem::path> folders_, files_;
   std::string error_;
   std::mutex mutex_;

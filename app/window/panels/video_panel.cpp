@@ -89,7 +89,7 @@ void VideoPanel::draw_group(PanelContext& context) {
   draw_group_options(context);
   ImGui::BeginDisabled(context.scene.entries().empty());
   if (ImGui::Button("Make the video", {-1, 0})) {
-    options_.output = fresh_name(picture_folder(context), kinds[kind_]).string();
+    options_.output = unused_path(picture_folder(context), kinds[kind_]).string();
     options_.size = sizes[static_cast<std::size_t>(size_)];
     options_.frames_per_second = rate_;
     options_.quality = context.preferences.quality;
@@ -127,7 +127,7 @@ double VideoPanel::seconds() const {
 
 void VideoPanel::begin(PanelContext& context, WindowSize pixels) {
   wanted_ = ending_ = false;
-  const std::filesystem::path file = fresh_name(picture_folder(context), kinds[kind_]);
+  const std::filesystem::path file = unused_path(picture_folder(context), kinds[kind_]);
   screen_ = std::make_unique<ScreenRecording>(file.string(), PictureSize{pixels.width, pixels.height}, rate_);
   start_ = std::chrono::steady_clock::now();
   if (hide_panels_) context.preferences.panels = false;

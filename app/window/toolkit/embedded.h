@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are built into the program.
+// Files that are built into the program: the font of the panels and the sample robots.
 #pragma once
 
 #include <span>
@@ -15,13 +15,13 @@ struct EmbeddedFile {
   std::string_view contents;
 };
 
-// Written at build time by cmake/EmbedFiles.cmake: the font of the panels, and robots/library.
+// cmake/EmbedFiles.cmake writes this function at build time, from the font and robots/library.
 std::span<const EmbeddedFile> embedded_files();
 
-// The contents of one; empty if there is none of that name.
+// The contents of a file; empty if no file has that name.
 std::string_view embedded_file(std::string_view name);
 
-// The sample robots that are made for an environment ("ocean", "land"), by name; all for an empty one.
+// The sample robots made for an environment ("ocean", "land"), sorted by name; all of them if `environment` is empty.
 std::vector<Robot> sample_robots(std::string_view environment);
 
 }  // namespace mercury::window

@@ -23,9 +23,10 @@ void EventLog::item(const std::string& name) { item(name, ImGui::GetItemRectMin(
 
 void EventLog::item(const std::string& name, ImVec2 low, ImVec2 high) {
   if (!file_) return;
-  Place& place = places_[name];
-  const bool same = place.low.x == low.x && place.low.y == low.y && place.high.x == high.x && place.high.y == high.y;
-  place = {low, high, true};
+  Bounds& bounds = items_[name];
+  const bool same =
+      bounds.low.x == low.x && bounds.low.y == low.y && bounds.high.x == high.x && bounds.high.y == high.y;
+  bounds = {low, high, true};
   if (same) return;
   write("item", {{"name", name},
                  {"x", (low.x + high.x) / 2},
@@ -36,13 +37,13 @@ void EventLog::item(const std::string& name, ImVec2 low, ImVec2 high) {
 
 void EventLog::end_frame() {
   if (!file_) return;
-  for (auto place = places_.begin(); place != places_.end();) {
-    if (place->second.seen) {
-      place->second.seen = false;
-      ++place;
+  for (auto item = items_.begin(); item != items_.end();) {
+    if (item->second.shown) {
+      item->second.shown = false;
+      ++item;
     } else {
-      write("gone", {{"name", place->first}});
-      place = places_.erase(place);
+      write("gone", {{"name", item->first}});
+      item = items_.erase(item);
     }
   }
 }

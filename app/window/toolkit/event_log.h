@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells a watching program what happens in the window: `mercury view --report FILE`.
+// The log of what happens in the window, for programs that watch it: `mercury view --report FILE`.
 //
-// One JSON object a line, each with "event":
+// One JSON object per line, each with the name of its event under "event":
 //   ready    the first picture is on the screen: seconds since the start
-//   frame    a picture was shown: number, step, time [s], drawn ms; at most 5 a second
-//   item     a button, tab or the picture has a (new) place: name, x, y (its middle), width, height in pixels
-//   ...      and what panels say: "saved", "robots", "panel", "message"
+//   frame    a picture was shown: number, step, time [s] and more; at most 5 per second
+//   item     a button, tab or the picture has a (new) position: name, x, y (its middle), width, height in pixels
+//   gone     an item is no longer shown
+//   ...      and what panels write: "saved", "robots", "panel", "message" (docs/window.md lists them)
 #pragma once
 
 #include <imgui.h>
@@ -21,30 +22,30 @@ namespace mercury::window {
 
 class EventLog {
  public:
-  EventLog() = default;  // tells nothing
+  EventLog() = default;  // writes nothing
   // Throws InputError if the file cannot be written.
   explicit EventLog(const std::filesystem::path& file);
 
   explicit operator bool() const { return file_ != nullptr; }
-  // `details` must be an object; it gets the event's name.
+  // Writes one line. `details` must be a JSON object.
   void write(const char* event, nlohmann::json details);
 
-  // The item that was just put into a panel can be found under that name.
+  // Gives the ImGui item that was just drawn a name, and logs its position when that is new.
   void item(const std::string& name);
   void item(const std::string& name, ImVec2 low, ImVec2 high);
-  // At the end of a frame: items that are not there any more are forgotten, and told as "gone".
+  // Call at the end of each frame. Logs the items that are no longer shown as "gone".
   void end_frame();
 
  private:
-  struct Place {
+  struct Bounds {
     ImVec2 low, high;
-    bool seen = false;
+    bool shown = false;
   };
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  std::map<std::string, Place> places_;
+  std::map<std::string, Bounds> items_;
 };
 
 }  // namespace mercury::window

@@ -2,7 +2,7 @@
 #include "app/window/toolkit/imgui_layer.h"
 
 #include <epoxy/gl.h>
-// Only after epoxy, which brings OpenGL.
+// After epoxy, which declares OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -19,9 +19,9 @@
 namespace mercury::window {
 namespace {
 
-constexpr float text_height = 17;  // of a line, at a scale of 1 [pixels]
+constexpr float text_height = 17;  // of a line at scale 1 [pixels]
 
-// Latin and Greek letters, and the few signs that panels use.
+// Latin and Greek letters, and the symbols that panels use.
 const ImWchar* glyphs() {
   static const ImWchar ranges[] = {0x20,   0x17f,  0x391,  0x3c9,  0x2010, 0x2027, 0x2030, 0x2030,
                                    0x2070, 0x207f, 0x2190, 0x2193, 0x2206, 0x2206, 0x2212, 0x2212,
@@ -50,7 +50,7 @@ ImGuiLayer::ImGuiLayer(Window& window, const std::filesystem::path& layout_file)
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
   io.ConfigWindowsMoveFromTitleBarOnly = true;
 #if IMGUI_VERSION_NUM >= 18700
-  io.ConfigInputTrickleEventQueue = false;  // InputQueue has shared it out among frames
+  io.ConfigInputTrickleEventQueue = false;  // InputQueue already shares events out among frames
 #endif
   ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
   ImGui_ImplOpenGL3_Init("#version 450");
@@ -124,7 +124,7 @@ void ImGuiLayer::begin_frame(const std::vector<InputEvent>& events) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
 #if IMGUI_VERSION_NUM < 18700
-  // It asks GLFW, which tells where the pointer is by now.
+  // NewFrame() has read the pointer's present position from GLFW. Put back the position of this frame's events.
   ImGuiIO& io = ImGui::GetIO();
   const bool held = std::find(pointer_.down.begin(), pointer_.down.end(), true) != pointer_.down.end();
   io.MousePos = pointer_.inside || held ? ImVec2(pointer_.x, pointer_.y) : ImVec2(-FLT_MAX, -FLT_MAX);

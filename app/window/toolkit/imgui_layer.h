@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dear ImGui in a window: its context, fonts and looks.
+// Dear ImGui in a window: its context, fonts and style.
 #pragma once
 
 #include <array>
@@ -14,22 +14,23 @@ struct ImFont;
 
 namespace mercury::window {
 
-// One at a time; the window must outlive it.
+// Only one can exist at a time. The window must outlive it.
 class ImGuiLayer {
  public:
-  // `layout_file`: where sizes and places of what floats are kept; empty = nowhere.
+  // `layout_file`: where ImGui keeps positions and sizes of floating windows; empty = nowhere.
   ImGuiLayer(Window& window, const std::filesystem::path& layout_file);
   ~ImGuiLayer();
   ImGuiLayer(const ImGuiLayer&) = delete;
   ImGuiLayer& operator=(const ImGuiLayer&) = delete;
 
-  // Takes hold in the next frame. `text_scale`: 1 = as the screen suggests.
+  // Applied in the next frame. `text_scale`: 1 = the size that suits the screen.
   void set_appearance(render::Theme theme, float text_scale);
 
-  // With what the user did for it.
+  // Starts a frame that receives these events.
   void begin_frame(const std::vector<InputEvent>& events);
-  void end_frame();      // draws it over the window's framebuffer
-  void discard_frame();  // or does not draw it
+  void end_frame();  // draws the frame over the window's framebuffer
+  // Ends the frame without drawing it.
+  void discard_frame();
 
  private:
   void build_fonts();
@@ -47,7 +48,7 @@ class ImGuiLayer {
   } pointer_;
 };
 
-// Valid between frames of the interface.
+// A font for large text. Valid while an ImGuiLayer exists.
 ImFont* large_font();
 
 }  // namespace mercury::window

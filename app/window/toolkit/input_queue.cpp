@@ -9,7 +9,7 @@ namespace mercury::window {
 using Kind = InputEvent::Kind;
 
 void InputQueue::push(const InputEvent& event) {
-  // Only where the pointer ends up counts.
+  // Of several moves in a row, only the last position matters.
   if (event.kind == Kind::move && !waiting_.empty() && waiting_.back().kind == Kind::move)
     waiting_.back() = event;
   else

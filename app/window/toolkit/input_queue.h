@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user does with mouse and keyboard, in order, and how much of it one frame of the window takes.
+// Mouse and keyboard input, in order, shared out among frames.
+//
+// A frame may be slow (software rendering, many robots), and the user clicks and types meanwhile. A click must act on
+// what the user saw at that place at that time, so one frame must not swallow several clicks. Each frame takes pointer
+// moves and then one of:
+//   1. one press or release of a mouse button: the next one may mean a dialog that this one opens;
+//   2. turns of the wheel: the pointer must not move on before they act;
+//   3. typed characters, up to the first key that types nothing (Enter, Esc, Ctrl S), for the reason of 1.
+//
+//   queue:   move  press | release | move  wheel wheel | 'a' 'b' Enter | move ...
+//   frames:  1             2         3                   4               5
 #pragma once
 
 #include <cstdint>
@@ -10,24 +20,22 @@ namespace mercury::window {
 
 struct InputEvent {
   enum class Kind { move, enter, focus, button, scroll, key, character } kind = Kind::move;
-  double x = 0, y = 0;                     // of move and scroll
-  bool on = false;                         // entered, got the focus
-  int code = 0;                            // GLFW's of the button or key; of a character: in Unicode
-  int scancode = 0, action = 0, mods = 0;  // as GLFW gives them
-  char32_t name = 0;                       // of a key: the character on it; 0 = none
-  bool types = false;                      // of a key: a character follows
+  double x = 0, y = 0;                     // move: position; scroll: offset
+  bool on = false;                         // enter, focus: true = gained
+  int code = 0;                            // button, key: GLFW's number; character: Unicode
+  int scancode = 0, action = 0, mods = 0;  // as GLFW passes them
+  char32_t name = 0;                       // key: the character printed on it; 0 = none
+  bool types = false;                      // key: a character event follows
 };
 
-// A slow frame loses nothing: what is pressed is seen where and in the order in which it was pressed. A frame takes the
-// way of the pointer, and then either one press or release of a button, or turns of the wheel, or what is typed; a key
-// that types nothing ends it, as it may open what the next ones are meant for.
 class InputQueue {
  public:
   void push(const InputEvent& event);
+  // The events of one frame.
   std::vector<InputEvent> take();
-  // More waits than one frame takes.
-  bool behind() const { return !waiting_.empty(); }
-  // Presses of buttons and keys, and notches of the wheel, taken so far.
+  // True if events are left for the next frame.
+  bool has_backlog() const { return !waiting_.empty(); }
+  // How many presses of buttons and keys, and notches of the wheel, frames have taken so far.
   std::uint64_t taken() const { return taken_; }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What keys do: the one table from which they are read and explained.
+// The commands of the window and the keys that give them. One table serves both to look up key presses and to list the
+// keys in the help.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,7 @@ enum class Action {
   faster,
   slower,
   real_time,
-  as_fast_as_it_goes,
+  fastest,
   reset,
   frame,
   follow,
@@ -32,7 +33,7 @@ enum class Action {
   open,
   save,
   drag_arrows,
-  color,  // 1 to 8
+  color,  // with a number: the position of the colour quantity
   springs,
   labels,
   legend,
@@ -45,36 +46,36 @@ enum class Action {
   quit,
 };
 
-struct Binding {
+struct KeyBinding {
   Action action;
-  const char* keys;  // for people: "Ctrl S"
+  const char* keys;  // as shown to the user: "Ctrl S"
   const char* meaning;
   const char* group;
-  char32_t character;  // lower case; 0 = by key
-  int key;             // GLFW_KEY_*
-  bool control;
-  bool repeats;  // while the key is held
+  char32_t character;  // lower case; 0 = matched by `key` alone
+  int key;             // GLFW_KEY_*; 0 = matched by `character` alone
+  bool control;        // with Ctrl
+  bool repeats;        // again while the key is held down
 };
 
-// All of them, group by group.
-std::span<const Binding> bindings();
+// All bindings; those of a group stand together.
+std::span<const KeyBinding> key_bindings();
 
 struct Command {
   Action action;
-  int number = 0;  // of Action::color, from 1
+  int number = 0;  // for Action::color, from 1
 };
 
-// What a press asks for, if anything.
-std::optional<Command> command_of(const Press& press);
+// The command that a key press gives, if any.
+std::optional<Command> command_of(const KeyPress& press);
 
-// Whether it is Enter, on whatever part of the keyboard.
-bool is_enter(const Press& press);
+// True for both Enter keys.
+bool is_enter(const KeyPress& press);
 
-// What the mouse does, for the help: {"Left drag", "turn the camera"}.
-struct MouseUse {
+// For the help: {"Left drag", "turn the camera"}.
+struct MouseGesture {
   const char* gesture;
   const char* meaning;
 };
-std::span<const MouseUse> mouse_uses();
+std::span<const MouseGesture> mouse_gestures();
 
 }  // namespace mercury::window

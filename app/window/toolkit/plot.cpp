@@ -24,7 +24,7 @@ struct Range {
 };
 
 struct Frame {
-  ImVec2 low, high;  // of the area of the lines, on the screen
+  ImVec2 low, high;  // the plot area on the screen
   Range x, y;
   ImVec2 at(double px, double py) const {
     const double u = (px - x.low) / (x.high - x.low), v = (py - y.low) / (y.high - y.low);
@@ -32,7 +32,7 @@ struct Frame {
   }
 };
 
-// Room above the highest value; amounts begin at 0.
+// Leaves room above the highest value. Values that start not far from 0 get an axis that starts at 0.
 Range rounded(Range range) {
   if (range.empty()) return {0, 1};
   if (range.low > 0 && range.low < 0.6 * range.high) range.low = 0;
@@ -129,7 +129,7 @@ std::string short_number(double value) {
   return fmt::format("{:.3g}", value);
 }
 
-void plot_key(std::span<const PlotLine> lines) {
+void plot_legend(std::span<const PlotLine> lines) {
   const float text = ImGui::GetFontSize(), end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
   bool first = true;
   for (const PlotLine& line : lines) {

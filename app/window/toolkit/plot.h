@@ -16,7 +16,7 @@ struct PlotLine {
   std::string name;
   render::Color color;
   std::span<const double> x;
-  std::span<const double> y;  // as many; what is not finite is left out
+  std::span<const double> y;  // same length as x; values that are not finite leave a gap
 };
 
 struct PlotAxes {
@@ -26,13 +26,13 @@ struct PlotAxes {
   float height = 140;  // [pixels]
 };
 
-// Draws it over the whole width that is left. Hovering shows the values under the cursor.
+// Draws a plot over the remaining width. Hovering shows the values under the cursor.
 void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines);
 
-// Which line is whose, in rows of colours and names.
-void plot_key(std::span<const PlotLine> lines);
+// The legend: colour and name of each line, in rows.
+void plot_legend(std::span<const PlotLine> lines);
 
-// A number as short as an axis needs: "12.3 k", "0.02", "4.1e-05".
+// A number with few digits: "12.3 k", "0.02", "4.1e-05".
 std::string short_number(double value);
 
 }  // namespace mercury::window

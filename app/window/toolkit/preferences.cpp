@@ -12,13 +12,13 @@ namespace {
 using nlohmann::json;
 
 template <class Value>
-void take(const json& document, const char* name, Value& value) {
+void read(const json& document, const char* name, Value& value) {
   const auto found = document.find(name);
   if (found == document.end()) return;
   try {
     value = found->get<Value>();
   } catch (const json::exception&) {
-    // Something else's value: the default stays.
+    // A value of another type: keep the default.
   }
 }
 
@@ -35,24 +35,24 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   std::ifstream stream(file);
   const json document = json::parse(stream, nullptr, false);
   if (!document.is_object()) return;
-  take(document, "width", preferences.size.width);
-  take(document, "height", preferences.size.height);
-  take(document, "text_scale", preferences.text_scale);
-  take(document, "panels", preferences.panels);
-  take(document, "left_width", preferences.left_width);
-  take(document, "right_width", preferences.right_width);
-  take(document, "left_panel", preferences.left_panel);
-  take(document, "right_panel", preferences.right_panel);
-  take(document, "folder", preferences.folder);
-  take(document, "open_folder", preferences.open_folder);
-  take(document, "save_folder", preferences.save_folder);
-  take(document, "pause_on_explosion", preferences.pause_on_explosion);
+  read(document, "width", preferences.size.width);
+  read(document, "height", preferences.size.height);
+  read(document, "text_scale", preferences.text_scale);
+  read(document, "panels", preferences.panels);
+  read(document, "left_width", preferences.left_width);
+  read(document, "right_width", preferences.right_width);
+  read(document, "left_panel", preferences.left_panel);
+  read(document, "right_panel", preferences.right_panel);
+  read(document, "folder", preferences.folder);
+  read(document, "open_folder", preferences.open_folder);
+  read(document, "save_folder", preferences.save_folder);
+  read(document, "pause_on_explosion", preferences.pause_on_explosion);
   std::string quality;
-  take(document, "quality", quality);
+  read(document, "quality", quality);
   try {
     if (!quality.empty()) preferences.quality = render::quality_named(quality);
   } catch (const std::invalid_argument&) {
-    // A level that there is no more.
+    // A quality that no longer exists: keep the default.
   }
   preferences.size.width = std::clamp(preferences.size.width, 640, 16384);
   preferences.size.height = std::clamp(preferences.size.height, 400, 16384);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a window remembers for the next one, apart from what the scene remembers.
+// The window settings that are kept for the next start. Settings of the scene are in app/live/session_settings.h.
 #pragma once
 
 #include <filesystem>
@@ -13,21 +13,21 @@ namespace mercury::window {
 struct Preferences {
   WindowSize size;
   float text_scale = 1;
-  bool panels = true;                     // shown at all
-  float left_width = 0, right_width = 0;  // of the columns of panels, in lines of text; 0 = as the window suggests
+  bool panels = true;                     // false = hidden
+  float left_width = 0, right_width = 0;  // of the panel columns, in lines of text; 0 = automatic
   std::string left_panel = "Robots", right_panel = "View";
   render::Quality quality = render::Quality::automatic;
-  std::string folder;                    // shown by the browser last
-  std::string open_folder, save_folder;  // where files were opened and saved last
+  std::string folder;                    // last shown in the browser
+  std::string open_folder, save_folder;  // last used in the file dialogs
   bool pause_on_explosion = false;
 };
 
-// Where settings are kept: $XDG_CONFIG_HOME/mercury or ~/.config/mercury; empty if neither is known.
+// The folder of settings: $XDG_CONFIG_HOME/mercury or ~/.config/mercury; empty if neither variable is set.
 std::filesystem::path settings_folder();
 
-// From a file; what is missing or cannot be used is left as it is.
+// Reads a settings file. Values that are missing or invalid leave `preferences` unchanged.
 void load(Preferences& preferences, const std::filesystem::path& file);
-// Does its best: a window whose settings cannot be written works all the same.
+// Writes a settings file. Failures are ignored, since the window works without it.
 void save(const Preferences& preferences, const std::filesystem::path& file);
 
 }  // namespace mercury::window

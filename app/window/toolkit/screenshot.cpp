@@ -31,7 +31,7 @@ render::Image read_window(WindowSize pixels, render::PixelFormat format) {
   return image;
 }
 
-std::filesystem::path fresh_name(const std::filesystem::path& folder, const std::string& extension) {
+std::filesystem::path unused_path(const std::filesystem::path& folder, const std::string& extension) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   localtime_r(&now, &local);
@@ -44,7 +44,7 @@ std::filesystem::path fresh_name(const std::filesystem::path& folder, const std:
 }
 
 void Screenshot::take(render::Image image, const std::filesystem::path& path) {
-  if (under_way()) return;
+  if (busy()) return;
   path_ = path;
   written_ = std::async(std::launch::async, [image = std::move(image), path]() -> std::string {
     try {
@@ -57,7 +57,7 @@ void Screenshot::take(render::Image image, const std::filesystem::path& path) {
 }
 
 bool Screenshot::done(std::filesystem::path& path, std::string& error) {
-  if (!under_way() || written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  if (!busy() || written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   error = written_.get();
   path = error.empty() ? path_ : std::filesystem::path();
   return true;

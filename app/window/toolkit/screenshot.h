@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of the window as it is.
+// Screenshots of the window.
 #pragma once
 
 #include <filesystem>
@@ -11,24 +11,23 @@
 
 namespace mercury::window {
 
-// The part of the window's framebuffer, in its pixels from the upper left corner, upper row first. Call before it is
-// shown.
+// Reads the window's framebuffer, top row first. Call before the buffers are swapped.
 render::Image read_window(WindowSize pixels, render::PixelFormat format = render::PixelFormat::rgb);
 
-// A name that no file has yet: "mercury-2026-01-31-120501.png" in that folder.
-std::filesystem::path fresh_name(const std::filesystem::path& folder, const std::string& extension);
+// A path in `folder` that no file has yet: "mercury-2026-01-31-120501.png".
+std::filesystem::path unused_path(const std::filesystem::path& folder, const std::string& extension);
 
-// Writes a picture on a thread of its own.
+// Writes a PNG file on a background thread.
 class Screenshot {
  public:
   void take(render::Image image, const std::filesystem::path& path);
-  bool under_way() const { return written_.valid(); }
-  // Once it is done: true, and what is to be told; the path is empty if it failed.
+  bool busy() const { return written_.valid(); }
+  // Returns true once, when the file is written or has failed. `error` is empty on success, `path` on failure.
   bool done(std::filesystem::path& path, std::string& error);
 
  private:
   std::filesystem::path path_;
-  std::future<std::string> written_;  // what went wrong
+  std::future<std::string> written_;  // the error message; empty = success
 };
 
 }  // namespace mercury::window

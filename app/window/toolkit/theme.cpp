@@ -11,14 +11,16 @@ ImVec4 hex(unsigned rgb, float alpha = 1) {
           static_cast<float>(rgb & 255) / 255, alpha};
 }
 
-// What differs between the themes; everything else is made of these.
-struct Tones {
+// The colours that differ between the themes. All others derive from them.
+struct BaseColors {
   unsigned panel, raised, hovered, pressed, line, text, faint, accent, on_accent;
 };
-constexpr Tones dark_tones{0x141a21, 0x222b35, 0x2e3a47, 0x3a4a5a, 0x33404d, 0xe8edf2, 0x93a1af, 0x2f9fd6, 0xffffff};
-constexpr Tones light_tones{0xf7f9fa, 0xe4e9ee, 0xd4dce4, 0xc2cdd8, 0xc6d0d9, 0x17202a, 0x5b6875, 0x1b7fb5, 0xffffff};
+constexpr BaseColors dark_colors{0x141a21, 0x222b35, 0x2e3a47, 0x3a4a5a, 0x33404d,
+                                 0xe8edf2, 0x93a1af, 0x2f9fd6, 0xffffff};
+constexpr BaseColors light_colors{0xf7f9fa, 0xe4e9ee, 0xd4dce4, 0xc2cdd8, 0xc6d0d9,
+                                  0x17202a, 0x5b6875, 0x1b7fb5, 0xffffff};
 
-void set_spaces(ImGuiStyle& style, float scale) {
+void set_spacing(ImGuiStyle& style, float scale) {
   style = ImGuiStyle();
   style.WindowPadding = {12, 10};
   style.FramePadding = {8, 5};
@@ -44,47 +46,47 @@ void set_spaces(ImGuiStyle& style, float scale) {
   style.ScaleAllSizes(scale);
 }
 
-void set_colors(ImGuiStyle& style, const Tones& tones) {
+void set_colors(ImGuiStyle& style, const BaseColors& base) {
   ImVec4* colors = style.Colors;
-  const ImVec4 accent = hex(tones.accent);
-  colors[ImGuiCol_Text] = hex(tones.text);
-  colors[ImGuiCol_TextDisabled] = hex(tones.faint);
-  colors[ImGuiCol_WindowBg] = hex(tones.panel, 0.97f);
-  colors[ImGuiCol_ChildBg] = hex(tones.panel, 0);
-  colors[ImGuiCol_PopupBg] = hex(tones.panel, 0.99f);
-  colors[ImGuiCol_Border] = hex(tones.line);
-  colors[ImGuiCol_FrameBg] = hex(tones.raised);
-  colors[ImGuiCol_FrameBgHovered] = hex(tones.hovered);
-  colors[ImGuiCol_FrameBgActive] = hex(tones.pressed);
-  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = hex(tones.raised);
-  colors[ImGuiCol_TitleBgCollapsed] = hex(tones.raised);
-  colors[ImGuiCol_MenuBarBg] = hex(tones.panel);
-  colors[ImGuiCol_ScrollbarBg] = hex(tones.panel, 0);
-  colors[ImGuiCol_ScrollbarGrab] = hex(tones.hovered);
-  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = hex(tones.pressed);
+  const ImVec4 accent = hex(base.accent);
+  colors[ImGuiCol_Text] = hex(base.text);
+  colors[ImGuiCol_TextDisabled] = hex(base.faint);
+  colors[ImGuiCol_WindowBg] = hex(base.panel, 0.97f);
+  colors[ImGuiCol_ChildBg] = hex(base.panel, 0);
+  colors[ImGuiCol_PopupBg] = hex(base.panel, 0.99f);
+  colors[ImGuiCol_Border] = hex(base.line);
+  colors[ImGuiCol_FrameBg] = hex(base.raised);
+  colors[ImGuiCol_FrameBgHovered] = hex(base.hovered);
+  colors[ImGuiCol_FrameBgActive] = hex(base.pressed);
+  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = hex(base.raised);
+  colors[ImGuiCol_TitleBgCollapsed] = hex(base.raised);
+  colors[ImGuiCol_MenuBarBg] = hex(base.panel);
+  colors[ImGuiCol_ScrollbarBg] = hex(base.panel, 0);
+  colors[ImGuiCol_ScrollbarGrab] = hex(base.hovered);
+  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = hex(base.pressed);
   colors[ImGuiCol_CheckMark] = accent;
-  colors[ImGuiCol_SliderGrab] = hex(tones.accent, 0.5f);  // a number may stand under it
-  colors[ImGuiCol_SliderGrabActive] = hex(tones.accent, 0.7f);
-  colors[ImGuiCol_Button] = hex(tones.raised);
-  colors[ImGuiCol_ButtonHovered] = hex(tones.hovered);
-  colors[ImGuiCol_ButtonActive] = hex(tones.pressed);
-  colors[ImGuiCol_Header] = hex(tones.accent, 0.28f);
-  colors[ImGuiCol_HeaderHovered] = hex(tones.accent, 0.20f);
-  colors[ImGuiCol_HeaderActive] = hex(tones.accent, 0.38f);
-  colors[ImGuiCol_Separator] = hex(tones.line);
+  colors[ImGuiCol_SliderGrab] = hex(base.accent, 0.5f);  // translucent: a number may be under it
+  colors[ImGuiCol_SliderGrabActive] = hex(base.accent, 0.7f);
+  colors[ImGuiCol_Button] = hex(base.raised);
+  colors[ImGuiCol_ButtonHovered] = hex(base.hovered);
+  colors[ImGuiCol_ButtonActive] = hex(base.pressed);
+  colors[ImGuiCol_Header] = hex(base.accent, 0.28f);
+  colors[ImGuiCol_HeaderHovered] = hex(base.accent, 0.20f);
+  colors[ImGuiCol_HeaderActive] = hex(base.accent, 0.38f);
+  colors[ImGuiCol_Separator] = hex(base.line);
   colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_SeparatorActive] = accent;
-  colors[ImGuiCol_ResizeGrip] = hex(tones.hovered, 0.6f);
+  colors[ImGuiCol_ResizeGrip] = hex(base.hovered, 0.6f);
   colors[ImGuiCol_ResizeGripHovered] = colors[ImGuiCol_ResizeGripActive] = accent;
-  colors[ImGuiCol_Tab] = hex(tones.panel);
-  colors[ImGuiCol_TabHovered] = hex(tones.hovered);
-  colors[ImGuiCol_TabActive] = hex(tones.pressed);
-  colors[ImGuiCol_TabUnfocused] = hex(tones.panel);
-  colors[ImGuiCol_TabUnfocusedActive] = hex(tones.hovered);
+  colors[ImGuiCol_Tab] = hex(base.panel);
+  colors[ImGuiCol_TabHovered] = hex(base.hovered);
+  colors[ImGuiCol_TabActive] = hex(base.pressed);
+  colors[ImGuiCol_TabUnfocused] = hex(base.panel);
+  colors[ImGuiCol_TabUnfocusedActive] = hex(base.hovered);
   colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = accent;
-  colors[ImGuiCol_TableHeaderBg] = hex(tones.raised);
-  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = hex(tones.line);
-  colors[ImGuiCol_TableRowBgAlt] = hex(tones.raised, 0.35f);
-  colors[ImGuiCol_TextSelectedBg] = hex(tones.accent, 0.4f);
+  colors[ImGuiCol_TableHeaderBg] = hex(base.raised);
+  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = hex(base.line);
+  colors[ImGuiCol_TableRowBgAlt] = hex(base.raised, 0.35f);
+  colors[ImGuiCol_TextSelectedBg] = hex(base.accent, 0.4f);
   colors[ImGuiCol_DragDropTarget] = accent;
   colors[ImGuiCol_NavHighlight] = accent;
   colors[ImGuiCol_ModalWindowDimBg] = hex(0x000000, 0.45f);
@@ -94,20 +96,20 @@ void set_colors(ImGuiStyle& style, const Tones& tones) {
 
 void apply_theme(render::Theme theme, float scale) {
   const bool dark = theme == render::Theme::dark;
-  const Tones& tones = dark ? dark_tones : light_tones;
+  const BaseColors& base = dark ? dark_colors : light_colors;
   ImGuiStyle& style = ImGui::GetStyle();
-  set_spaces(style, scale);
-  set_colors(style, tones);
-  chosen.accent = ImGui::GetColorU32(hex(tones.accent));
+  set_spacing(style, scale);
+  set_colors(style, base);
+  chosen.accent = ImGui::GetColorU32(hex(base.accent));
   chosen.good = ImGui::GetColorU32(hex(dark ? 0x4cc38a : 0x1c7f4d));
   chosen.warning = ImGui::GetColorU32(hex(dark ? 0xe9b44c : 0x9a6700));
   chosen.bad = ImGui::GetColorU32(hex(dark ? 0xf0705f : 0xc2301f));
-  chosen.faint = ImGui::GetColorU32(hex(tones.faint));
-  chosen.grid = ImGui::GetColorU32(hex(tones.line, 0.7f));
-  chosen.panel = ImGui::GetColorU32(hex(tones.panel));
-  chosen.on_picture = ImGui::GetColorU32(hex(tones.panel, 0.88f));
+  chosen.faint = ImGui::GetColorU32(hex(base.faint));
+  chosen.grid = ImGui::GetColorU32(hex(base.line, 0.7f));
+  chosen.panel = ImGui::GetColorU32(hex(base.panel));
+  chosen.on_picture = ImGui::GetColorU32(hex(base.panel, 0.88f));
   chosen.mark = ImGui::GetColorU32(hex(dark ? 0xffe14a : 0xd1006c));
-  chosen.mark_ground = ImGui::GetColorU32(hex(dark ? 0x14060a : 0xffffff, 0.9f));
+  chosen.mark_outline = ImGui::GetColorU32(hex(dark ? 0x14060a : 0xffffff, 0.9f));
 }
 
 const Palette& palette() { return chosen; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours and spaces of the panels.
+// Colours and spacing of the panels.
 #pragma once
 
 #include <imgui.h>
@@ -9,17 +9,17 @@
 
 namespace mercury::window {
 
-// Sets ImGui's style; every length is multiplied by `scale`.
+// Sets ImGui's style, with all lengths multiplied by `scale`.
 void apply_theme(render::Theme theme, float scale);
 
-// Colours beside ImGui's own, of the theme applied last.
+// Colours in addition to ImGui's own, from the theme that was applied last.
 struct Palette {
   ImU32 accent, good, warning, bad, faint, grid, panel, on_picture;
-  ImU32 mark, mark_ground;  // of what must be seen wherever it lies on the picture, and of the edge around it
+  ImU32 mark, mark_outline;  // contrast with everything in the picture
 };
 const Palette& palette();
 
-// As a colour of ImGui's.
+// Converts to ImGui's colour format.
 inline ImU32 packed(render::Color color, float opacity = 1) {
   return IM_COL32(color.r, color.g, color.b, static_cast<int>(opacity * static_cast<float>(color.a)));
 }

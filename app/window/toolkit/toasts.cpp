@@ -11,7 +11,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr std::size_t most = 5;
+constexpr std::size_t max_count = 5;
 
 const char* name_of(Tone tone) {
   switch (tone) {
@@ -43,22 +43,22 @@ ImU32 color_of(Tone tone) {
 }  // namespace
 
 void Toasts::show(Tone tone, std::string text) {
-  const double stays = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
+  const double duration = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
   for (Toast& toast : toasts_)
     if (toast.text == text) {
-      toast.left = stays;
+      toast.seconds_left = duration;
       ++toast.count;
-      toast.told = false;
+      toast.logged = false;
       return;
     }
-  // "picture saved: ..." takes the place of the one before.
+  // A second "picture saved: ..." replaces the first.
   const std::string kind = text.substr(0, text.find(": "));
   std::erase_if(toasts_, [&](const Toast& toast) {
-    return tone == Tone::success && toast.tone == tone && toast.told &&
+    return tone == Tone::success && toast.tone == tone && toast.logged &&
            toast.text.substr(0, toast.text.find(": ")) == kind;
   });
-  toasts_.push_back({tone, std::move(text), stays});
-  if (toasts_.size() > most) toasts_.pop_front();
+  toasts_.push_back({tone, std::move(text), duration});
+  if (toasts_.size() > max_count) toasts_.pop_front();
 }
 
 void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
@@ -66,14 +66,14 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
   float y = low.y + line;
   int number = 0;
   for (Toast& toast : toasts_) {
-    if (!toast.told) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
-    toast.told = true;
+    if (!toast.logged) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
+    toast.logged = true;
     const float width = std::min(high.x - low.x - 2 * line, 34 * line);
     const std::string text = toast.count > 1 ? fmt::format("{}  (x{})", toast.text, toast.count) : toast.text;
     const float needed = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).x + 2.4f * line;
     ImGui::SetNextWindowPos({(low.x + high.x) / 2, y}, ImGuiCond_Always, {0.5f, 0});
     ImGui::SetNextWindowSize({std::min(needed, width + 2.4f * line), 0});
-    ImGui::SetNextWindowBgAlpha(0.94f * static_cast<float>(std::clamp(toast.left * 2, 0.0, 1.0)));
+    ImGui::SetNextWindowBgAlpha(0.94f * static_cast<float>(std::clamp(toast.seconds_left * 2, 0.0, 1.0)));
     ImGui::Begin(fmt::format("##toast{}", number++).c_str(), nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
@@ -83,12 +83,12 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
-    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) toast.left = 0;
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) toast.seconds_left = 0;
     y += size.y + 0.4f * line;
     ImGui::End();
-    toast.left -= dt;
+    toast.seconds_left -= dt;
   }
-  std::erase_if(toasts_, [](const Toast& toast) { return toast.left <= 0; });
+  std::erase_if(toasts_, [](const Toast& toast) { return toast.seconds_left <= 0; });
 }
 
 }  // namespace mercury::window

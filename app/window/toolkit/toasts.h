@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that appear over the picture and go by themselves.
+// Short messages that appear over the picture and disappear after some seconds.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@ enum class Tone { info, success, warning, error };
 class Toasts {
  public:
   void show(Tone tone, std::string text);
-  // Draws them below the upper middle of a rectangle. `dt`: since the last frame [s].
+  // Draws the messages at the top centre of a rectangle. `dt`: time since the last frame [s].
   void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }
 
@@ -22,9 +22,9 @@ class Toasts {
   struct Toast {
     Tone tone;
     std::string text;
-    double left;  // [s]
+    double seconds_left;
     int count = 1;
-    bool told = false;
+    bool logged = false;
   };
   std::deque<Toast> toasts_;
 };

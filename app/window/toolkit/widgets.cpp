@@ -12,11 +12,10 @@ namespace mercury::window {
 namespace {
 
 constexpr float name_share = 0.42f;  // of a row's width
-constexpr double rest = 0.4;         // of the pointer, before an explanation is shown [s]
-constexpr const char* text_of_reset = "back to the default";
+constexpr double rest_time = 0.4;    // of the pointer before a tooltip appears [s]
+constexpr const char* reset_tooltip = "reset to the default";
 
-// The name of a row; where the value differs from the standard, a button behind it that is true when it was clicked.
-// The next item is as wide as the rest of the row.
+// Like row(), with a reset button beside the name if `differs`. Returns true when that button was clicked.
 bool row_with_reset(const char* name, const char* text, bool differs) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
   const float side = 0.75f * ImGui::GetFrameHeight();
@@ -32,7 +31,7 @@ bool row_with_reset(const char* name, const char* text, bool differs) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
     clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
     ImGui::PopStyleVar();
-    tooltip(text_of_reset);
+    tooltip(reset_tooltip);
     ImGui::SameLine();
     ImGui::SetCursorPosY(top);
   } else {
@@ -56,7 +55,7 @@ void heading(const char* text) {
   ImGui::Dummy({0, 0.1f * ImGui::GetFontSize()});
 }
 
-// A pointer on its way to somewhere else wants no explanations.
+// Without this delay, tooltips would flicker under a pointer that moves across a panel.
 bool pointer_rests() {
   static ImVec2 place;
   static double since = 0;
@@ -65,7 +64,7 @@ bool pointer_rests() {
     place = corner;
     since = ImGui::GetTime();
   }
-  return ImGui::GetTime() - since > rest;
+  return ImGui::GetTime() - since > rest_time;
 }
 
 void tooltip(const char* text) {
@@ -104,16 +103,16 @@ bool toggle_button(const char* text, bool on) {
   return clicked;
 }
 
-bool slider(const char* name, const char* text, float& value, float standard, const SliderRange& range) {
+bool slider(const char* name, const char* text, float& value, float default_value, const SliderRange& range) {
   ImGui::PushID(name);
-  const bool reset = row_with_reset(name, text, value != standard);
+  const bool reset = row_with_reset(name, text, value != default_value);
   ImGuiSliderFlags flags = ImGuiSliderFlags_NoRoundToFormat;
   if (range.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   float edited = value;
   bool changed = ImGui::SliderFloat("##value", &edited, range.low, range.high, range.format, flags);
   tooltip("drag, or Ctrl-click to type");
   if (reset) {
-    edited = standard;
+    edited = default_value;
     changed = true;
   }
   ImGui::PopID();
@@ -121,15 +120,15 @@ bool slider(const char* name, const char* text, float& value, float standard, co
   return changed;
 }
 
-bool slider(const char* name, const char* text, Vec3& value, Vec3 standard, const SliderRange& range) {
+bool slider(const char* name, const char* text, Vec3& value, Vec3 default_value, const SliderRange& range) {
   ImGui::PushID(name);
-  const bool reset = row_with_reset(name, text, value != standard);
+  const bool reset = row_with_reset(name, text, value != default_value);
   float edited[3] = {value.x, value.y, value.z};
   bool changed =
       ImGui::DragFloat3("##value", edited, (range.high - range.low) / 400, range.low, range.high, range.format);
-  tooltip("x, y and z: drag sideways, or Ctrl-click to type");
+  tooltip("x, y and z: drag, or Ctrl-click to type");
   if (reset) {
-    edited[0] = standard.x, edited[1] = standard.y, edited[2] = standard.z;
+    edited[0] = default_value.x, edited[1] = default_value.y, edited[2] = default_value.z;
     changed = true;
   }
   ImGui::PopID();
@@ -159,7 +158,7 @@ bool text_field(const char* id, std::string& text, const char* placeholder) {
 std::string shortened(const std::string& text, float width, bool middle) {
   if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
   const char* dots = "\xe2\x80\xa6";
-  // A character of UTF-8 is not cut in two.
+  // Do not cut a UTF-8 character in two.
   const auto whole_end = [&](std::size_t length) {
     while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
     return length;

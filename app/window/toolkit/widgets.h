@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pieces that several panels are made of.
+// Small widgets that several panels use.
 #pragma once
 
 #include <imgui.h>
@@ -13,26 +13,26 @@
 
 namespace mercury::window {
 
-// A heading with a line, and room above it.
+// A heading with a line below and some space above.
 void heading(const char* text);
 
-// A row: the name on the left, the following item as wide as the rest of the row. `hint` appears when the mouse rests
-// on the name.
-void row(const char* name, const char* hint = nullptr);
+// Starts a row: draws the name on the left and makes the next item as wide as the rest of the row. `help` is the
+// tooltip of the name.
+void row(const char* name, const char* help = nullptr);
 
-// Whether the pointer has rested for a while on the item that was just put. Asked of one that is hovered.
+// True when the pointer has rested for a while on the item that was just drawn. Call only if that item is hovered.
 bool pointer_rests();
 
-// The text in a tooltip of the item that was just put, when the pointer rests there.
+// A tooltip for the item that was just drawn.
 void tooltip(const char* text);
 
-// Text that is of less weight, wrapped at the panel's edge.
+// Secondary text in a fainter colour, wrapped at the panel's edge.
 void note(const char* text);
 
-// At the right edge of what is left of a row or table cell.
+// Text at the right edge of a row or table cell.
 void right_aligned(const std::string& text);
 
-// As wide as its text, lit while it is on. True when it was clicked.
+// A button that is highlighted while `on`. Returns true when it was clicked.
 bool toggle_button(const char* text, bool on);
 
 struct SliderRange {
@@ -40,19 +40,19 @@ struct SliderRange {
   const char* format;  // as "%.2f s"
   bool logarithmic = false;
 };
-// A slider in a row; beside the name a button that puts it back to `standard`, shown where it differs. True when the
-// value changed.
-bool slider(const char* name, const char* hint, float& value, float standard, const SliderRange& range);
-// Three of them.
-bool slider(const char* name, const char* hint, Vec3& value, Vec3 standard, const SliderRange& range);
+// A row with a slider. A button that restores `default_value` appears where the value differs from it. Returns true
+// when the value changed.
+bool slider(const char* name, const char* help, float& value, float default_value, const SliderRange& range);
+// The same for a vector.
+bool slider(const char* name, const char* help, Vec3& value, Vec3 default_value, const SliderRange& range);
 
-// One of several. True when it changed.
-bool combo(const char* name, const char* hint, int& index, const std::vector<const char*>& names);
+// A row with a list to choose from. Returns true when `index` changed.
+bool combo(const char* name, const char* help, int& index, const std::vector<const char*>& names);
 
-// A text field over a string, as wide as what is left or as set by SetNextItemWidth. True when Enter was pressed.
+// A text field over a string; ImGui::SetNextItemWidth sets its width. Returns true when Enter was pressed.
 bool text_field(const char* id, std::string& text, const char* placeholder = "");
 
-// Cuts a text to a width, with dots at its end, or in its middle for paths.
+// Shortens a text to a width, with an ellipsis at its end or, for paths, in its middle.
 std::string shortened(const std::string& text, float width, bool middle = false);
 
 }  // namespace mercury::window

@@ -2,7 +2,7 @@
 #include "app/window/toolkit/window.h"
 
 #include <epoxy/gl.h>
-// Only after epoxy, which brings OpenGL.
+// After epoxy, which declares OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -21,7 +21,7 @@ void on_error(int, const char* text) { last_error() = text; }
 
 Window& window_of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
 
-// What GLFW says, without the name of the part that said it.
+// GLFW's last error message, without its prefix.
 std::string reason() {
   const std::string& text = last_error();
   const std::size_t colon = text.find(": ");
@@ -64,7 +64,7 @@ Window::Window(const std::string& title, WindowSize size) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
-  listen();
+  install_callbacks();
   try {
     gl_context_ =
         render::adopt_context([this] { glfwMakeContextCurrent(window_); }, [] { glfwMakeContextCurrent(nullptr); });
@@ -86,7 +86,7 @@ void Window::push(const InputEvent& event) {
   input_.push(event);
 }
 
-void Window::listen() {
+void Window::install_callbacks() {
   using Kind = InputEvent::Kind;
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* handle, int key, int scancode, int action, int mods) {
@@ -129,8 +129,8 @@ void Window::listen() {
   glfwSetWindowRefreshCallback(window_, active);
 }
 
-std::vector<Press> presses_of(const std::vector<InputEvent>& events) {
-  std::vector<Press> presses;
+std::vector<KeyPress> key_presses_in(const std::vector<InputEvent>& events) {
+  std::vector<KeyPress> presses;
   bool repeated = false;
   for (const InputEvent& event : events) {
     const bool control = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
@@ -141,16 +141,16 @@ std::vector<Press> presses_of(const std::vector<InputEvent>& events) {
                          .control = control,
                          .shift = (event.mods & GLFW_MOD_SHIFT) != 0,
                          .repeated = repeated});
-    // Space goes by its key.
+    // Space is handled as a key.
     if (event.kind == InputEvent::Kind::character && event.code != ' ')
       presses.push_back({.character = static_cast<char32_t>(event.code), .repeated = repeated});
   }
   return presses;
 }
 
-bool Window::asked_to_close() const { return glfwWindowShouldClose(window_); }
+bool Window::close_requested() const { return glfwWindowShouldClose(window_); }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
-void Window::stay_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+void Window::cancel_close() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
 
 void Window::poll(double wait) {
   if (wait > 0)
@@ -159,7 +159,7 @@ void Window::poll(double wait) {
     glfwPollEvents();
 }
 
-void Window::show_picture() { glfwSwapBuffers(window_); }
+void Window::swap_buffers() { glfwSwapBuffers(window_); }
 
 WindowSize Window::size() const {
   WindowSize size;
@@ -176,7 +176,7 @@ WindowSize Window::pixels() const {
 float Window::content_scale() const {
   float across = 1, down = 1;
   glfwGetWindowContentScale(window_, &across, &down);
-  // Where the framebuffer has more pixels than the window has coordinates, coordinates are scaled already.
+  // If the framebuffer has more pixels than the window has screen coordinates, the system already scales.
   const WindowSize coordinates = size(), framebuffer = pixels();
   const float done =
       coordinates.width > 0 ? static_cast<float>(framebuffer.width) / static_cast<float>(coordinates.width) : 1;

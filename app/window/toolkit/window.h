@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window on the screen with an OpenGL context, and what the user does to it.
+// A window on the screen with an OpenGL context and its input.
 #pragma once
 
 #include <filesystem>
@@ -15,29 +15,29 @@ struct GLFWwindow;
 
 namespace mercury::window {
 
-// No window can be opened here. what() is one line that names `mercury render`.
+// Thrown when no window can be opened. what() is one line that suggests `mercury render`.
 class NoDisplay : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What was typed, in order. A character is what the keyboard's layout makes of the key; other keys go by GLFW's
-// numbers.
-struct Press {
-  char32_t character = 0;  // of a key without Ctrl or Alt that types one
-  int key = 0;             // GLFW_KEY_*, where no character came
+// One key press. Keys that type a character are identified by it, as the keyboard layout gives it; other keys by GLFW's
+// number.
+struct KeyPress {
+  char32_t character = 0;  // 0 = the key types none
+  int key = 0;             // GLFW_KEY_*; 0 for a typed character
   bool control = false, shift = false;
-  bool repeated = false;  // by holding the key
+  bool repeated = false;  // by holding the key down
 };
 
 struct WindowSize {
   int width = 1280, height = 720;  // in screen coordinates
 };
 
-// The keys among events.
-std::vector<Press> presses_of(const std::vector<InputEvent>& events);
+// The key presses among events, in order.
+std::vector<KeyPress> key_presses_in(const std::vector<InputEvent>& events);
 
-// Everything that has to do with the system's windows. One at a time, used from one thread alone.
+// All calls to the window system go through this class. Only one can exist at a time; use it from one thread.
 class Window {
  public:
   // Throws NoDisplay.
@@ -49,30 +49,30 @@ class Window {
   render::Context& gl_context() { return *gl_context_; }
   GLFWwindow* handle() const { return window_; }
 
-  bool asked_to_close() const;
+  bool close_requested() const;
   void close();
-  void stay_open();  // whatever it was asked
+  void cancel_close();
 
-  // Waits for something to happen, at most so long [s], then takes in what did. 0 = does not wait.
+  // Waits up to `wait` seconds for input, then reads all that has arrived. 0 = does not wait.
   void poll(double wait);
-  void show_picture();  // swaps the buffers
+  void swap_buffers();  // shows the picture
 
   WindowSize size() const;      // in screen coordinates
   WindowSize pixels() const;    // of the framebuffer
-  float content_scale() const;  // how much larger than usual text should be on this screen
+  float content_scale() const;  // how much larger text should be on this screen; 1 = normal
   void set_title(const std::string& title);
   void toggle_full_screen();
 
-  // Of mouse and keyboard, since it was opened.
+  // Mouse and keyboard input.
   InputQueue& input() { return input_; }
   const InputQueue& input() const { return input_; }
-  // Handed out once.
+  // The files dropped on the window since the last call.
   std::vector<std::filesystem::path> take_dropped_files();
-  // Whether anything came from the user since the last call.
+  // True if there was any input since the last call.
   bool take_activity();
 
  private:
-  void listen();
+  void install_callbacks();
   void push(const InputEvent& event);
 
   GLFWwindow* window_ = nullptr;
@@ -82,7 +82,7 @@ class Window {
   bool active_ = true;
   struct {
     int x, y, width, height;
-  } windowed_{0, 0, 0, 0};  // before full screen
+  } windowed_{0, 0, 0, 0};  // position and size to return to from full screen
 };
 
 }  // namespace mercury::window

@@ -45,7 +45,7 @@ void draw_mark(const Line& line, bool chosen) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text,
               edge = 0.14f * text;
-  const ImU32 mark = palette().mark, ground = palette().mark_ground;
+  const ImU32 mark = palette().mark, ground = palette().mark_outline;
   list.AddLine(line.a, line.b, ground, bar + 2 * edge);
   for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
     if (sees) list.AddCircle(at, ring, ground, 0, bar + 2 * edge);

@@ -119,13 +119,13 @@ TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
   ASSERT_EQ(down.size(), 2u);
   EXPECT_EQ(down[0].x, 2);
   EXPECT_EQ(down[1].action, GLFW_PRESS);
-  EXPECT_TRUE(queue.behind());
+  EXPECT_TRUE(queue.has_backlog());
   const std::vector<InputEvent> up = queue.take();
   ASSERT_EQ(up.size(), 2u);
   EXPECT_EQ(up[0].x, 4);
   EXPECT_EQ(up[1].action, GLFW_RELEASE);
   ASSERT_EQ(queue.take().size(), 1u);
-  EXPECT_FALSE(queue.behind());
+  EXPECT_FALSE(queue.has_backlog());
   EXPECT_EQ(queue.taken(), 1u);
 }
 
@@ -161,9 +161,9 @@ TEST(Presses, AreCharactersWhereKeysTypeThemAndKeysElsewhere) {
   InputEvent control = key(GLFW_KEY_S, GLFW_PRESS, false);
   control.mods = GLFW_MOD_CONTROL;
   control.name = U's';
-  const std::vector<Press> presses =
-      presses_of({key(GLFW_KEY_D, GLFW_PRESS, true), letter(U'd'), key(GLFW_KEY_D, GLFW_RELEASE, true),
-                  key(GLFW_KEY_F1, GLFW_PRESS, false), key(GLFW_KEY_F1, GLFW_RELEASE, false), control});
+  const std::vector<KeyPress> presses =
+      key_presses_in({key(GLFW_KEY_D, GLFW_PRESS, true), letter(U'd'), key(GLFW_KEY_D, GLFW_RELEASE, true),
+                      key(GLFW_KEY_F1, GLFW_PRESS, false), key(GLFW_KEY_F1, GLFW_RELEASE, false), control});
   ASSERT_EQ(presses.size(), 3u);
   EXPECT_EQ(presses[0].character, U'd');
   EXPECT_EQ(presses[1].key, GLFW_KEY_F1);
