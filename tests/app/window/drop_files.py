@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drops files on a window as a file manager does: the source's side of the X drag-and-drop protocol (XDND, version 5).
 
-drop_files.py WINDOW X Y PATH... with the window's number and a place in it; needs nothing but libX11.
+drop_files.py WINDOW X Y PATH... with the number of the X window and a position in it. Needs only libX11.
 """
 import ctypes
 import sys
@@ -9,7 +9,7 @@ import time
 from ctypes import c_char_p, c_int, c_long, c_ubyte, c_ulong, c_void_p
 from pathlib import Path
 
-PATIENCE = 30  # seconds
+DEADLINE = 30  # seconds
 CLIENT_MESSAGE, SELECTION_REQUEST, SELECTION_NOTIFY = 33, 30, 31
 SOURCE_VERSION = 5
 
@@ -73,8 +73,8 @@ class Source:
         self.x11.XFlush(self.display)
 
     def until(self, message, content):
-        """Gives the files to whoever asks, until a message comes; that message."""
-        deadline = time.monotonic() + PATIENCE
+        """Answers requests for the files until a message arrives, and returns the data of that message."""
+        deadline = time.monotonic() + DEADLINE
         while time.monotonic() < deadline:
             while self.x11.XPending(self.display):
                 event = Event()
@@ -84,7 +84,7 @@ class Source:
                 elif event.type == CLIENT_MESSAGE and event.client.message_type == self.atom(message):
                     return list(event.client.data)
             time.sleep(0.01)
-        raise RuntimeError(f"no {message} came")
+        raise RuntimeError(f"{message} did not arrive")
 
     def give(self, request, content):
         bytes_ = (c_ubyte * len(content)).from_buffer_copy(content)
@@ -104,9 +104,9 @@ class Source:
         self.send(target, "XdndEnter", SOURCE_VERSION << 24, self.atom("text/uri-list"), 0, 0)
         self.send(target, "XdndPosition", 0, root_x.value << 16 | root_y.value, 0, self.atom("XdndActionCopy"))
         if not self.until("XdndStatus", content)[1] & 1:
-            raise RuntimeError("the window takes no files")
+            raise RuntimeError("the window refuses files")
         self.send(target, "XdndDrop", 0, 0, 0, 0)
-        # One bit says so; GLFW 3.3 sends the number of bytes in its place.
+        # The protocol sets one bit on success; GLFW 3.3 sends the number of bytes instead.
         if not self.until("XdndFinished", content)[1]:
             raise RuntimeError("the window did not take the files")
         self.x11.XCloseDisplay(self.display)

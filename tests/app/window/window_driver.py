@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A window of `mercury view` on a display of its own, driven by real mouse and key events.
 
-What happened is read from the file that --report writes; nothing waits for a fixed time, everything for a deadline.
+The tests read what happened from the file that --report writes. They never sleep for a fixed time: they poll until
+something happens or a deadline passes.
 """
-import ctypes
-import ctypes.util
+import atexit
 import json
 import os
 import shutil
@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-PATIENCE = 60  # seconds until something that does not happen is a failure
+DEADLINE = 60  # seconds
 
 
 class Display:
@@ -34,62 +34,6 @@ class Display:
     def close(self):
         self.server.terminate()
         self.server.wait()
-
-
-class Fingers:
-    """Mouse and keyboard of a display, as quick as the display takes them: counts what they press."""
-
-    def __init__(self, display):
-        self.x11 = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
-        self.xtest = ctypes.CDLL(ctypes.util.find_library("Xtst") or "libXtst.so.6")
-        self.x11.XOpenDisplay.restype = ctypes.c_void_p
-        self.x11.XStringToKeysym.restype = ctypes.c_ulong
-        self.x11.XKeysymToKeycode.argtypes = [ctypes.c_void_p, ctypes.c_ulong]
-        self.x11.XkbKeycodeToKeysym.restype = ctypes.c_ulong
-        self.x11.XkbKeycodeToKeysym.argtypes = [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_uint, ctypes.c_uint]
-        self.display = ctypes.c_void_p(self.x11.XOpenDisplay(display.name.encode()))
-        if not self.display:
-            raise RuntimeError(f"no display {display.name}")
-        self.pressed = 0
-
-    def close(self):
-        self.x11.XCloseDisplay(self.display)
-
-    def flush(self):
-        self.x11.XFlush(self.display)
-
-    def move(self, x, y):
-        self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, 0)
-
-    def button(self, number, down):
-        self.xtest.XTestFakeButtonEvent(self.display, number, int(down), 0)
-        self.pressed += bool(down)
-
-    def click(self, number):
-        self.button(number, True)
-        self.button(number, False)
-
-    def hold(self, key, down):
-        code = self.x11.XKeysymToKeycode(self.display, self.x11.XStringToKeysym(key.encode()))
-        assert code, f"no key {key}"
-        # GLFW takes two presses of a key in the same millisecond for one that came twice.
-        self.xtest.XTestFakeKeyEvent(self.display, code, int(down), 2 if down else 0)
-        self.pressed += bool(down)
-
-    def key(self, name):
-        """ "a", "plus", "ctrl+z" """
-        *held, key = name.split("+")
-        held = [{"ctrl": "Control_L", "shift": "Shift_L"}[name] for name in held]
-        symbol = self.x11.XStringToKeysym(key.encode())
-        code = self.x11.XKeysymToKeycode(self.display, symbol)
-        if self.x11.XkbKeycodeToKeysym(self.display, code, 0, 0) != symbol and "Shift_L" not in held:
-            held.append("Shift_L")
-        for modifier in held:
-            self.hold(modifier, True)
-        self.hold(key, True)
-        self.hold(key, False)
-        for modifier in reversed(held):
-            self.hold(modifier, False)
 
 
 class Window:
@@ -113,10 +57,10 @@ class Window:
             self.process.wait()
             raise
 
-    # What happened.
+    # What happens in the window.
 
-    def look(self):
-        """Reads what was reported since the last look."""
+    def read_report(self):
+        """Reads the new lines of the report."""
         if not self.report.exists():
             return
         with open(self.report) as file:
@@ -134,20 +78,20 @@ class Window:
                 self.events.append(event)
 
     def until(self, what, found, may_end=False):
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + DEADLINE
         while True:
-            self.look()
+            self.read_report()
             if result := found():
                 return result
             if self.process.poll() is not None and not may_end:
-                raise AssertionError(f"the window ended with {self.process.returncode} before {what}: {self.said()}")
+                raise AssertionError(f"the window ended with {self.process.returncode} before {what}: {self.stderr()}")
             if time.monotonic() > deadline:
                 raise AssertionError(f"no {what}; last: {self.events[-3:]}")
             time.sleep(0.02)
 
     def mark(self):
-        """The number of events so far: later ones are those from there on."""
-        self.look()
+        """The number of events so far, for the `since` of wait() and frame()."""
+        self.read_report()
         return len(self.events)
 
     def wait(self, event, since=0, accept=lambda event: True):
@@ -155,24 +99,24 @@ class Window:
             (e for e in self.events[since:] if e["event"] == event and accept(e)), None))
 
     def frame(self, accept=lambda frame: True, since=None):
-        """The next frame told of, or the next that is accepted."""
+        """The next frame event that `accept` accepts."""
         return self.wait("frame", self.mark() if since is None else since, accept)
 
     def pressed(self):
-        """Buttons and keys that it has taken in, by the last frame told of."""
-        self.look()
+        """The number of presses that the window has handled, as of the last frame event."""
+        self.read_report()
         return next((event["input"] for event in reversed(self.events) if event["event"] == "frame"), 0)
 
-    def said(self):
+    def stderr(self):
         return Path(self.messages.name).read_text()
 
-    # What is done.
+    # What the user does.
 
     def do(self, *commands):
         subprocess.run(["xdotool", *map(str, commands)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
 
     def script(self, lines):
-        """Many commands by one process, as fast as the display takes them."""
+        """Runs many xdotool commands in one process."""
         subprocess.run(["xdotool", "-"], input="\n".join(lines) + "\n", text=True, env=self.environment, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
@@ -181,18 +125,18 @@ class Window:
         return round(self.items[item]["x"]), round(self.items[item]["y"])
 
     def click(self, item):
-        # What has just opened may still find its place.
+        # An item that has just opened may still move.
         place = None
         while place != (place := self.place(item)):
             self.do("mousemove", *place)
             self.frame()
         self.do("click", 1)
-        # A press and a release take a frame each, and what they do is seen in the next one.
+        # Press and release take one frame each; their effect shows in the next one.
         self.frame()
         self.frame()
 
     def choose_next(self, combo):
-        """Of a list that a click opened below its field, the entry after the first."""
+        """Chooses the second entry of a list that a click has opened."""
         x, y = self.place(combo)
         self.do("mousemove", x, y + 1.9 * self.items[combo]["height"])
         self.frame()
@@ -200,9 +144,9 @@ class Window:
         self.frame()
 
     def dialog(self, text):
-        """Types into the question that is open, and accepts."""
+        """Types into the open dialog and accepts it."""
         self.place("dialog.text")
-        self.frame()  # it has the keyboard by then
+        self.frame()  # it has the keyboard focus now
         self.type(text)
         self.key("Return")
 
@@ -213,7 +157,7 @@ class Window:
         self.do("type", "--delay", "25", text)
 
     def drop(self, *paths):
-        """Files and folders, dropped on the middle of the picture as a file manager does."""
+        """Drops files and folders on the middle of the picture, as a file manager does."""
         found = subprocess.run(["xdotool", "search", "--class", "mercury"], env=self.environment, check=True,
                                capture_output=True, text=True).stdout.split()
         x, y = self.place("picture")
@@ -221,14 +165,15 @@ class Window:
                         *map(str, paths)], env=self.environment, check=True)
 
     def screenshot(self):
-        """The window as a picture: height x width x 3, 0 to 1."""
+        """An array of the window's pixels: height x width x 3, values 0 to 1."""
         import matplotlib.image
         since = self.mark()
         self.key("F2")
         return matplotlib.image.imread(self.wait("screenshot", since)["file"])[:, :, :3]
 
-    def complaints(self):
-        self.look()
+    def gl_messages(self):
+        """Messages of OpenGL, of which there should be none."""
+        self.read_report()
         return [event["text"] for event in self.events if event["event"] == "gl"]
 
     def kill(self):
@@ -238,7 +183,7 @@ class Window:
         self.messages.close()
 
     def close(self):
-        """Quits, whatever would be lost; the exit status."""
+        """Quits without saving. Returns the exit status."""
         if self.process.poll() is None:
             since = self.mark()
             self.key("ctrl+q")
@@ -247,7 +192,7 @@ class Window:
                            may_end=True)
                 if self.process.poll() is None:
                     self.key("Return")
-                self.process.wait(PATIENCE)
+                self.process.wait(DEADLINE)
             except (AssertionError, subprocess.TimeoutExpired):
                 self.process.kill()
                 self.process.wait()
@@ -256,12 +201,7 @@ class Window:
 
 
 def scratch():
-    """A folder that is removed at the end."""
+    """A temporary folder that is removed when the test program ends."""
     folder = tempfile.mkdtemp(prefix="mercury-window-")
-    import atexit
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)
-
-
-if __name__ == "__main__":
-    sys.exit("run window_test.py")

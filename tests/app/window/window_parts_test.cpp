@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the window that need no display.
+// Parts of the window that work without a display.
 #include <gmock/gmock.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -34,13 +34,13 @@ class FolderListingTest : public test::FolderTest {
   FolderListing view_{{".json", ".cbor"}};
 };
 
-TEST_F(FolderListingTest, FoldersComeFirstAndOtherFilesNotAtAll) {
+TEST_F(FolderListingTest, ListsFoldersFirstAndOnlyMatchingFiles) {
   ASSERT_TRUE(view_.enter(folder_));
   EXPECT_THAT(names(view_.items()), ElementsAre("zoo", "eel.json", "Fish.JSON", "ray.cbor"));
   EXPECT_EQ(view_.file_count(), 3u);
 }
 
-TEST_F(FolderListingTest, WhatCannotBeReadIsToldAndChangesNothing) {
+TEST_F(FolderListingTest, AnUnreadableFolderSetsTheErrorAndKeepsTheListing) {
   ASSERT_TRUE(view_.enter(folder_));
   EXPECT_FALSE(view_.enter(folder_ / "nowhere"));
   EXPECT_THAT(view_.error(), HasSubstr("nowhere"));
@@ -48,7 +48,7 @@ TEST_F(FolderListingTest, WhatCannotBeReadIsToldAndChangesNothing) {
   EXPECT_EQ(view_.items().size(), 4u);
 }
 
-TEST_F(FolderListingTest, GoingUpMarksTheFolderThatWasLeft) {
+TEST_F(FolderListingTest, GoingUpMarksThePreviousFolder) {
   ASSERT_TRUE(view_.enter(folder_ / "zoo" / ""));
   ASSERT_TRUE(view_.up());
   EXPECT_EQ(view_.folder(), folder_);
@@ -57,7 +57,7 @@ TEST_F(FolderListingTest, GoingUpMarksTheFolderThatWasLeft) {
   EXPECT_FALSE(view_.up());
 }
 
-TEST_F(FolderListingTest, FilterLooksAtNamesInAnyCase) {
+TEST_F(FolderListingTest, FilterIgnoresCase) {
   view_.enter(folder_);
   view_.mark(1);
   view_.set_filter("FI");
@@ -67,7 +67,7 @@ TEST_F(FolderListingTest, FilterLooksAtNamesInAnyCase) {
   EXPECT_EQ(view_.items().size(), 4u);
 }
 
-TEST_F(FolderListingTest, SortingKeepsFoldersAboveAndMarksWhereTheyAre) {
+TEST_F(FolderListingTest, SortingKeepsFoldersAboveFilesAndKeepsMarks) {
   write("ray.cbor", 900);
   write("eel.json", 20);
   view_.enter(folder_);
@@ -78,7 +78,7 @@ TEST_F(FolderListingTest, SortingKeepsFoldersAboveAndMarksWhereTheyAre) {
   EXPECT_EQ(view_.cursor(), 1u);
 }
 
-TEST_F(FolderListingTest, MarksFollowKeysAndClicks) {
+TEST_F(FolderListingTest, KeysAndClicksMoveMarks) {
   view_.enter(folder_);
   view_.move(1);
   EXPECT_THAT(names(view_.marked()), ElementsAre("zoo"));
@@ -90,11 +90,11 @@ TEST_F(FolderListingTest, MarksFollowKeysAndClicks) {
   EXPECT_THAT(names(view_.marked()), ElementsAre("eel.json", "Fish.JSON", "ray.cbor"));
   view_.toggle(2);
   EXPECT_THAT(names(view_.marked()), ElementsAre("eel.json", "ray.cbor"));
-  view_.mark(99);  // a row that is no more
+  view_.mark(99);  // past the end
   EXPECT_THAT(view_.marked(), IsEmpty());
 }
 
-TEST(TypedPath, IsTakenAsAShellTakesIt) {
+TEST(TypedPath, IsResolvedAsInAShell) {
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   EXPECT_EQ(typed_path("/robots", "eel.json"), "/robots/eel.json");
   EXPECT_EQ(typed_path("/robots", "  ../eel.json "), "/eel.json");
@@ -110,7 +110,7 @@ InputEvent key(int code, int action, bool types) {
 }
 InputEvent letter(char32_t c) { return {.kind = Kind::character, .code = static_cast<int>(c)}; }
 
-TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
+TEST(InputQueue, AClickKeepsItsPositionWhenThePointerMovesOn) {
   InputQueue queue;
   for (const InputEvent& event :
        {moved(1), moved(2), button(GLFW_PRESS), moved(3), moved(4), button(GLFW_RELEASE), moved(5)})
@@ -129,7 +129,7 @@ TEST(InputQueue, AClickIsSeenWhereItHappenedThoughThePointerHasGoneOn) {
   EXPECT_EQ(queue.taken(), 1u);
 }
 
-TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
+TEST(InputQueue, TheWheelKeepsThePositionOfThePointer) {
   InputQueue queue;
   for (const InputEvent& event :
        {moved(1), InputEvent{.kind = Kind::scroll, .y = 1}, InputEvent{.kind = Kind::scroll, .y = 1}, moved(2)})
@@ -140,7 +140,7 @@ TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
   EXPECT_EQ(queue.take().size(), 1u);
 }
 
-TEST(InputQueue, WordsComeAtOnceButWhatFollowsACommandWaitsForIt) {
+TEST(InputQueue, TextIsTakenAtOnceAndInputAfterACommandWaits) {
   InputQueue queue;
   for (const char32_t c : {U'e', U'e', U'l'}) {
     queue.push(key(static_cast<int>(c), GLFW_PRESS, true));
@@ -152,12 +152,12 @@ TEST(InputQueue, WordsComeAtOnceButWhatFollowsACommandWaitsForIt) {
   queue.push(letter(U'x'));
   queue.push(button(GLFW_PRESS));
   EXPECT_EQ(queue.take().size(), 10u);
-  EXPECT_EQ(queue.take().size(), 2u);  // the button is not pressed before the letter is in
+  EXPECT_EQ(queue.take().size(), 2u);  // the letter is taken before the button
   EXPECT_EQ(queue.take().size(), 1u);
   EXPECT_EQ(queue.taken(), 5u);
 }
 
-TEST(Presses, AreCharactersWhereKeysTypeThemAndKeysElsewhere) {
+TEST(KeyPresses, AreCharactersForKeysThatTypeAndKeysOtherwise) {
   InputEvent control = key(GLFW_KEY_S, GLFW_PRESS, false);
   control.mods = GLFW_MOD_CONTROL;
   control.name = U's';

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mouse and keyboard events through the XTEST extension, without a process per event as with xdotool."""
+import ctypes
+import ctypes.util
+
+
+class FastInput:
+    """Mouse and keyboard of a display, as fast as the X server accepts events. Counts the presses."""
+
+    def __init__(self, display):
+        self.x11 = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
+        self.xtest = ctypes.CDLL(ctypes.util.find_library("Xtst") or "libXtst.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.x11.XStringToKeysym.restype = ctypes.c_ulong
+        self.x11.XKeysymToKeycode.argtypes = [ctypes.c_void_p, ctypes.c_ulong]
+        self.x11.XkbKeycodeToKeysym.restype = ctypes.c_ulong
+        self.x11.XkbKeycodeToKeysym.argtypes = [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_uint, ctypes.c_uint]
+        self.display = ctypes.c_void_p(self.x11.XOpenDisplay(display.name.encode()))
+        if not self.display:
+            raise RuntimeError(f"cannot open display {display.name}")
+        self.pressed = 0
+
+    def close(self):
+        self.x11.XCloseDisplay(self.display)
+
+    def flush(self):
+        self.x11.XFlush(self.display)
+
+    def move(self, x, y):
+        self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, 0)
+
+    def button(self, number, down):
+        self.xtest.XTestFakeButtonEvent(self.display, number, int(down), 0)
+        self.pressed += bool(down)
+
+    def click(self, number):
+        self.button(number, True)
+        self.button(number, False)
+
+    def hold(self, key, down):
+        code = self.x11.XKeysymToKeycode(self.display, self.x11.XStringToKeysym(key.encode()))
+        assert code, f"no key {key}"
+        # GLFW drops a second press of a key within the same millisecond.
+        self.xtest.XTestFakeKeyEvent(self.display, code, int(down), 2 if down else 0)
+        self.pressed += bool(down)
+
+    def key(self, name):
+        """ "a", "plus", "ctrl+z" """
+        *held, key = name.split("+")
+        held = [{"ctrl": "Control_L", "shift": "Shift_L"}[name] for name in held]
+        symbol = self.x11.XStringToKeysym(key.encode())
+        code = self.x11.XKeysymToKeycode(self.display, symbol)
+        if self.x11.XkbKeycodeToKeysym(self.display, code, 0, 0) != symbol and "Shift_L" not in held:
+            held.append("Shift_L")
+        for modifier in held:
+            self.hold(modifier, True)
+        self.hold(key, True)
+        self.hold(key, False)
+        for modifier in reversed(held):
+            self.hold(modifier, False)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Opening and saving robots in the real window: window_files_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+from window_case import PROGRAM, SAMPLES, WindowCase, main
+
+
+class FilesTest(WindowCase):
+    def test_a_generated_robot_is_saved_and_loaded_again(self):
+        window = self.small("--paused")
+        since = window.mark()
+        window.click("generate")
+        robots = window.wait("robots", since, lambda event: all(name.startswith("voxel") for name in event["names"]))
+        window.click("robot.1")
+        window.frame(lambda frame: frame["selected"] == 1)
+        for expected in ("saved", "asks"):  # the second time, the file exists
+            since = window.mark()
+            window.key("ctrl+s")
+            window.dialog(str(self.folder / "new.json"))
+            window.wait(expected, since)
+        window.click("dialog.cancel")
+        window.place("files.place")  # the file dialog opens again
+        window.key("Escape")
+        window.until("dialog closed", lambda: "files.place" not in window.items)
+        self.finish(window)
+        saved = json.loads((self.folder / "new.json").read_text())
+        self.assertEqual(saved["name"], robots["names"][1])
+
+        again = self.window_in(self.folder, "--fresh", "--paused")
+        since = again.mark()
+        again.key("ctrl+o")
+        again.dialog(str(self.folder / "new.json"))
+        again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
+        self.finish(again)
+
+    def test_all_robots_are_saved_as_cbor(self):
+        window = self.small("--paused")
+        window.key("ctrl+s")
+        window.click("files.format")
+        window.choose_next("files.format")
+        since = window.mark()
+        window.click("dialog.text")
+        window.dialog("both")
+        saved = window.wait("saved", since)["files"]
+        self.assertEqual([str(Path(file).relative_to(self.folder)) for file in saved], ["both/eel.cbor", "both/fish.cbor"])
+        self.finish(window)
+        info = subprocess.run([PROGRAM, "info", str(self.folder / "both")], capture_output=True, text=True)
+        self.assertEqual(info.returncode, 0, info.stderr)
+        self.assertIn("eel", info.stdout)
+
+    def test_an_invalid_robot_file_shows_an_error(self):
+        window = self.small("--paused")
+        bad = self.folder / "bad.json"
+        bad.write_text('{"format": "mercury-robot", "version": 1, "masses": [[0, 0, 0]], "springs": [[0, 7, 1]], "faces": []}')
+        since = window.mark()
+        window.key("ctrl+o")
+        window.dialog(str(bad))
+        message = window.wait("message", since, lambda event: event["tone"] == "error")
+        self.assertIn("/springs/0", message["text"])
+        self.finish(window)
+
+    def test_files_dropped_on_the_window_are_opened(self):
+        window = self.small("--paused")
+        inner = self.folder / "a folder, #1"
+        inner.mkdir()
+        for name in ("ray", "squid"):
+            shutil.copy(SAMPLES / f"{name}.json", inner)
+        odd = self.folder / "t\u00fcrtle 100%.json"
+        shutil.copy(SAMPLES / "turtle.json", odd)
+        (self.folder / "notes.txt").write_text("no robot")
+        (self.folder / "broken.json").write_text("{")
+        since = window.mark()
+        window.drop(inner, self.folder / "notes.txt", odd, self.folder / "broken.json")
+        self.assertEqual(window.wait("dropped", since)["files"], 4)
+        robots = window.wait("robots", since, lambda event: event["count"] == 5)
+        self.assertEqual(robots["names"], ["eel", "fish", "ray", "squid", "turtle"])
+        for text in ("notes.txt", "broken.json"):
+            window.wait("message", since, lambda event, text=text: event["tone"] == "error" and text in event["text"])
+        window.key("ctrl+z")
+        window.wait("robots", since, lambda event: event["names"] == ["eel", "fish"])
+        self.finish(window)
+
+
+if __name__ == "__main__":
+    main()

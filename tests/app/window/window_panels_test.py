@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Panels, keys and settings of the real window: window_panels_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import csv
+import json
+import shlex
+import shutil
+import subprocess
+import unittest
+
+from window_case import SAMPLES, WindowCase, main, numpy
+
+
+LEFT = ["Robots", "Browser", "Ranking"]
+RIGHT = ["View", "Tune", "Measure", "Video", "Stats"]
+
+
+class PanelsTest(WindowCase):
+    def test_every_panel_opens(self):
+        window = self.small()
+        for panel in LEFT[1:] + RIGHT[1:] + [LEFT[0], RIGHT[0]]:
+            since = window.mark()
+            window.click(f"tab.{panel}")
+            window.wait("panel", since, lambda event: event["name"] == panel)
+            window.place(f"panel.{panel}")
+        window.key("F1")
+        window.place("panel.Help")
+        window.key("Escape")
+        window.until("help closed", lambda: "panel.Help" not in window.items)
+        window.key("h")
+        window.frame(lambda frame: not frame["panels"])
+        window.key("h")
+        window.frame(lambda frame: frame["panels"])
+        self.finish(window)
+
+    def test_drag_arrows_are_drawn(self):
+        window = self.small()
+        window.frame(lambda frame: frame["time"] > 0.3)
+        window.key("space")
+        window.frame(lambda frame: not frame["playing"])
+        window.frame()
+        without = window.screenshot()
+        since = window.mark()
+        window.key("d")
+        window.wait("view", since, lambda event: event["drag"])
+        area = window.items["picture"]
+        left, right = int(area["x"] - area["width"] / 2) + 2, int(area["x"] + area["width"] / 2) - 2
+        top, bottom = int(area["y"] - area["height"] / 2) + 120, int(area["y"] + area["height"] / 2) - 2
+
+        def changed(a, b):
+            return (numpy.abs(a - b).max(axis=2) > 0.15)[top:bottom, left:right]
+
+        # The arrows change a small part of the picture.
+        deadline = 20
+        while (share := changed(window.screenshot(), without).mean()) < 0.0005 and deadline:
+            deadline -= 1
+        self.assertGreater(share, 0.0005)
+        self.assertLess(share, 0.3)
+        self.finish(window)
+
+    def test_ranking_sorts_and_measurements_are_exported(self):
+        window = self.open(str(SAMPLES / "fish.json"), str(SAMPLES / "eel.json"), str(SAMPLES / "ray.json"))
+        window.frame(lambda frame: frame["time"] > 1)
+        window.key("space")
+        window.frame(lambda frame: not frame["playing"])
+        window.click("tab.Ranking")
+        for _ in range(2):
+            since = window.mark()
+            window.click("ranking.by.robot")
+            event = window.wait("ranking", since)
+            self.assertEqual(event["by"], "robot")
+            self.assertEqual(event["names"], sorted(["fish", "eel", "ray"], reverse=not event["ascending"]))
+        window.click("ranking.by.distance")
+        window.click("tab.Measure")
+        for button, file in (("measure.csv", "swim.csv"), ("ranking.csv", "rank.csv")):
+            since = window.mark()
+            window.click(button)
+            window.dialog(str(self.folder / file))
+            window.wait("saved", since)
+        time = window.frame()["time"]
+        self.finish(window)
+        with open(self.folder / "swim.csv") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0][0], "time [s]")
+        self.assertTrue(any("eel" in name and "distance" in name for name in rows[0]), rows[0])
+        self.assertLessEqual(abs(float(rows[-1][0]) - time), 0.1)
+        with open(self.folder / "rank.csv") as file:
+            ranking = list(csv.DictReader(file))
+        self.assertEqual(sorted(row["name"] for row in ranking), ["eel", "fish", "ray"])
+        distances = [float(row[next(name for name in row if name.startswith("distance"))]) for row in ranking]
+        self.assertEqual(distances, sorted(distances, reverse=True))
+
+    def test_a_copied_command_makes_the_same_scene(self):
+        def copy(window):
+            since = window.mark()
+            window.click("tune.copy")
+            return window.wait("copied", since)["text"]
+
+        window = self.open(str(SAMPLES / "eel.json"), "--random", "voxel:2", "--seed", "3", "--paused")
+        names = window.wait("robots", 0, lambda event: event["count"] == 3)["names"]
+        window.key("3", "d", "b", "t")
+        window.click("tab.Tune")
+        window.click("tune.damping")
+        window.click("tune.solver")
+        window.choose_next("tune.solver")
+        command = copy(window)
+        words = shlex.split(command)
+        self.assertEqual(words[:2], ["mercury", "view"])
+        for word in ("--solver=xpbd", "--color=strain", "--theme=light", "--camera=turntable", "voxel:2:3"):
+            self.assertTrue(any(given.startswith(word) for given in words), f"{word} in {command}")
+        self.finish(window)
+        again = self.window_in(self.folder, "--fresh", "--paused", *(word for word in words[2:] if not word.startswith("--device")))
+        self.assertEqual(again.wait("robots", 0, lambda event: event["count"] == 3)["names"], names)
+        again.click("tab.Tune")
+        again.key("t")  # the turntable has moved on; everything else is the same
+        again.frame(lambda frame: frame["camera"] == "still")
+
+        def settings(command):
+            return sorted(word for word in shlex.split(command) if not word.startswith(("--azimuth", "--elevation", "--camera")))
+
+        self.assertEqual(settings(copy(again)), settings(command))
+        self.finish(again)
+
+    @unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "this machine has no ffmpeg")
+    def test_the_window_is_recorded(self):
+        window = self.small()
+        window.frame()
+        since = window.mark()
+        window.key("v")
+        window.wait("recording", since)
+        number = window.frame()["number"]
+        window.frame(lambda frame: frame["number"] > number + 30)
+        window.key("v")
+        file = window.wait("recorded", since)["file"]
+        probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", file],
+                               capture_output=True, text=True, check=True)
+        stream = json.loads(probe.stdout)["streams"][0]
+        self.assertEqual((stream["width"], stream["height"]), (1280, 720))
+        self.assertGreater(int(stream["nb_read_frames"]), 10)
+        self.finish(window)
+
+    def test_settings_are_kept_for_the_next_start(self):
+        window = self.small("--paused")
+        window.click("tab.Tune")
+        window.wait("panel", 0, lambda event: event["name"] == "Tune")
+        x, y = window.place("picture")
+        edge = int(x + window.items["picture"]["width"] / 2)
+        window.script([f"mousemove {edge} {y}", "sleep 0.2", "mousedown 1", "sleep 0.2", f"mousemove {edge - 60} {y}", "sleep 0.2", "mouseup 1"])
+        width = window.until("a wider column", lambda: window.items["panel.Tune"]["width"] if
+                             abs(edge - 60 - window.items["picture"]["x"] - window.items["picture"]["width"] / 2) < 3 else 0)
+        window.key("3", "b", "t")
+        window.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
+        self.finish(window)
+        again = self.window_in(self.folder, "--paused")
+        again.place("panel.Tune")
+        again.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
+        self.assertLess(abs(again.items["panel.Tune"]["width"] - width), 2)
+        self.finish(again)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The real window under random input: window_random_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import os
+import random
+import shutil
+
+from fast_input import FastInput
+from window_case import PROGRAM, SAMPLES, WindowCase, main
+from window_driver import Display, Window, scratch
+
+SEEDS = [int(seed) for seed in os.environ.get("MERCURY_WINDOW_SEEDS", "4").split(",")]
+PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "10000"))
+
+
+class RandomInputTest(WindowCase):
+    def test_random_input_does_not_end_the_window(self):
+        """Ten thousand presses of random buttons and keys; none is lost."""
+        for seed in SEEDS:
+            with self.subTest(seed=seed):
+                RandomUser(self, seed).play(PRESSES)
+
+
+class RandomUser:
+    """Clicks, drags and types at random in a small window. A failure names the seed and the last actions."""
+
+    KEYS = ["space", "period", "Right", "plus", "minus", "asterisk", "0", "f", "r", "n", "d", "h", "s", "l", "k", "b", "t", "z",
+            "g", "m", "p", "v", "1", "2", "3", "4", "5", "6", "7", "8", "9", "F1", "question", "Escape", "Escape", "Delete",
+            "BackSpace", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+o", "ctrl+s", "Tab", "Return", "Up", "Down", "Left", "Home",
+            "Next", "e", "l"]  # no slash: a path could leave the scratch folder
+    SIZE = (640, 400)
+    AHEAD = 100  # presses that may wait in the window's queue
+
+    def __init__(self, test, seed):
+        self.test, self.seed, self.chance, self.last = test, seed, random.Random(seed), []
+        self.display = Display(*self.SIZE)
+        test.addCleanup(self.display.close)
+        self.input = FastInput(self.display)
+
+    def open(self):
+        # Many folders deep, so that files stay in the scratch folder however often "Up" is pressed.
+        self.top = scratch()
+        folder = self.top.joinpath(*["down"] * 400)
+        folder.mkdir(parents=True)
+        robots = [str(shutil.copy(SAMPLES / name, folder)) for name in ("eel.json", "fish.json")]  # copies: saving may replace them
+        window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)))
+        self.test.addCleanup(window.kill)
+        return window
+
+    def play(self, presses):
+        handled, window = 0, self.open()
+        try:
+            while handled + self.input.pressed < presses:
+                for _ in range(20):
+                    self.act()
+                self.input.flush()
+                self.wait(window, self.AHEAD)
+                if window.process.poll() == 0:  # a click hit "Quit" in the menu
+                    handled += self.input.pressed
+                    self.input.pressed = 0
+                    self.test.assertEqual(window.gl_messages(), [])
+                    window = self.open()
+                self.test.assertIsNone(window.process.poll())
+            self.wait(window, 0)
+            self.test.assertEqual(window.pressed(), self.input.pressed)
+            self.test.assertEqual(window.gl_messages(), [])
+            for depth in range(100):
+                self.test.assertEqual(os.listdir(self.top.joinpath(*["down"] * depth)), ["down"], "a file was saved near the root")
+        except AssertionError as failure:
+            raise AssertionError(f"seed {self.seed}, last actions: {self.last[-60:]}\n{window.stderr()}") from failure
+        finally:
+            window.kill()
+
+    def wait(self, window, ahead):
+        """Waits until at most `ahead` presses are unhandled, or the window quits."""
+        window.until("presses handled", lambda: window.process.poll() is not None or window.pressed() >= self.input.pressed - ahead,
+                     may_end=True)
+
+    def act(self):
+        chance, device = self.chance, self.input
+        kind = chance.random()
+        if kind < 0.45:
+            self.note("click", *self.go(), button := chance.choice([1, 1, 1, 1, 1, 3, 4, 5]))
+            device.click(button)
+        elif kind < 0.5:
+            self.note("double click", *self.go())
+            device.click(1)
+            device.click(1)
+        elif kind < 0.65:
+            self.note("drag from", *self.go())
+            device.button(button := chance.choice([1, 1, 1, 3]), True)
+            self.note("to", *self.go())
+            device.button(button, False)
+        elif kind < 0.7:
+            device.hold(held := chance.choice(["Control_L", "Shift_L"]), True)
+            self.note(held, "drag from", *self.go())
+            device.button(1, True)
+            self.note("to", *self.go())
+            device.button(1, False)
+            device.hold(held, False)
+        else:
+            self.note("key", key := chance.choice(self.KEYS))
+            device.key(key)
+
+    def go(self):
+        x, y = self.chance.randrange(self.SIZE[0]), self.chance.randrange(self.SIZE[1])
+        self.input.move(x, y)
+        return x, y
+
+    def note(self, *what):
+        self.last.append(" ".join(map(str, what)))
+
+
+if __name__ == "__main__":
+    main()
