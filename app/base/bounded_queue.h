@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A queue between two threads that holds at most so many elements.
+// A queue between two threads with a fixed capacity.
 #pragma once
 
 #include <condition_variable>
@@ -10,12 +10,13 @@
 
 namespace mercury {
 
+// The writer waits while the queue is full, the reader while it is empty. Every member may be called from any thread.
 template <class T>
 class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // Waits for room. False if the queue was closed: the value is dropped.
+  // Waits for room. Returns false, and drops the value, if the queue was closed.
   bool push(T value) {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return closed_ || values_.size() < capacity_; });
@@ -25,7 +26,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Waits for nothing. False if there is no room or the queue was closed: the value stays the caller's.
+  // Does not wait. Returns false, and leaves the value with the caller, if the queue is full or was closed.
   bool try_push(T& value) {
     const std::lock_guard lock(mutex_);
     if (closed_ || values_.size() >= capacity_) return false;
@@ -34,7 +35,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Waits for a value. Empty once the queue is closed and drained.
+  // Waits for a value. Returns nothing once the queue is closed and empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     filled_.wait(lock, [&] { return closed_ || !values_.empty(); });
@@ -45,7 +46,7 @@ class BoundedQueue {
     return value;
   }
 
-  // No more values come in; those inside can still be taken.
+  // Accepts no more values. Those already in the queue can still be popped.
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -53,7 +54,7 @@ class BoundedQueue {
     room_.notify_all();
   }
 
-  // Closes, and drops what is inside.
+  // Closes the queue and drops its values.
   void abandon() {
     std::deque<T> dropped;  // destroyed after the lock is released
     const std::lock_guard lock(mutex_);

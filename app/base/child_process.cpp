@@ -18,7 +18,7 @@ extern char** environ;
 namespace mercury {
 namespace {
 
-constexpr std::size_t kept_text = 65536;  // bytes of output that text_of returns, the last ones
+constexpr std::size_t kept_text = 65536;  // text_of() returns the last bytes of the output, at most this many
 
 [[noreturn]] void throw_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
@@ -38,7 +38,8 @@ std::string text_of(int descriptor) {
   return text;
 }
 
-// While it lives, a write of this thread to a pipe that nobody reads is an error (EPIPE), not a signal.
+// While an object of this class lives, writing to a pipe that nobody reads gives this thread an error (EPIPE) and no
+// signal.
 class NoBrokenPipeSignal {
  public:
   NoBrokenPipeSignal() {
@@ -47,7 +48,7 @@ class NoBrokenPipeSignal {
     pthread_sigmask(SIG_BLOCK, &broken_pipe_, &before_);
   }
   ~NoBrokenPipeSignal() {
-    // One that has come in meanwhile would be delivered as soon as it is let through again.
+    // A signal that is pending would be delivered as soon as it is unblocked.
     const timespec at_once{};
     if (!sigismember(&before_, SIGPIPE)) sigtimedwait(&broken_pipe_, nullptr, &at_once);
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
@@ -59,7 +60,7 @@ class NoBrokenPipeSignal {
   sigset_t broken_pipe_, before_;
 };
 
-// What posix_spawn is told besides the program: where its standard streams go, its group and its signals.
+// Settings of posix_spawn: standard streams, process group and signals of the child.
 class SpawnSettings {
  public:
   SpawnSettings() {
@@ -91,7 +92,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   int pipe_ends[2];
   if (pipe2(pipe_ends, O_CLOEXEC) != 0) throw_errno("pipe");
   input_ = pipe_ends[1];
-  // A larger pipe means fewer switches between us and the child; a refusal costs only speed.
+  // A larger pipe means fewer context switches. If the system refuses, only speed is lost.
   fcntl(input_, F_SETPIPE_SZ, 1 << 20);
   output_ = memory_file("child output");
   messages_ = memory_file("child messages");

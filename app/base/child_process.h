@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A child process that is fed through its standard input.
+// A child process that reads from us through its standard input.
 #pragma once
 
 #include <sys/types.h>
@@ -13,14 +13,14 @@
 
 namespace mercury {
 
-// The program cannot be started: there is none of that name, or it may not be run.
+// The program cannot be started: it does not exist or is not executable.
 class CannotStart : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Started without a shell, in a process group of its own, so that Ctrl-C at the terminal reaches only us.
-// Standard output and standard error are kept in memory. Owns the process: the destructor kills it if it still runs.
+// Starts the program without a shell and in its own process group, so that Ctrl-C at the terminal reaches only us.
+// Keeps its standard output and standard error in memory. Owns the process: the destructor kills it if it still runs.
 class ChildProcess {
  public:
   // `program` is looked up on PATH unless it has a slash. Throws CannotStart.
@@ -29,18 +29,18 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // Feeds its standard input; blocks while the pipe is full. False when the child reads no more.
+  // Writes to the child's standard input; blocks while the pipe is full. Returns false when the child has closed it.
   bool write(std::span<const std::uint8_t> bytes);
 
-  // Closes its standard input and waits for its end. Returns the status as waitpid tells it.
+  // Closes the child's standard input and waits for the child to end. Returns the status of waitpid().
   int finish();
-  // Ends it at once.
+  // Ends the child at once (SIGKILL).
   void kill();
-  // Sends it a signal, if it still runs.
+  // Sends a signal if the child still runs.
   void signal(int number);
 
-  std::string output() const;    // what it wrote to standard output so far
-  std::string messages() const;  // what it wrote to standard error so far
+  std::string output() const;    // the last 64 KiB of its standard output so far
+  std::string messages() const;  // the last 64 KiB of its standard error so far
 
  private:
   void close_input();
@@ -55,7 +55,7 @@ class ChildProcess {
 // "ended with status 1", "was killed by signal 9 (Killed)"; empty for status 0.
 std::string describe_exit(int status);
 
-// Runs `program` to its end and returns its standard output; empty if it cannot be started or fails.
+// Runs `program` to its end. Returns its standard output, or nothing if it cannot be started or fails.
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments);
 
 }  // namespace mercury

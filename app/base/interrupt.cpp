@@ -11,17 +11,17 @@
 namespace mercury {
 namespace {
 
-constexpr int slots = 64;
+constexpr int slots = 64;  // unfinished files that a second signal removes, at most
 
-std::atomic<bool> stop_asked = false;
-// Read by the signal handler, which may touch nothing but lock-free atomics and unlink.
+std::atomic<bool> stop_requested = false;
+// The signal handler reads these. It may use only lock-free atomics and async-signal-safe functions such as unlink().
 std::array<std::atomic<const char*>, slots> unfinished{};
-std::atomic<unsigned> files_named = 0;
+std::atomic<unsigned> file_count = 0;  // for unique names
 
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int number) {
-  if (!stop_asked.exchange(true)) return;
+  if (!stop_requested.exchange(true)) return;
   for (auto& slot : unfinished)
     if (const char* path = slot.load()) unlink(path);
   _exit(128 + number);
@@ -41,10 +41,10 @@ void catch_interrupts() {
   }
 }
 
-bool interrupted() { return stop_asked.load(std::memory_order_relaxed); }
+bool interrupted() { return stop_requested.load(std::memory_order_relaxed); }
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(target), path_(target) {
-  path_ += fmt::format(".{}-{}.part", getpid(), files_named.fetch_add(1));
+  path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));
   for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
     const char* empty = nullptr;
     if (unfinished[static_cast<std::size_t>(slot)].compare_exchange_strong(empty, path_.c_str())) slot_ = slot;

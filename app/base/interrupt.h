@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C, kill and a closed terminal: noted, so that work ends in good order.
+// Ctrl-C, kill and a closed terminal: work in progress ends in an orderly way.
+//
+//   first signal    sets a flag; loops that ask interrupted() stop and finish their files
+//   second signal   removes unfinished files and ends the program at once
 #pragma once
 
 #include <filesystem>
 
 namespace mercury {
 
-// From here on SIGINT, SIGTERM and SIGHUP are noted; a second one removes the files of UnfinishedFile and ends the
-// program at once. A signal that the program was started to ignore (nohup) stays ignored.
+// Installs the handlers of SIGINT, SIGTERM and SIGHUP. A signal that was ignored when the program started (nohup) stays
+// ignored.
 void catch_interrupts();
 
-// Whether the user asked to stop.
+// True once a signal has arrived.
 bool interrupted();
 
-// A file under a temporary name: removed when the program is made to end before the file is done.
+// A file under a temporary name until it is complete. It is removed if the program ends earlier, by an exception or by
+// a second signal.
 class UnfinishedFile {
  public:
-  // `path` in the folder of `target`, named after it and this process; not created here.
+  // Chooses path(): in the folder of `target`, with its name and this process's id. Does not create the file.
   explicit UnfinishedFile(const std::filesystem::path& target);
-  ~UnfinishedFile();  // removes the file if it was not kept
+  ~UnfinishedFile();  // removes the file unless keep() was called
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Gives it its name, replacing a file of that name. Throws std::filesystem::filesystem_error.
+  // Renames the file to `target` and replaces a file of that name. Throws std::filesystem::filesystem_error.
   void keep();
 
  private:

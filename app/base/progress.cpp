@@ -16,7 +16,7 @@ namespace {
 constexpr std::chrono::milliseconds bar_period{100};
 constexpr std::chrono::seconds line_period{5};
 
-bool draws_on(int descriptor) {
+bool is_terminal(int descriptor) {
   const char* terminal = std::getenv("TERM");
   return isatty(descriptor) && terminal && std::string(terminal) != "dumb";
 }
@@ -26,14 +26,14 @@ int columns_of(int descriptor) {
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string rate_and_rest(const std::string& unit, std::int64_t done, std::int64_t total, double elapsed) {
+std::string rate_and_time_left(const std::string& unit, std::int64_t done, std::int64_t total, double elapsed) {
   if (done <= 0 || elapsed <= 0) return {};
   const double rate = static_cast<double>(done) / elapsed;
-  const double rest = static_cast<double>(total - done) / rate;
-  return fmt::format("  {} {}/s  {} left", with_magnitude(rate), unit, clock_text(rest));
+  const double time_left = static_cast<double>(total - done) / rate;
+  return fmt::format("  {} {}/s  {} left", with_magnitude(rate), unit, clock_text(time_left));
 }
 
-double share_of(std::int64_t done, std::int64_t total) {
+double fraction_of(std::int64_t done, std::int64_t total) {
   return total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0;
 }
 
@@ -62,24 +62,24 @@ std::string clock_text(double seconds) {
 std::string progress_bar(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
                          double elapsed, int columns) {
   constexpr int width = 24;
-  const int filled = static_cast<int>(share_of(done, total) * width);
+  const int filled = static_cast<int>(fraction_of(done, total) * width);
   std::string text =
       fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
-                  100 * share_of(done, total), done, total, unit, rate_and_rest(unit, done, total, elapsed));
-  // A line as wide as the terminal would wrap, and then could not be drawn over.
+                  100 * fraction_of(done, total), done, total, unit, rate_and_time_left(unit, done, total, elapsed));
+  // A line as wide as the terminal would wrap, and \r could not overwrite it.
   if (const auto room = static_cast<std::size_t>(std::max(1, columns - 1)); text.size() > room) text.resize(room);
   return text;
 }
 
 std::string progress_line(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
                           double elapsed) {
-  return fmt::format("{}: {}/{} {} ({:.0f} %){}", what, done, total, unit, 100 * share_of(done, total),
-                     rate_and_rest(unit, done, total, elapsed));
+  return fmt::format("{}: {}/{} {} ({:.0f} %){}", what, done, total, unit, 100 * fraction_of(done, total),
+                     rate_and_time_left(unit, done, total, elapsed));
 }
 
 Progress::Progress(std::string what, std::string unit, std::int64_t total, bool quiet)
-    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(draws_on(STDERR_FILENO)),
-      start_(Clock::now()), last_(start_) {}
+    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet),
+      terminal_(is_terminal(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
@@ -88,7 +88,7 @@ Progress::~Progress() {
 void Progress::update(std::int64_t done) {
   if (quiet_) return;
   const Clock::time_point now = Clock::now();
-  // Lines stay, so they come at growing intervals.
+  // Lines in a log stay, so their intervals grow.
   const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);
   if (now - last_ < period) return;
   last_ = now;

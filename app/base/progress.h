@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a long piece of work has come, on standard error.
+// The progress of a long task, on standard error.
 #pragma once
 
 #include <chrono>
@@ -9,16 +9,16 @@
 
 namespace mercury {
 
-// On a terminal a bar that renews itself, with rate and time left; elsewhere a plain line now and then.
+// Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals.
 class Progress {
  public:
-  // `what` names the work ("rendering"), `unit` what is counted ("frames"). A quiet one writes nothing.
+  // `what` names the task ("rendering"), `unit` what is counted ("frames"). If `quiet`, writes nothing.
   Progress(std::string what, std::string unit, std::int64_t total, bool quiet = false);
   ~Progress();  // clears the bar
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // `done` of the total are done. Cheap: writes at most ten times a second.
+  // Reports that `done` of the total are done. Cheap: writes at most ten times per second.
   void update(std::int64_t done);
 
  private:
@@ -34,11 +34,11 @@ class Progress {
 // The bar: "rendering [#####     ]  50 %  150/300 frames  42.1 frames/s  0:04 left", cut to `columns`.
 std::string progress_bar(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
                          double elapsed, int columns);
-// The plain line, without the drawing.
+// The plain line: "rendering: 150/300 frames (50 %)  42.1 frames/s  0:04 left".
 std::string progress_line(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
                           double elapsed);
 
-// "4", "1.5 k", "2.31e+10" would be hard to compare: three digits and k, M, G, T.
+// A number with three digits and k, M, G, T or P: "4", "1.50 k", "23.1 G".
 std::string with_magnitude(double value);
 
 // "0:04", "12:30", "1:02:03".

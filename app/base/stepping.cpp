@@ -8,18 +8,18 @@
 namespace mercury {
 
 bool Stepper::advance_to(std::int64_t target) {
-  constexpr double longest_call = 0.1;  // [s]
+  constexpr double target_duration = 0.1;  // of one call of step() [s]
   while (simulation_.steps() < target) {
     if (interrupted()) return false;
-    const std::int64_t count = std::min(call_, target - simulation_.steps());
+    const std::int64_t count = std::min(steps_per_call_, target - simulation_.steps());
     const auto start = std::chrono::steady_clock::now();
     simulation_.step(count);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     wall_seconds_ += seconds;
-    if (seconds > longest_call)
-      call_ = std::max<std::int64_t>(1, count / 2);
-    else if (count == call_ && seconds < longest_call / 4)
-      call_ *= 2;
+    if (seconds > target_duration)
+      steps_per_call_ = std::max<std::int64_t>(1, count / 2);
+    else if (count == steps_per_call_ && seconds < target_duration / 4)
+      steps_per_call_ *= 2;
   }
   return true;
 }

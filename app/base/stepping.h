@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stepping a simulation so that the user can stop it.
+// Steps a simulation so that the user can interrupt it.
 #pragma once
 
 #include <chrono>
@@ -9,21 +9,21 @@
 
 namespace mercury {
 
-// Advances in calls of about a tenth of a second, whatever a step costs, and looks for Ctrl-C in between. The results
-// do not depend on how the steps are split.
+// Splits the steps into calls of about a tenth of a second and checks for Ctrl-C between them. The results do not
+// depend on how the steps are split.
 class Stepper {
  public:
   explicit Stepper(Simulation& simulation) : simulation_(simulation) {}
 
-  // Steps until the simulation has done `target` steps. False if the user asked to stop before.
+  // Steps until the simulation has made `target` steps in all. Returns false if the user interrupted it.
   bool advance_to(std::int64_t target);
 
-  // Time spent in stepping [s].
+  // Wall time spent in steps [s].
   double wall_seconds() const { return wall_seconds_; }
 
  private:
   Simulation& simulation_;
-  std::int64_t call_ = 1;  // steps in the next call
+  std::int64_t steps_per_call_ = 1;  // adapted to the speed
   double wall_seconds_ = 0;
 };
 

@@ -7,7 +7,8 @@
 namespace mercury {
 namespace {
 
-// Letters to insert, delete or replace, a swap of neighbours counting one (optimal string alignment).
+// The number of letters to insert, delete or replace to get from a to b. A swap of neighbours counts as one change
+// (optimal string alignment).
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, row(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// "did you mean": the name nearest to a mistyped one.
+// "did you mean ...?": finds the name that is nearest to a mistyped one.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace mercury {
 
-// "; did you mean --seconds?", or nothing when no name is near.
+// Returns "; did you mean --seconds?", or an empty string when no name is near.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace mercury

@@ -9,7 +9,7 @@
 namespace mercury::test {
 namespace {
 
-TEST(BoundedQueue, HandsOnEverythingInOrderAndNeverHoldsMoreThanItsCapacity) {
+TEST(BoundedQueue, KeepsTheOrderAndNeverHoldsMoreThanItsCapacity) {
   BoundedQueue<int> queue(3);
   std::atomic<int> pushed = 0;
   std::thread writer([&] {
@@ -20,14 +20,14 @@ TEST(BoundedQueue, HandsOnEverythingInOrderAndNeverHoldsMoreThanItsCapacity) {
     queue.close();
   });
   for (int i = 0; i < 10000; ++i) {
-    EXPECT_LE(pushed.load(), i + 4);  // 3 inside, and one that has been taken since
+    EXPECT_LE(pushed.load(), i + 4);  // 3 in the queue, and one popped since
     EXPECT_EQ(queue.pop(), i);
   }
   EXPECT_EQ(queue.pop(), std::nullopt);
   writer.join();
 }
 
-TEST(BoundedQueue, ClosingLetsTheRestBeTaken) {
+TEST(BoundedQueue, ClosedQueueCanStillBeEmptied) {
   BoundedQueue<int> queue(2);
   EXPECT_TRUE(queue.push(1));
   queue.close();
@@ -36,7 +36,7 @@ TEST(BoundedQueue, ClosingLetsTheRestBeTaken) {
   EXPECT_EQ(queue.pop(), std::nullopt);
 }
 
-TEST(BoundedQueue, AbandoningWakesAWriterThatWaits) {
+TEST(BoundedQueue, AbandonWakesAWaitingWriter) {
   BoundedQueue<int> queue(1);
   queue.push(1);
   bool taken = true;

@@ -6,20 +6,20 @@
 namespace mercury::test {
 namespace {
 
-TEST(Progress, LineTellsRateAndTimeLeft) {
-  // 150 in 3 s are 50 a second; the other 150 take 3 s more.
+TEST(Progress, LineShowsRateAndTimeLeft) {
+  // 150 frames in 3 s are 50 per second, so the other 150 take 3 s more.
   EXPECT_EQ(progress_line("rendering", "frames", 150, 300, 3),
             "rendering: 150/300 frames (50 %)  50 frames/s  0:03 left");
   EXPECT_EQ(progress_line("rendering", "frames", 0, 300, 1), "rendering: 0/300 frames (0 %)");
 }
 
-TEST(Progress, BarFillsWithTheShareAndFitsTheTerminal) {
+TEST(Progress, BarShowsTheFractionAndFitsTheTerminal) {
   EXPECT_EQ(progress_bar("rendering", "frames", 150, 300, 3, 200),
             "rendering [############............]  50 %  150/300 frames  50 frames/s  0:03 left");
   EXPECT_EQ(progress_bar("rendering", "frames", 300, 300, 6, 40).size(), 39u);
 }
 
-TEST(WithMagnitude, ThreeDigits) {
+TEST(WithMagnitude, HasThreeDigits) {
   EXPECT_EQ(with_magnitude(0), "0");
   EXPECT_EQ(with_magnitude(7), "7");
   EXPECT_EQ(with_magnitude(7.256), "7.26");
@@ -30,7 +30,7 @@ TEST(WithMagnitude, ThreeDigits) {
   EXPECT_EQ(with_magnitude(3.7e11), "370 G");
 }
 
-TEST(ClockText, MinutesAndHours) {
+TEST(ClockText, ShowsMinutesAndHours) {
   EXPECT_EQ(clock_text(4.4), "0:04");
   EXPECT_EQ(clock_text(59.6), "1:00");
   EXPECT_EQ(clock_text(3723), "1:02:03");

@@ -8,13 +8,13 @@ namespace {
 
 const std::vector<std::string> names{"--seconds", "--seed", "--solver", "--damping", "--density"};
 
-TEST(Suggestion, NamesTheNearest) {
+TEST(Suggestion, NamesTheNearestOption) {
   EXPECT_EQ(suggestion("--secnds", names), "; did you mean --seconds?");
   EXPECT_EQ(suggestion("--sede", names), "; did you mean --seed?");
   EXPECT_EQ(suggestion("--dam", names), "; did you mean --damping?");
 }
 
-TEST(Suggestion, IsSilentWhenNothingIsNear) {
+TEST(Suggestion, IsEmptyWhenNothingIsNear) {
   EXPECT_EQ(suggestion("--frobnicate", names), "");
   EXPECT_EQ(suggestion("x", {}), "");
 }
