@@ -70,17 +70,18 @@ void measure_speed(Window& window, LiveScene& scene) {
   scene.set_speed(unlimited_speed);
   scene.play();
   const auto playing = [&](double wanted) {
-    const std::int64_t first = scene.moment().steps;
+    const std::int64_t first = scene.snapshot().steps;
     std::int64_t pictures = 0, seen = first;
     const double begin = now();
     while (now() - begin < wanted) {
       window.picture(scene);
-      pictures += scene.moment().steps != seen;
-      seen = scene.moment().steps;
+      pictures += scene.snapshot().steps != seen;
+      seen = scene.snapshot().steps;
       std::this_thread::sleep_for(std::chrono::milliseconds(16));
     }
     const double spent = now() - begin;
-    return std::pair{static_cast<double>(scene.moment().steps - first) / spent, static_cast<double>(pictures) / spent};
+    return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent,
+                     static_cast<double>(pictures) / spent};
   };
   playing(1);  // until samples are as few as they become
   const auto [in_window, pictures] = playing(seconds);
@@ -113,7 +114,7 @@ int main(int argc, char** argv) {
   LiveScene scene({.configuration = {.device = {.kind = DeviceKind::automatic}}});
   Window window;
   const auto robots_are = [&](std::size_t wanted) {
-    return [&scene, wanted] { return scene.moment().robots->size() == wanted; };
+    return [&scene, wanted] { return scene.snapshot().robots->size() == wanted; };
   };
   std::vector<Robot> robots;
   for (std::size_t i = 0; i < count; ++i)
@@ -133,12 +134,12 @@ int main(int argc, char** argv) {
   const RobotId first = scene.entries()[0].id;
   measure(
       window, scene, "materials of one", [&] { scene.scale_materials({first}, {.stiffness = 1.5f}); },
-      [&] { return scene.moment().robots->robots[0].materials != nullptr; });
+      [&] { return scene.snapshot().robots->robots[0].materials != nullptr; });
   std::vector<RobotId> all;
   for (const RobotEntry& entry : scene.entries()) all.push_back(entry.id);
   measure(
       window, scene, "materials of all", [&] { scene.scale_materials(all, {.stiffness = 2}); },
-      [&] { return scene.moment().robots->robots.back().materials != nullptr; });
+      [&] { return scene.snapshot().robots->robots.back().materials != nullptr; });
   measure(
       window, scene, "damping",
       [&] {
@@ -146,9 +147,9 @@ int main(int argc, char** argv) {
         configuration.damping = 0.5;
         scene.set_configuration(configuration);
       },
-      [&] { return scene.moment().configuration.damping == 0.5; });
+      [&] { return scene.snapshot().configuration.damping == 0.5; });
   measure(
-      window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.moment().resets > 0; });
+      window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.snapshot().resets > 0; });
   double usual = 0;
   for (int i = 0; i < 20; ++i) usual += window.picture(scene) / 20;
   std::printf("a picture without edits %.2f ms\n", 1e3 * usual);

@@ -15,24 +15,24 @@
 
 namespace mercury {
 
-struct BadSpring {
+struct CulpritSpring {
   std::uint32_t index = 0;       // in Robot::springs
   std::uint16_t a = 0, b = 0;    // its masses
   Eigen::Vector3f at_a, at_b;    // they in the picture, where the robot is frozen [m]
-  HitFigures::OfSpring figures;  // when it exploded
+  HitDetails::OfSpring figures;  // when it exploded
   render::Bounds surroundings;   // to be looked at: the spring, and as much around it as shows where it is
 };
 
 struct ExplodedRobot {
   RobotId robot = 0;
-  std::size_t index = 0;  // at that moment
+  std::size_t index = 0;  // at that snapshot
   std::string name;
-  double time = 0;                  // of the explosion [s]
-  std::optional<BadSpring> spring;  // nothing where no spring is to blame
+  double time = 0;                      // of the explosion [s]
+  std::optional<CulpritSpring> spring;  // nothing where no spring is to blame
 };
 
-// All of a moment, in the order in which they exploded. `offsets`: one a robot, added to its coordinates in the
+// All of a snapshot, in the order in which they exploded. `offsets`: one a robot, added to its coordinates in the
 // picture.
-std::vector<ExplodedRobot> exploded_robots(const Moment& moment, std::span<const Eigen::Vector3f> offsets);
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets);
 
 }  // namespace mercury

@@ -22,21 +22,21 @@ bool same_layout(const ViewSettings& a, const ViewSettings& b) {
          (a.camera.mode == CameraMode::top) == (b.camera.mode == CameraMode::top);
 }
 
-// The settings as the moment's details go with them.
-ViewSettings fitting(const ViewSettings& settings, const Moment& moment) {
+// The settings as the snapshot's details go with them.
+ViewSettings fitting(const ViewSettings& settings, const Snapshot& snapshot) {
   ViewSettings fitted = settings;
-  fitted.color = moment.color;
-  if (moment.color != settings.color) fitted.scale.reset();
-  fitted.speed = std::isfinite(moment.speed) ? moment.speed : 1;
+  fitted.color = snapshot.color;
+  if (snapshot.color != settings.color) fitted.scale.reset();
+  fitted.speed = std::isfinite(snapshot.speed) ? snapshot.speed : 1;
   return fitted;
 }
 
-Group group_of(const Moment& moment) {
-  Group group{.telemetry = moment.telemetry,
-              .environment = moment.configuration.environment,
-              .shapes = moment.robots->shapes,
-              .bodies = moment.robots->bodies};
-  for (const LiveRobot& robot : moment.robots->robots) {
+Group group_of(const Snapshot& snapshot) {
+  Group group{.telemetry = snapshot.telemetry,
+              .environment = snapshot.configuration.environment,
+              .shapes = snapshot.robots->shapes,
+              .bodies = snapshot.robots->bodies};
+  for (const LiveRobot& robot : snapshot.robots->robots) {
     group.robots.push_back(robot.robot.get());
     group.materials.push_back(materials_of(robot));
     group.names.push_back(robot.name);
@@ -44,12 +44,12 @@ Group group_of(const Moment& moment) {
   return group;
 }
 
-std::vector<Eigen::Vector3f> offsets_of(const Moment& moment, const ViewSettings& settings, float aspect) {
+std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
-  for (std::size_t i = 0; i < moment.robots->size(); ++i)
-    bounds.push_back(i < moment.robots->shapes.size() ? moment.robots->shapes[i]->box
-                                                      : rest_bounds(*moment.robots->robots[i].robot));
-  const bool land = std::holds_alternative<Land>(moment.configuration.environment);
+  for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
+    bounds.push_back(i < snapshot.robots->shapes.size() ? snapshot.robots->shapes[i]->box
+                                                        : rest_bounds(*snapshot.robots->robots[i].robot));
+  const bool land = std::holds_alternative<Land>(snapshot.configuration.environment);
   LayoutOptions options{.layout = settings.layout,
                         .grid = settings.grid,
                         .aspect = aspect,
@@ -65,7 +65,7 @@ std::vector<Eigen::Vector3f> offsets_of(const Moment& moment, const ViewSettings
 }  // namespace
 
 struct LivePicture::Parts {
-  std::shared_ptr<const Moment> moment;
+  std::shared_ptr<const Snapshot> snapshot;
   ViewSettings settings;  // as given
   std::optional<GroupScene> scene;
   std::vector<Eigen::Vector3f> offsets;
@@ -73,9 +73,9 @@ struct LivePicture::Parts {
   SlowMotion slow_motion;
   SlowMotion::Shown shown;
 
-  void keep_trails(const GroupScene& old, const Moment& before) {
-    for (std::size_t i = 0; i < moment->robots->size(); ++i)
-      if (const auto index = before.robots->index_of(moment->robots->robots[i].id))
+  void keep_trails(const GroupScene& old, const Snapshot& before) {
+    for (std::size_t i = 0; i < snapshot->robots->size(); ++i)
+      if (const auto index = before.robots->index_of(snapshot->robots->robots[i].id))
         scene->set_trail(i, old.trails()[*index]);
   }
 };
@@ -83,46 +83,46 @@ struct LivePicture::Parts {
 LivePicture::LivePicture() : parts_(std::make_unique<Parts>()) {}
 LivePicture::~LivePicture() = default;
 
-void LivePicture::update(std::shared_ptr<const Moment> moment, const ViewSettings& settings, float aspect,
+void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
                          const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall) {
   Parts& parts = *parts_;
-  const std::shared_ptr<const Moment> before = std::exchange(parts.moment, moment);
+  const std::shared_ptr<const Snapshot> before = std::exchange(parts.snapshot, snapshot);
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
-  const bool others = !before || before->robots->revision != moment->robots->revision;
-  const bool moved = before && before->configuration.environment.index() != moment->configuration.environment.index();
+  const bool others = !before || before->robots->revision != snapshot->robots->revision;
+  const bool moved = before && before->configuration.environment.index() != snapshot->configuration.environment.index();
   if (others) {
-    parts.offsets = offsets_of(*moment, settings, aspect);
+    parts.offsets = offsets_of(*snapshot, settings, aspect);
     const std::optional<GroupScene> old = std::exchange(parts.scene, std::nullopt);
-    parts.scene.emplace(group_of(*moment), parts.offsets, fitting(settings, *moment));
-    if (old && before->resets == moment->resets) parts.keep_trails(*old, *before);
+    parts.scene.emplace(group_of(*snapshot), parts.offsets, fitting(settings, *snapshot));
+    if (old && before->resets == snapshot->resets) parts.keep_trails(*old, *before);
     ++parts.revision;
   } else {
     if (moved || !same_layout(old_settings, settings)) lay_out(aspect);
-    parts.scene->set_settings(fitting(settings, *moment));
-    if (before->configuration.environment != moment->configuration.environment)
-      parts.scene->set_environment(moment->configuration.environment);
-    if (before->resets != moment->resets) parts.scene->restart(moment->telemetry);
-    for (std::size_t i = 0; i < moment->robots->size() && before->robots != moment->robots; ++i) {
-      const LiveRobot &now = moment->robots->robots[i], &then = before->robots->robots[i];
+    parts.scene->set_settings(fitting(settings, *snapshot));
+    if (before->configuration.environment != snapshot->configuration.environment)
+      parts.scene->set_environment(snapshot->configuration.environment);
+    if (before->resets != snapshot->resets) parts.scene->restart(snapshot->telemetry);
+    for (std::size_t i = 0; i < snapshot->robots->size() && before->robots != snapshot->robots; ++i) {
+      const LiveRobot &now = snapshot->robots->robots[i], &then = before->robots->robots[i];
       if (now.materials != then.materials) parts.scene->set_materials(i, materials_of(now));
       if (now.name != then.name) parts.scene->set_name(i, now.name);
     }
   }
-  for (std::size_t i = 0; i < moment->robots->size(); ++i) {
-    const RobotId id = moment->robots->robots[i].id;
+  for (std::size_t i = 0; i < snapshot->robots->size(); ++i) {
+    const RobotId id = snapshot->robots->robots[i].id;
     parts.scene->mark(i, selected.contains(id), hidden.contains(id));
   }
-  if (before != moment) parts.slow_motion.take(moment);
+  if (before != snapshot) parts.slow_motion.take(snapshot);
   parts.shown = parts.slow_motion.at(wall);
-  parts.scene->update(parts.shown.time, parts.shown.telemetry, moment->details);
+  parts.scene->update(parts.shown.time, parts.shown.telemetry, snapshot->details);
   const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};
 }
 
 void LivePicture::lay_out(float aspect) {
   Parts& parts = *parts_;
-  if (!parts.moment || !parts.scene) return;
-  parts.offsets = offsets_of(*parts.moment, parts.settings, aspect);
+  if (!parts.snapshot || !parts.scene) return;
+  parts.offsets = offsets_of(*parts.snapshot, parts.settings, aspect);
   parts.scene->set_offsets(parts.offsets);
 }
 
@@ -133,7 +133,7 @@ std::span<const render::Bounds> LivePicture::bounds() const {
   return parts_->scene ? parts_->scene->bounds() : std::span<const render::Bounds>{};
 }
 std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
-  const std::vector<std::size_t>& offsets = parts_->moment->robots->mass_offsets;
+  const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }
 std::span<const Eigen::Vector3f> LivePicture::offsets() const { return parts_->offsets; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest moment as a scene to draw: where the robots stand, what they look like.
+// The newest snapshot as a scene to draw: where the robots stand, what they look like.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "app/scene/group_scene.h"
 
 namespace mercury {
@@ -20,9 +20,9 @@ class LivePicture {
   LivePicture();
   ~LivePicture();
 
-  // Brings the scene to a moment, which is kept until the next one; in slow motion, to what is to be seen at that wall
-  // time (slow_motion.h).
-  void update(std::shared_ptr<const Moment> moment, const ViewSettings& settings, float aspect,
+  // Brings the scene to a snapshot, which is kept until the next one; in slow motion, to what is to be seen at that
+  // wall time (slow_motion.h).
+  void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
               const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall);
   // Robots stand anew in rows that suit the picture and the settings' camera angles.
   void lay_out(float aspect);
@@ -32,7 +32,7 @@ class LivePicture {
   void set_bodies(render::Renderer& renderer) const;
   // Positions included. The caller may change caption, clock, labels and the like until the next update.
   render::Scene& scene();
-  // One a robot of the moment, in the picture; those of exploded robots are empty, unless all have exploded.
+  // One a robot of the snapshot, in the picture; those of exploded robots are empty, unless all have exploded.
   std::span<const render::Bounds> bounds() const;
   // Where a robot's masses are shown, in its own coordinates.
   std::span<const Vec3> positions_of(std::size_t robot) const;

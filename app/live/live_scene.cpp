@@ -49,9 +49,9 @@ void LiveScene::frame(float aspect) {
   if (std::isfinite(aspect) && aspect > 0) parts.aspect = aspect;
   parts.background.finish_done();
   if (parts.described > 0 && --parts.described == 0) parts.physics.watch_velocities(false);
-  parts.moment = parts.physics.newest();
-  if (parts.moment->stops != parts.stops) {
-    parts.stops = parts.moment->stops;
+  parts.snapshot = parts.physics.newest();
+  if (parts.snapshot->stops != parts.stops) {
+    parts.stops = parts.snapshot->stops;
     parts.playing = false;
   }
   if (!parts.selected.empty()) {
@@ -59,13 +59,13 @@ void LiveScene::frame(float aspect) {
     for (const DocumentRobot& robot : parts.document.robots) there.insert(robot.body.id);
     std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
   }
-  if (parts.pull && !parts.document.find(parts.pull->robot)) end_pull();
-  parts.picture.update(parts.moment, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()},
+  if (parts.perturbation && !parts.document.find(parts.perturbation->robot)) end_perturbation();
+  parts.picture.update(parts.snapshot, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()},
                        parts.hidden, wall_now());
 }
 
-const Moment& LiveScene::moment() const { return *parts_->moment; }
-std::shared_ptr<const Moment> LiveScene::hold_moment() const { return parts_->moment; }
+const Snapshot& LiveScene::snapshot() const { return *parts_->snapshot; }
+std::shared_ptr<const Snapshot> LiveScene::hold_snapshot() const { return parts_->snapshot; }
 LivePicture& LiveScene::picture() { return parts_->picture; }
 std::vector<Message> LiveScene::take_messages() { return parts_->messages.take(); }
 std::string LiveScene::device_name() const { return parts_->physics.device_name(); }
@@ -121,8 +121,8 @@ std::vector<RobotEntry> LiveScene::entries() const {
                      .selected = selected.contains(robot.body.id),
                      .hidden = parts.hidden.contains(robot.body.id),
                      .tuned = robot.body.materials != nullptr};
-    if (const auto index = parts.moment->robots->index_of(robot.body.id)) {
-      const Telemetry& telemetry = parts.moment->telemetry[*index];
+    if (const auto index = parts.snapshot->robots->index_of(robot.body.id)) {
+      const Telemetry& telemetry = parts.snapshot->telemetry[*index];
       entry.exploded = telemetry.exploded;
       entry.exploded_at = telemetry.exploded_at;
       entry.culprit_spring = telemetry.culprit_spring;
@@ -189,77 +189,77 @@ void LiveScene::wait_until_done() {
 
 std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
   const Shown& shown = parts_->view.shown;
-  const Moment& moment = *parts_->moment;
-  const auto hidden = std::make_unique<bool[]>(moment.robots->size());
-  for (std::size_t i = 0; i < moment.robots->size(); ++i)
-    hidden[i] = parts_->hidden.contains(moment.robots->robots[i].id);
-  return mercury::pick(moment, parts_->picture.offsets(), ray,
+  const Snapshot& snapshot = *parts_->snapshot;
+  const auto hidden = std::make_unique<bool[]>(snapshot.robots->size());
+  for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
+    hidden[i] = parts_->hidden.contains(snapshot.robots->robots[i].id);
+  return mercury::pick(snapshot, parts_->picture.offsets(), ray,
                        {.skin = shown.skin,
                         .springs = shown.springs,
                         .masses = shown.masses,
                         .cut = parts_->view.cut,
-                        .hidden = {hidden.get(), moment.robots->size()}});
+                        .hidden = {hidden.get(), snapshot.robots->size()}});
 }
 
-HitFigures LiveScene::describe(const Hit& hit) const {
+HitDetails LiveScene::describe(const Hit& hit) const {
   parts_->described = 30;
   parts_->physics.watch_velocities(true);
-  return mercury::describe(*parts_->moment, hit);
+  return mercury::describe(*parts_->snapshot, hit);
 }
 
-void LiveScene::begin_pull(const Hit& hit, float stiffness) {
-  const auto index = parts_->moment->robots->index_of(hit.robot);
-  if (!index || hit.mass >= parts_->moment->positions_of(*index).size()) return;
-  const LiveRobot& robot = parts_->moment->robots->robots[*index];
+void LiveScene::begin_perturbation(const Hit& hit, float stiffness) {
+  const auto index = parts_->snapshot->robots->index_of(hit.robot);
+  if (!index || hit.mass >= parts_->snapshot->positions_of(*index).size()) return;
+  const LiveRobot& robot = parts_->snapshot->robots->robots[*index];
   const float suitable = suitable_stiffness(robot, parts_->document.configuration);
   const bool usable = std::isfinite(stiffness) && stiffness > 0;
-  parts_->pull = LivePerturbation{.robot = hit.robot,
-                                  .mass = hit.mass,
-                                  .target = parts_->moment->positions_of(*index)[hit.mass],
-                                  .stiffness = usable ? stiffness : suitable};
-  parts_->send_pull();
+  parts_->perturbation = LivePerturbation{.robot = hit.robot,
+                                          .mass = hit.mass,
+                                          .target = parts_->snapshot->positions_of(*index)[hit.mass],
+                                          .stiffness = usable ? stiffness : suitable};
+  parts_->send_perturbation();
 }
 
-void LiveScene::move_pull(const Eigen::Vector3f& target) {
-  if (!parts_->pull || !target.allFinite()) return;
-  const auto index = parts_->moment->robots->index_of(parts_->pull->robot);
+void LiveScene::move_perturbation(const Eigen::Vector3f& target) {
+  if (!parts_->perturbation || !target.allFinite()) return;
+  const auto index = parts_->snapshot->robots->index_of(parts_->perturbation->robot);
   if (!index || *index >= parts_->picture.offsets().size()) return;
   const Eigen::Vector3f own = target - parts_->picture.offsets()[*index];
-  parts_->pull->target = {own.x(), own.y(), own.z()};
-  parts_->send_pull();
+  parts_->perturbation->target = {own.x(), own.y(), own.z()};
+  parts_->send_perturbation();
 }
 
-void LiveScene::set_pull_stiffness(float stiffness) {
-  if (!parts_->pull || !std::isfinite(stiffness) || !(stiffness > 0)) return;
-  parts_->pull->stiffness = stiffness;
-  parts_->send_pull();
+void LiveScene::set_perturbation_stiffness(float stiffness) {
+  if (!parts_->perturbation || !std::isfinite(stiffness) || !(stiffness > 0)) return;
+  parts_->perturbation->stiffness = stiffness;
+  parts_->send_perturbation();
 }
 
-void LiveScene::end_pull() {
-  parts_->pull.reset();
-  parts_->send_pull();
+void LiveScene::end_perturbation() {
+  parts_->perturbation.reset();
+  parts_->send_perturbation();
 }
 
-std::optional<PullFigures> LiveScene::pull() const {
-  if (!parts_->pull) return std::nullopt;
-  const LivePerturbation& pull = *parts_->pull;
-  const auto index = parts_->moment->robots->index_of(pull.robot);
+std::optional<PerturbationDetails> LiveScene::perturbation() const {
+  if (!parts_->perturbation) return std::nullopt;
+  const LivePerturbation& pull = *parts_->perturbation;
+  const auto index = parts_->snapshot->robots->index_of(pull.robot);
   if (!index || *index >= parts_->picture.offsets().size()) return std::nullopt;
   const Eigen::Vector3f offset = parts_->picture.offsets()[*index];
   const Vec3 mass = parts_->picture.positions_of(*index)[pull.mass];
-  return PullFigures{.robot = pull.robot,
-                     .mass = pull.mass,
-                     .at = eigen(mass) + offset,
-                     .target = eigen(pull.target) + offset,
-                     .stiffness = pull.stiffness,
-                     .force = pull.stiffness * length(pull.target - mass)};
+  return PerturbationDetails{.robot = pull.robot,
+                             .mass = pull.mass,
+                             .at = eigen(mass) + offset,
+                             .target = eigen(pull.target) + offset,
+                             .stiffness = pull.stiffness,
+                             .force = pull.stiffness * length(pull.target - mass)};
 }
 
 Series LiveScene::series(RobotId robot) const { return parts_->physics.measurements().series(robot); }
 std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
 
 std::vector<ExplodedRobot> LiveScene::exploded() const {
-  std::vector<ExplodedRobot> robots = exploded_robots(*parts_->moment, parts_->picture.offsets());
+  std::vector<ExplodedRobot> robots = exploded_robots(*parts_->snapshot, parts_->picture.offsets());
   std::erase_if(robots, [&](const ExplodedRobot& robot) { return parts_->hidden.contains(robot.robot); });
   return robots;
 }

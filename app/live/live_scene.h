@@ -13,7 +13,7 @@
 #include "app/live/background.h"
 #include "app/live/command_text.h"
 #include "app/live/explosions.h"
-#include "app/live/group_film.h"
+#include "app/live/group_video.h"
 #include "app/live/live_picture.h"
 #include "app/live/physics.h"
 #include "app/live/picking.h"
@@ -29,7 +29,7 @@ struct LiveSceneOptions {
 };
 
 // A pull by the hand, for the eye; places in the picture.
-struct PullFigures {
+struct PerturbationDetails {
   RobotId robot = 0;
   std::uint16_t mass = 0;
   Eigen::Vector3f at, target;  // the mass, the hand [m]
@@ -58,11 +58,11 @@ class LiveScene {
   explicit LiveScene(const LiveSceneOptions& options = {});
   ~LiveScene();
 
-  // Once a frame, first of all: takes the newest moment and what was made in the background, and brings picture() up to
-  // date. `aspect` of the picture; counts when robots are laid out anew.
+  // Once a frame, first of all: takes the newest snapshot and what was made in the background, and brings picture() up
+  // to date. `aspect` of the picture; counts when robots are laid out anew.
   void frame(float aspect = 16.0f / 9);
-  const Moment& moment() const;  // newest, as of the last frame(); stays until the next one
-  std::shared_ptr<const Moment> hold_moment() const;
+  const Snapshot& snapshot() const;  // newest, as of the last frame(); stays until the next one
+  std::shared_ptr<const Snapshot> hold_snapshot() const;
   LivePicture& picture();  // scene, bounds, offsets, bodies' revision
   std::vector<Message> take_messages();
   std::string device_name() const;
@@ -71,7 +71,7 @@ class LiveScene {
   void play();
   void pause();
   void toggle();
-  bool playing() const;               // as asked for; moment().playing tells what physics does
+  bool playing() const;               // as asked for; snapshot().playing tells what physics does
   void step(std::int64_t count = 1);  // pauses first
   void reset();
   void set_speed(double speed);  // clamped to 1/1000 .. 100, or unlimited_speed
@@ -131,12 +131,12 @@ class LiveScene {
 
   // Hands. Rays and places in the picture.
   std::optional<Hit> pick(const render::Ray& ray) const;
-  HitFigures describe(const Hit& hit) const;
-  void begin_pull(const Hit& hit, float stiffness = 0);  // 0 = what suits the robot
-  void move_pull(const Eigen::Vector3f& target);
-  void set_pull_stiffness(float stiffness);
-  void end_pull();
-  std::optional<PullFigures> pull() const;
+  HitDetails describe(const Hit& hit) const;
+  void begin_perturbation(const Hit& hit, float stiffness = 0);  // 0 = what suits the robot
+  void move_perturbation(const Eigen::Vector3f& target);
+  void set_perturbation_stiffness(float stiffness);
+  void end_perturbation();
+  std::optional<PerturbationDetails> pull() const;
 
   // Files. None replaces a file that exists unless told to.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
@@ -153,10 +153,10 @@ class LiveScene {
   SaveResult save_text(const std::filesystem::path& path, const std::string& text, bool overwrite = false);
 
   // A film of the robots that are not hidden, from time 0, in the background.
-  std::unique_ptr<GroupFilm> film(const GroupFilmOptions& options) const;
+  std::unique_ptr<GroupVideo> export_video(const GroupVideoOptions& options) const;
 
   // Explosions.
-  std::vector<ExplodedRobot> exploded() const;  // at the moment, those that are hidden left out
+  std::vector<ExplodedRobot> exploded() const;  // at the snapshot, those that are hidden left out
   std::vector<Explosion> take_explosions();     // since the last call
   void pause_on_explosion(bool pause);
   // NAME.repro in a folder: robot, configuration, a state of some seconds ago, and pulls and changes since. mercury run

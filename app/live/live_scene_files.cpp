@@ -127,11 +127,11 @@ SaveResult LiveScene::save_text(const fs::path& path, const std::string& text, b
   return save_files({{path, text}}, overwrite);
 }
 
-std::unique_ptr<GroupFilm> LiveScene::film(const GroupFilmOptions& options) const {
+std::unique_ptr<GroupVideo> LiveScene::export_video(const GroupVideoOptions& options) const {
   std::vector<LiveRobot> robots;
   for (const DocumentRobot& robot : parts_->document.robots)
     if (!parts_->hidden.contains(robot.body.id)) robots.push_back(robot.body);
-  return std::make_unique<GroupFilm>(std::move(robots), parts_->document.configuration, parts_->view, options);
+  return std::make_unique<GroupVideo>(std::move(robots), parts_->document.configuration, parts_->view, options);
 }
 
 SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool overwrite) {

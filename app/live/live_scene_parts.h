@@ -30,7 +30,7 @@ struct LiveScene::Parts {
   std::map<RobotId, SavedRobot> saved;
   RobotId last_id = 0;
 
-  std::shared_ptr<const Moment> moment;
+  std::shared_ptr<const Snapshot> snapshot;
   LivePicture picture;
   float aspect = 16.0f / 9;
   std::vector<RobotId> selected;  // in the order of selection
@@ -74,7 +74,7 @@ struct LiveScene::Parts {
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void put_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
-  void send_pull() {
+  void send_perturbation() {
     physics.set_perturbations(pull ? std::vector<LivePerturbation>{*pull} : std::vector<LivePerturbation>{});
   }
 };

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 
 namespace mercury {
 

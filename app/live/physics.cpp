@@ -17,7 +17,7 @@ Physics::Physics(const Configuration& configuration, Messages& messages)
 Physics::~Physics() {
   {
     const std::lock_guard lock(parts_->mutex);
-    parts_->orders.quit = true;
+    parts_->pending.quit = true;
     parts_->asked.notify_all();
   }
   parts_->thread.join();
@@ -26,70 +26,70 @@ Physics::~Physics() {
 namespace {
 
 template <class Change>
-void order(auto& parts, Change change) {
+void request(auto& parts, Change change) {
   const std::lock_guard lock(parts.mutex);
-  change(parts.orders);
+  change(parts.pending);
   parts.asked.notify_all();
 }
 
 }  // namespace
 
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
-  order(*parts_, [&](Orders& orders) { orders.scene.emplace(std::move(robots), configuration, nullptr); });
+  request(*parts_, [&](PendingCommands& pending) { pending.scene.emplace(std::move(robots), configuration, nullptr); });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
                         std::shared_ptr<const Repro> repro) {
-  order(*parts_, [&](Orders& orders) {
-    orders.scene.emplace(std::vector{robot}, configuration, std::move(repro));
-    orders.steps = 0;
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.scene.emplace(std::vector{robot}, configuration, std::move(repro));
+    pending.steps = 0;
   });
 }
 void Physics::set_view(const ViewSettings& settings) {
-  order(*parts_, [&](Orders& orders) { orders.view = settings; });
+  request(*parts_, [&](PendingCommands& pending) { pending.view = settings; });
 }
 void Physics::set_perturbations(std::vector<LivePerturbation> perturbations) {
-  order(*parts_, [&](Orders& orders) { orders.perturbations = std::move(perturbations); });
+  request(*parts_, [&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
 }
 void Physics::play() {
-  order(*parts_, [](Orders& orders) {
-    orders.playing = orders.drop_steps = true;
-    orders.steps = 0;
+  request(*parts_, [](PendingCommands& pending) {
+    pending.playing = pending.drop_steps = true;
+    pending.steps = 0;
   });
 }
 void Physics::pause() {
-  order(*parts_, [](Orders& orders) {
-    orders.playing = false;
-    orders.drop_steps = true;
-    orders.steps = 0;
+  request(*parts_, [](PendingCommands& pending) {
+    pending.playing = false;
+    pending.drop_steps = true;
+    pending.steps = 0;
   });
 }
 void Physics::set_speed(double speed) {
   if (!(speed > 0)) return;
-  order(*parts_, [&](Orders& orders) { orders.speed = speed; });
+  request(*parts_, [&](PendingCommands& pending) { pending.speed = speed; });
 }
 void Physics::step(std::int64_t count) {
-  order(*parts_, [&](Orders& orders) {
-    orders.playing = false;
-    orders.steps += std::max<std::int64_t>(0, count);
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.playing = false;
+    pending.steps += std::max<std::int64_t>(0, count);
   });
 }
 void Physics::reset() {
-  order(*parts_, [](Orders& orders) {
-    orders.reset = true;
-    orders.steps = 0;
+  request(*parts_, [](PendingCommands& pending) {
+    pending.reset = true;
+    pending.steps = 0;
   });
 }
 void Physics::pause_on_explosion(bool pause) {
-  order(*parts_, [&](Orders& orders) { orders.pause_on_explosion = pause; });
+  request(*parts_, [&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
 }
 
 void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
 
-std::shared_ptr<const Moment> Physics::newest() {
+std::shared_ptr<const Snapshot> Physics::newest() {
   const std::lock_guard lock(parts_->mutex);
   parts_->looked_at = true;
   parts_->asked.notify_all();
-  return parts_->moment;
+  return parts_->snapshot;
 }
 
 std::vector<Explosion> Physics::take_explosions() {
@@ -111,7 +111,7 @@ std::string Physics::device_name() const { return parts_->device; }
 
 void Physics::wait_until_done() {
   std::unique_lock lock(parts_->mutex);
-  const std::uint64_t ticket = parts_->orders.ticket = ++parts_->tickets;
+  const std::uint64_t ticket = parts_->pending.ticket = ++parts_->tickets;
   parts_->looked_at = true;
   parts_->asked.notify_all();
   parts_->done.wait(lock, [&] { return parts_->tickets_done >= ticket; });

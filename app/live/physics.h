@@ -8,7 +8,7 @@
 
 #include "app/live/measurements.h"
 #include "app/live/messages.h"
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "app/recording/repro.h"
 #include "app/scene/view_settings.h"
 
@@ -41,7 +41,7 @@ class Physics {
   // and steps asked for before are forgotten. The next set_scene() ends that: what the repro would still change, it
   // does not. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
-  void set_view(const ViewSettings& settings);  // what moments hold details of
+  void set_view(const ViewSettings& settings);  // what snapshots hold details of
   void set_perturbations(
       std::vector<LivePerturbation> perturbations);  // those on masses that are not there are left out
   void play();
@@ -50,12 +50,12 @@ class Physics {
   void step(std::int64_t count);  // pauses, then so many steps; several calls add up
   void reset();                   // time 0, all at rest; steps asked for before are forgotten
   void pause_on_explosion(bool pause);
-  // Whether moments have velocities while robots play, too; else only at rest, and those that wait_until_done() waits
+  // Whether snapshots have velocities while robots play, too; else only at rest, and those that wait_until_done() waits
   // for.
   void watch_velocities(bool watch);
 
-  // The newest moment told; asks for a newer one. Never nothing.
-  std::shared_ptr<const Moment> newest();
+  // The newest snapshot told; asks for a newer one. Never nothing.
+  std::shared_ptr<const Snapshot> newest();
   // Those since the last call, and robots that came back exploded.
   std::vector<Explosion> take_explosions();
   // What it takes to see a robot's explosion again; nothing unless it exploded since time began.

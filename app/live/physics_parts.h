@@ -13,16 +13,16 @@
 #include <thread>
 #include <utility>
 
-#include "app/live/histories.h"
-#include "app/live/moment_pool.h"
 #include "app/live/pace.h"
 #include "app/live/physics.h"
 #include "app/live/population.h"
+#include "app/live/replay_log.h"
+#include "app/live/snapshot_pool.h"
 
 namespace mercury {
 
 // What is asked for and not yet carried out.
-struct Orders {
+struct PendingCommands {
   struct Scene {
     std::vector<LiveRobot> robots;
     Configuration configuration;
@@ -50,11 +50,11 @@ struct Physics::Parts {
   // Shared by both threads, under the mutex.
   std::mutex mutex;
   std::condition_variable asked, done;
-  Orders orders;
-  std::shared_ptr<const Moment> moment;
+  PendingCommands pending;
+  std::shared_ptr<const Snapshot> snapshot;
   std::vector<Explosion> explosions;
   std::map<RobotId, std::function<Repro()>> repros;  // of robots that exploded
-  bool looked_at = true;                             // newest() was called since the last moment
+  bool looked_at = true;                             // newest() was called since the last snapshot
   std::uint64_t tickets = 0, tickets_done = 0;
 
   Messages& messages;
@@ -66,13 +66,13 @@ struct Physics::Parts {
   Simulation simulation;
   Population population;
   const std::string device;
-  MomentPool pool;
+  SnapshotPool pool;
   ViewSettings view;
   std::optional<DetailObserver> details;
   std::vector<LivePerturbation> perturbations;
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
-  Histories histories;
+  ReplayLog replay_log;
   std::shared_ptr<const Repro> replayed;  // what is made to happen again; or nothing
   std::size_t next_change = 0;            // of it
   std::set<std::string> told_notes;
@@ -80,19 +80,19 @@ struct Physics::Parts {
   SpeedGauge gauge;
   bool playing = false, stop_at_explosion = false;
   double speed = 1, step_seconds = 0;
-  double told_at = 0, telling_seconds = 0;             // end and length of the last tell() [s]
+  double told_at = 0, gathering_seconds = 0;           // end and length of the last tell() [s]
   double stepping_seconds = 0, measuring_seconds = 0;  // since measuring was last weighed [s]
   std::int64_t steps_left = 0;                         // asked for one by one
   std::uint64_t ticket = 0;                            // the last one taken
   std::uint64_t resets = 0, stops = 0;
-  bool dirty = true;   // something changed since the last moment told
+  bool dirty = true;   // something changed since the last snapshot told
   std::thread thread;  // last: begins when all else is there
 
   void run();
-  bool take_orders(Orders& taken);
-  void carry_out(Orders& taken);
+  bool take_pending(PendingCommands& taken);
+  void carry_out(PendingCommands& taken);
   void guarded(auto work);
-  bool set_scene(const Orders::Scene& scene);
+  bool set_scene(const PendingCommands::Scene& scene);
   void start_over();
   void begin_time();
   void begin_replay();

@@ -32,7 +32,7 @@ void Physics::Parts::begin_replay() {
   perturbations = live_perturbations(robot.id, replayed->perturbations);
   simulation.set_perturbations(population.perturbations_of(perturbations));
   next_change = 0;
-  histories.follow(simulation, *population.robots(), perturbations);
+  replay_log.follow(simulation, *population.robots(), perturbations);
   watch();
   begin_pace();
 }
@@ -62,7 +62,7 @@ void Physics::Parts::make_changes() {
     if (change.perturbations) perturbations = live_perturbations(robot.id, *change.perturbations);
   }
   simulation.set_perturbations(population.perturbations_of(perturbations));
-  histories.follow(simulation, *population.robots(), perturbations);
+  replay_log.follow(simulation, *population.robots(), perturbations);
 }
 
 }  // namespace mercury

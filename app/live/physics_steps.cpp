@@ -62,7 +62,7 @@ void Physics::Parts::take_steps(std::int64_t count) {
   }
   stepping_seconds += spent;
   weigh_measuring();
-  histories.stepped(spent, simulation, *population.robots());
+  replay_log.stepped(spent, simulation, *population.robots());
   const double each = spent / static_cast<double>(count);
   step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
   dirty = true;
@@ -82,7 +82,7 @@ void Physics::Parts::note_explosions(bool now) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (!telemetry[i].exploded || !exploded.insert(robots.robots[i].id).second) continue;
     std::function<Repro()> repro;
-    if (now) repro = histories.repro(simulation, robots, i, telemetry[i]);
+    if (now) repro = replay_log.repro(simulation, robots, i, telemetry[i]);
     if (now && stop_at_explosion) {
       playing = false;
       steps_left = 0;

@@ -11,8 +11,8 @@ namespace mercury {
 
 void Physics::Parts::run() {
   begin_pace();
-  Orders taken;
-  while (take_orders(taken)) {
+  PendingCommands taken;
+  while (take_pending(taken)) {
     guarded([&] { carry_out(taken); });
     guarded([&] { advance(); });
     bool wanted;
@@ -26,13 +26,13 @@ void Physics::Parts::run() {
   }
 }
 
-// Waits for orders, or for the next step's time. False when it is time to go.
-bool Physics::Parts::take_orders(Orders& taken) {
+// Waits for pending, or for the next step's time. False when it is time to go.
+bool Physics::Parts::take_pending(PendingCommands& taken) {
   const auto due = std::chrono::steady_clock::time_point(
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
           playing && std::isfinite(speed) ? std::min(pace.next_due(), wall_now() + 1) : 0)));
   std::unique_lock lock(mutex);
-  const auto ready = [&] { return orders.any() || (dirty && (looked_at || ticket > tickets_done)); };
+  const auto ready = [&] { return pending.any() || (dirty && (looked_at || ticket > tickets_done)); };
   if (steps_left == 0 && !ready()) {
     tickets_done = ticket;
     done.notify_all();
@@ -41,7 +41,7 @@ bool Physics::Parts::take_orders(Orders& taken) {
     else
       asked.wait(lock, ready);
   }
-  taken = std::exchange(orders, {});
+  taken = std::exchange(pending, {});
   ticket = std::max(ticket, taken.ticket);
   return !taken.quit;
 }
@@ -58,7 +58,7 @@ void Physics::Parts::guarded(auto work) {
   }
 }
 
-void Physics::Parts::carry_out(Orders& taken) {
+void Physics::Parts::carry_out(PendingCommands& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
@@ -70,7 +70,7 @@ void Physics::Parts::carry_out(Orders& taken) {
   if (taken.perturbations) perturbations = std::move(*taken.perturbations);
   if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
   if (taken.perturbations || taken.scene || taken.reset)
-    histories.follow(simulation, *population.robots(), perturbations);
+    replay_log.follow(simulation, *population.robots(), perturbations);
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
@@ -85,7 +85,7 @@ void Physics::Parts::begin_time() {
   exploded.clear();
   steps_left = 0;
   ++resets;
-  histories.restart();
+  replay_log.restart();
   {
     const std::lock_guard lock(mutex);
     repros.clear();
@@ -98,7 +98,7 @@ void Physics::Parts::begin_time() {
 }
 
 // Whether there are other robots now, or another kind of environment.
-bool Physics::Parts::set_scene(const Orders::Scene& scene) {
+bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   const auto& [robots, configuration, repro] = scene;
   replayed = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
@@ -135,7 +135,7 @@ void Physics::Parts::start_over() {
   population.start_over();
   telemetry.clear();
   exploded.clear();
-  histories.restart();
+  replay_log.restart();
   replayed.reset();
   ++resets;
   measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
@@ -156,12 +156,12 @@ void Physics::Parts::watch() {
 bool Physics::Parts::may_tell() const {
   constexpr double share = 0.2;
   if (!playing || std::isfinite(speed) || ticket > tickets_done) return true;
-  return wall_now() - told_at >= (1 / share - 1) * telling_seconds;
+  return wall_now() - told_at >= (1 / share - 1) * gathering_seconds;
 }
 
 void Physics::Parts::tell() {
   const double start = wall_now();
-  std::shared_ptr<Moment> next = pool.take();
+  std::shared_ptr<Snapshot> next = pool.take();
   next->robots = population.robots();
   next->configuration = simulation.configuration();
   next->time = simulation.time();
@@ -189,9 +189,9 @@ void Physics::Parts::tell() {
                                  ? static_cast<double>(population.robots()->springs) / step_seconds
                                  : 0;
   told_at = wall_now();
-  next->telling_seconds = telling_seconds = told_at - start;
+  next->gathering_seconds = gathering_seconds = told_at - start;
   const std::lock_guard lock(mutex);
-  moment = std::move(next);
+  snapshot = std::move(next);
   looked_at = false;
 }
 

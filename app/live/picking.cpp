@@ -159,13 +159,13 @@ class Target {
 
 }  // namespace
 
-std::optional<Hit> pick(const Moment& moment, std::span<const Vector3f> offsets, const render::Ray& ray,
+std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Vector3f> offsets, const render::Ray& ray,
                         const PickOptions& options) {
   std::optional<Hit> nearest;
-  for (std::size_t i = 0; i < std::min(moment.robots->size(), offsets.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
     if (!options.hidden.empty() && options.hidden[i]) continue;
-    const Robot& robot = *moment.robots->robots[i].robot;
-    const Target target(robot, moment.positions_of(i), offsets[i]);
+    const Robot& robot = *snapshot.robots->robots[i].robot;
+    const Target target(robot, snapshot.positions_of(i), offsets[i]);
     const float room = target.radius(options.radius);
     if (target.missed_by(ray, room)) continue;
     Hit best{.distance = nearest ? nearest->distance : far_away};
@@ -175,44 +175,44 @@ std::optional<Hit> pick(const Moment& moment, std::span<const Vector3f> offsets,
     if (options.masses || (!skin && robot.springs.empty())) target.meet_masses(ray, options, room, best);
     if (nearest ? best.distance >= nearest->distance : best.distance == far_away) continue;
     if (best.face) best.spring = target.spring_at(*best.face, best.point);
-    best.robot = moment.robots->robots[i].id;
+    best.robot = snapshot.robots->robots[i].id;
     best.index = i;
     nearest = best;
   }
   return nearest;
 }
 
-HitFigures describe(const Moment& moment, const Hit& hit) {
-  HitFigures figures;
-  const auto index = moment.robots->index_of(hit.robot);
+HitDetails describe(const Snapshot& snapshot, const Hit& hit) {
+  HitDetails figures;
+  const auto index = snapshot.robots->index_of(hit.robot);
   if (!index) return figures;
-  const LiveRobot& live = moment.robots->robots[*index];
+  const LiveRobot& live = snapshot.robots->robots[*index];
   const Robot& robot = *live.robot;
   figures.robot = live.name;
   if (hit.mass >= robot.masses.size()) return figures;
-  const auto positions = moment.positions_of(*index);
+  const auto positions = snapshot.positions_of(*index);
   figures.mass.position = positions[hit.mass];
-  if (const auto velocities = moment.velocities_of(*index); !velocities.empty())
+  if (const auto velocities = snapshot.velocities_of(*index); !velocities.empty())
     figures.mass.speed = length(velocities[hit.mass]);
   for (const Spring& spring : robot.springs) figures.mass.springs += spring.a == hit.mass || spring.b == hit.mass;
-  if (hit.spring && *hit.spring < robot.springs.size()) figures.spring = spring_figures(moment, *index, *hit.spring);
+  if (hit.spring && *hit.spring < robot.springs.size()) figures.spring = spring_details(snapshot, *index, *hit.spring);
   return figures;
 }
 
-HitFigures::OfSpring spring_figures(const Moment& moment, std::size_t index, std::uint32_t place) {
-  const LiveRobot& live = moment.robots->robots[index];
+HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index, std::uint32_t place) {
+  const LiveRobot& live = snapshot.robots->robots[index];
   const Robot& robot = *live.robot;
   const Spring& spring = robot.springs[place];
   const Material& material = materials_of(live)[spring.material];
-  const auto positions = moment.positions_of(index);
-  const double time = moment.telemetry[index].exploded ? moment.telemetry[index].exploded_at : moment.time;
+  const auto positions = snapshot.positions_of(index);
+  const double time = snapshot.telemetry[index].exploded ? snapshot.telemetry[index].exploded_at : snapshot.time;
   const double angle = static_cast<double>(material.frequency) * time + static_cast<double>(material.phase);
   const float rest_now =
       spring.rest_length * (1 + material.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI))));
-  HitFigures::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
+  HitDetails::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
   of.length = length(positions[spring.b] - positions[spring.a]);
   of.strain = of.length / spring.rest_length - 1;
-  of.force = material.stiffness * stiffness_scale_of(moment.configuration.environment) * (of.length - rest_now);
+  of.force = material.stiffness * stiffness_scale_of(snapshot.configuration.environment) * (of.length - rest_now);
   if (!robot.material_names.empty())
     of.material_name = robot.material_names[spring.material];
   else

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "render/camera.h"
 #include "render/scene.h"
 
@@ -16,7 +16,7 @@ namespace mercury {
 
 struct Hit {
   RobotId robot = 0;
-  std::size_t index = 0;                // of the robot, at that moment
+  std::size_t index = 0;                // of the robot, at that snapshot
   std::uint16_t mass = 0;               // of the face's or spring's, the one nearest to the place
   std::optional<std::uint32_t> face;    // index in Robot::faces, where the skin was met
   std::optional<std::uint32_t> spring;  // index in Robot::springs: the one met, or the face's nearest edge that is one
@@ -33,13 +33,13 @@ struct PickOptions {
 
 // The nearest thing a ray meets. `offsets`: one a robot, added to its coordinates in the picture. Robots without faces
 // are met at their springs, those without springs at their masses.
-std::optional<Hit> pick(const Moment& moment, std::span<const Eigen::Vector3f> offsets, const render::Ray& ray,
+std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets, const render::Ray& ray,
                         const PickOptions& options = {});
 
-struct HitFigures {
+struct HitDetails {
   struct OfMass {
     Vec3 position;               // [m]
-    std::optional<float> speed;  // [m/s]; nothing where the moment has no velocities
+    std::optional<float> speed;  // [m/s]; nothing where the snapshot has no velocities
     std::size_t springs = 0;     // that end at it
   };
   struct OfSpring {
@@ -53,10 +53,10 @@ struct HitFigures {
   OfMass mass;
   std::optional<OfSpring> spring;
 };
-// The figures of a hit at another moment of the same robots, or of robots that still have it; nothing but the name
+// The figures of a hit at another snapshot of the same robots, or of robots that still have it; nothing but the name
 // otherwise.
-HitFigures describe(const Moment& moment, const Hit& hit);
-// Those of one spring of the robot at that place of the moment; of one that has exploded, as it did.
-HitFigures::OfSpring spring_figures(const Moment& moment, std::size_t robot, std::uint32_t spring);
+HitDetails describe(const Snapshot& snapshot, const Hit& hit);
+// Those of one spring of the robot at that place of the snapshot; of one that has exploded, as it did.
+HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t robot, std::uint32_t spring);
 
 }  // namespace mercury

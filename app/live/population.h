@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 
 namespace mercury {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "mercury/nn_robot.h"
 #include "mercury/random_voxel.h"
 #include "mercury/voxel_evolution.h"

@@ -70,13 +70,13 @@ struct ScreenRecording::Parts {
   BoundedQueue<Waiting> queue{most_waiting};
   std::atomic<bool> cancelled = false;
   mutable std::mutex mutex;
-  FilmStatus told;
+  VideoStatus told;
   std::thread thread;
 
   std::int64_t number_at(double time) const {
     return last < 0 ? 0 : static_cast<std::int64_t>(std::floor((time - start) * frames_per_second + 1e-6));
   }
-  void tell(FilmStatus::State state, const std::string& error = {}) {
+  void tell(VideoStatus::State state, const std::string& error = {}) {
     const std::lock_guard lock(mutex);
     told.state = state;
     told.error = error;
@@ -85,10 +85,10 @@ struct ScreenRecording::Parts {
   // The unfinished file of a film that was cancelled is gone when that is told.
   void encode(const std::string& output) {
     try {
-      tell(write(output) ? FilmStatus::State::done : FilmStatus::State::cancelled);
+      tell(write(output) ? VideoStatus::State::done : VideoStatus::State::cancelled);
     } catch (const std::exception& error) {
       queue.abandon();
-      tell(FilmStatus::State::failed, error.what());
+      tell(VideoStatus::State::failed, error.what());
     }
   }
 
@@ -147,7 +147,7 @@ bool ScreenRecording::offer(double time, render::Image frame) {
 void ScreenRecording::finish() {
   {
     const std::lock_guard lock(parts_->mutex);
-    if (parts_->told.state == FilmStatus::State::running) parts_->told.state = FilmStatus::State::finishing;
+    if (parts_->told.state == VideoStatus::State::running) parts_->told.state = VideoStatus::State::finishing;
   }
   parts_->queue.close();
 }
@@ -157,7 +157,7 @@ void ScreenRecording::cancel() {
   parts_->queue.abandon();
 }
 
-FilmStatus ScreenRecording::status() const {
+VideoStatus ScreenRecording::status() const {
   const std::lock_guard lock(parts_->mutex);
   return parts_->told;
 }

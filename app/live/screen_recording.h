@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "app/live/film_status.h"
+#include "app/live/video_status.h"
 #include "app/video/frame_writer.h"
 #include "render/readback.h"
 
@@ -31,7 +31,7 @@ class ScreenRecording {
   void finish();
   // Leaves nothing behind.
   void cancel();
-  FilmStatus status() const;
+  VideoStatus status() const;
   PictureSize size() const;
 
  private:

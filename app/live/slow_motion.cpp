@@ -7,54 +7,54 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t most_moments = 5;
+constexpr std::size_t most_snapshots = 5;
 
 Vec3 between(Vec3 a, Vec3 b, float share) { return a + share * (b - a); }
 
 // Steps a second of wall time; 0 = none or no one knows.
-double rate_of(const Moment& moment) {
-  return moment.playing && std::isfinite(moment.speed) ? moment.speed / moment.configuration.dt : 0;
+double rate_of(const Snapshot& snapshot) {
+  return snapshot.playing && std::isfinite(snapshot.speed) ? snapshot.speed / snapshot.configuration.dt : 0;
 }
 
-bool is_slow(const Moment& moment) {
-  const double rate = rate_of(moment);
+bool is_slow(const Snapshot& snapshot) {
+  const double rate = rate_of(snapshot);
   return rate > 0 && rate <= SlowMotion::most_rate;
 }
 
 }  // namespace
 
-void SlowMotion::take(std::shared_ptr<const Moment> moment) {
-  if (!moments_.empty()) {
-    const Moment& last = *moments_.back();
-    const bool other = last.robots->revision != moment->robots->revision || last.resets != moment->resets ||
-                       moment->steps < last.steps;
-    if (other || !is_slow(*moment))
-      moments_.clear();
-    else if (last.steps == moment->steps)
-      moments_.pop_back();
+void SlowMotion::take(std::shared_ptr<const Snapshot> snapshot) {
+  if (!snapshots_.empty()) {
+    const Snapshot& last = *snapshots_.back();
+    const bool other = last.robots->revision != snapshot->robots->revision || last.resets != snapshot->resets ||
+                       snapshot->steps < last.steps;
+    if (other || !is_slow(*snapshot))
+      snapshots_.clear();
+    else if (last.steps == snapshot->steps)
+      snapshots_.pop_back();
   }
-  moments_.push_back(std::move(moment));
-  if (moments_.size() > most_moments) moments_.pop_front();
-  if (moments_.size() == 1) shown_ = moments_.back()->time;
+  snapshots_.push_back(std::move(snapshot));
+  if (snapshots_.size() > most_snapshots) snapshots_.pop_front();
+  if (snapshots_.size() == 1) shown_ = snapshots_.back()->time;
 }
 
 double SlowMotion::wanted(double wall) const {
-  const Moment& newest = *moments_.back();
+  const Snapshot& newest = *snapshots_.back();
   const double lag = 1 / rate_of(newest) + allowance;
   const double time = newest.time + (wall - newest.due_at - lag) * newest.speed;
-  return std::clamp(std::max(time, shown_), moments_.front()->time, newest.time);
+  return std::clamp(std::max(time, shown_), snapshots_.front()->time, newest.time);
 }
 
 SlowMotion::Shown SlowMotion::at(double wall) {
-  const Moment& newest = *moments_.back();
-  if (moments_.size() < 2 || !is_slow(newest)) {
+  const Snapshot& newest = *snapshots_.back();
+  if (snapshots_.size() < 2 || !is_slow(newest)) {
     shown_ = newest.time;
     return {newest.time, newest.positions, newest.telemetry};
   }
   shown_ = wanted(wall);
   std::size_t next = 1;
-  while (next + 1 < moments_.size() && moments_[next]->time < shown_) ++next;
-  const Moment &a = *moments_[next - 1], &b = *moments_[next];
+  while (next + 1 < snapshots_.size() && snapshots_[next]->time < shown_) ++next;
+  const Snapshot &a = *snapshots_[next - 1], &b = *snapshots_[next];
   const auto share = static_cast<float>(std::clamp((shown_ - a.time) / (b.time - a.time), 0.0, 1.0));
   positions_.resize(b.positions.size());
   for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = between(a.positions[i], b.positions[i], share);

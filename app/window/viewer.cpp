@@ -11,7 +11,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/live/live_scene.h"
-#include "app/live/remembered.h"
+#include "app/live/session_settings.h"
 #include "app/scene/cameraman.h"
 #include "app/window/frame_report.h"
 #include "app/window/panels/panels.h"
@@ -114,12 +114,12 @@ Viewer::~Viewer() {
   Messages untold;
   ViewSettings view = scene_.view();
   view.camera = {.mode = camera_.mode()};  // all else is of this scene
-  save_remembered(remembered_path(),
-                  {.view = view,
-                   .generation = panels_.generation(),
-                   .pause_on_explosion = preferences_.pause_on_explosion,
-                   .folder = preferences_.folder},
-                  untold);
+  save_session_settings(session_settings_path(),
+                        {.view = view,
+                         .generation = panels_.generation(),
+                         .pause_on_explosion = preferences_.pause_on_explosion,
+                         .folder = preferences_.folder},
+                        untold);
   if (const WindowSize size = window_.size(); size.width > 0) preferences_.size = size;
   save(preferences_, settings("window.json"));
 }
@@ -128,11 +128,11 @@ Viewer::~Viewer() {
 void Viewer::remember() {
   if (folder_.empty()) return;
   Messages messages;
-  const Remembered last = load_remembered(remembered_path(), messages);
+  const SessionSettings last = load_session_settings(session_settings_path(), messages);
   for (const Message& message : messages.take()) toasts_.show(tone_of(message.severity), message.text);
   if (options_of(options_.view).empty()) scene_.set_view(last.view);
   std::error_code unknown;
-  if (std::filesystem::exists(remembered_path(), unknown)) panels_.generation() = last.generation;
+  if (std::filesystem::exists(session_settings_path(), unknown)) panels_.generation() = last.generation;
   preferences_.pause_on_explosion = last.pause_on_explosion;
 }
 
@@ -251,7 +251,7 @@ void Viewer::draw_picture(const ViewportArea& area, double dt) {
   const float least = 2e-4f * (camera.eye - camera.target).norm();
   const bool turned = (camera.eye - shown_.eye).norm() > least || (camera.target - shown_.target).norm() > least ||
                       camera.field_of_view != shown_.field_of_view;
-  const bool stepped = shown_steps_ != scene_.moment().steps || shown_time_ != live.scene().time;
+  const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   turned_ = turned;
   const bool moving = turned || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraw_ == 0 && !viewport_.coarse()) return;
@@ -259,7 +259,7 @@ void Viewer::draw_picture(const ViewportArea& area, double dt) {
   viewport_.draw(without_text(live.scene()), camera, moving);
   cost_.picture = since(begin);
   shown_ = camera;
-  shown_steps_ = scene_.moment().steps;
+  shown_steps_ = scene_.snapshot().steps;
   shown_time_ = live.scene().time;
   redraw_ = std::max(0, redraw_ - 1);
 }

@@ -148,7 +148,7 @@ void Panels::change_camera(Action action) {
     return;
   }
   const std::optional<RobotId> current = context_.scene.current();
-  camera.follow(current ? context_.scene.moment().robots->index_of(*current) : std::nullopt);
+  camera.follow(current ? context_.scene.snapshot().robots->index_of(*current) : std::nullopt);
 }
 
 void Panels::quit() {

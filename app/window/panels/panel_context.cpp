@@ -38,7 +38,7 @@ std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId
   const std::span<const render::Bounds> bounds = scene.picture().bounds();
   std::vector<render::Bounds> boxes;
   for (const RobotId robot : robots)
-    if (const auto index = scene.moment().robots->index_of(robot);
+    if (const auto index = scene.snapshot().robots->index_of(robot);
         index && *index < bounds.size() && !bounds[*index].empty())
       boxes.push_back(bounds[*index]);
   return boxes;

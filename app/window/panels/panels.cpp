@@ -60,7 +60,7 @@ Panels::Panels(PanelContext& context, Window& window, Viewport& picture)
            {"Measure", "plots over time", [this] { measure_.draw(context_); }},
            {"Video", "videos and pictures", [this] { film_.draw(context_, [this] { screenshot_requested_ = true; }); }},
            {"Stats", "where the computer's time goes", [this] {
-              performance_.draw(context_.scene.moment(), picture_, context_.scene.device_name(),
+              performance_.draw(context_.scene.snapshot(), picture_, context_.scene.device_name(),
                                 window_.gl_context().describe());
             }}}) {}
 

@@ -38,20 +38,20 @@ void PerformancePanel::note(const FrameTimes& cost) {
   if (costs_.size() > kept) costs_.pop_front();
 }
 
-void PerformancePanel::draw(const Moment& moment, const Viewport& picture, const std::string& device,
+void PerformancePanel::draw(const Snapshot& snapshot, const Viewport& picture, const std::string& device,
                             const std::string& card) {
   heading("Physics");
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(device.c_str());
   ImGui::PopTextWrapPos();
   if (begin_figures("physics")) {
-    figure("springs evaluated", short_number(moment.springs_per_second) + "/s",
+    figure("springs evaluated", short_number(snapshot.springs_per_second) + "/s",
            "while it steps; the paper's measure of speed");
-    figure("a step of all robots", milliseconds(moment.step_seconds), "wall time of one time step");
-    figure("reading results", milliseconds(moment.telling_seconds),
+    figure("a step of all robots", milliseconds(snapshot.step_seconds), "wall time of one time step");
+    figure("reading results", milliseconds(snapshot.gathering_seconds),
            "reading positions, and what is coloured by, by the thread that simulates");
-    figure("springs", short_number(static_cast<double>(moment.robots->springs)), "of all robots");
-    figure("masses", short_number(static_cast<double>(moment.positions.size())), "of all robots");
+    figure("springs", short_number(static_cast<double>(snapshot.robots->springs)), "of all robots");
+    figure("masses", short_number(static_cast<double>(snapshot.positions.size())), "of all robots");
     ImGui::EndTable();
   }
   heading("A frame of the window");

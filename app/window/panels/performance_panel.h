@@ -5,7 +5,7 @@
 #include <deque>
 #include <string>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/viewport/viewport.h"
 
@@ -23,7 +23,7 @@ struct FrameTimes {
 class PerformancePanel {
  public:
   void note(const FrameTimes& cost);
-  void draw(const Moment& moment, const Viewport& picture, const std::string& device, const std::string& card);
+  void draw(const Snapshot& snapshot, const Viewport& picture, const std::string& device, const std::string& card);
 
  private:
   std::deque<FrameTimes> costs_;

@@ -89,7 +89,7 @@ void draw_speed(PanelContext& context) {
   context.log.item("speed.fastest");
   tooltip("as fast as it goes (key *)");
   ImGui::SameLine();
-  const double achieved = scene.moment().achieved_speed;
+  const double achieved = scene.snapshot().achieved_speed;
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
   ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
@@ -125,15 +125,15 @@ void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   ImGui::PushFont(large_font());
   ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 -
                        ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
-  ImGui::TextUnformatted(time_text(scene.moment().time, scene.speed() < 0.05 ? 3 : 2).c_str());
+  ImGui::TextUnformatted(time_text(scene.snapshot().time, scene.speed() < 0.05 ? 3 : 2).c_str());
   ImGui::PopFont();
-  tooltip(
-      fmt::format("simulated time, {} steps of {:.4g} ms", scene.moment().steps, 1000 * scene.moment().configuration.dt)
-          .c_str());
+  tooltip(fmt::format("simulated time, {} steps of {:.4g} ms", scene.snapshot().steps,
+                      1000 * scene.snapshot().configuration.dt)
+              .c_str());
   ImGui::SameLine();
   ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
   draw_speed(context);
-  const std::string rate = short_number(scene.moment().springs_per_second) + " springs/s";
+  const std::string rate = short_number(scene.snapshot().springs_per_second) + " springs/s";
   const std::string where =
       fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
   const float width = ImGui::CalcTextSize(where.c_str()).x;

@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kinds[] = {".mp4", ".webm", ".gif"};
 constexpr std::array<PictureSize, 4> sizes{{{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}}};
 
-void progress(const FilmStatus& status, const char* doing) {
-  const bool finishing = status.state == FilmStatus::State::finishing;
+void progress(const VideoStatus& status, const char* doing) {
+  const bool finishing = status.state == VideoStatus::State::finishing;
   const float share = status.total > 0 ? static_cast<float>(status.frames) / static_cast<float>(status.total)
                       : finishing      ? 1.0f
                                        : 0.0f;
@@ -28,11 +28,11 @@ void progress(const FilmStatus& status, const char* doing) {
   if (status.dropped > 0) note(fmt::format("{} frames were left out: the encoder is behind", status.dropped).c_str());
 }
 
-void tell_end(PanelContext& context, const FilmStatus& status) {
-  if (status.state == FilmStatus::State::failed) context.toasts.show(Tone::error, status.error);
-  if (status.state == FilmStatus::State::cancelled)
+void tell_end(PanelContext& context, const VideoStatus& status) {
+  if (status.state == VideoStatus::State::failed) context.toasts.show(Tone::error, status.error);
+  if (status.state == VideoStatus::State::cancelled)
     context.toasts.show(Tone::info, "the video was given up; nothing was kept");
-  if (status.state != FilmStatus::State::done) return;
+  if (status.state != VideoStatus::State::done) return;
   context.toasts.show(Tone::success, "video saved: " + status.file);
   context.log.write("recorded", {{"file", status.file}, {"frames", status.frames}});
 }
@@ -93,7 +93,7 @@ void VideoPanel::draw_group(PanelContext& context) {
     options_.size = sizes[static_cast<std::size_t>(size_)];
     options_.frames_per_second = rate_;
     options_.quality = context.preferences.quality;
-    with_window_camera(context, [&] { group_ = context.scene.film(options_); });
+    with_window_camera(context, [&] { group_ = context.scene.export_video(options_); });
     context.log.write("filming", {{"file", options_.output}});
   }
   context.log.item("video.group");

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "app/live/group_film.h"
+#include "app/live/group_video.h"
 #include "app/live/screen_recording.h"
 #include "app/window/panels/panel_context.h"
 
@@ -39,8 +39,8 @@ class VideoPanel {
   int kind_ = 0;   // of file: mp4, webm, gif
   bool hide_panels_ = false;
 
-  std::unique_ptr<GroupFilm> group_;
-  GroupFilmOptions options_;
+  std::unique_ptr<GroupVideo> group_;
+  GroupVideoOptions options_;
   int size_ = 1;
 };
 

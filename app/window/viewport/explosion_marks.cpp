@@ -19,7 +19,7 @@ struct Line {
   bool sees_a = true, sees_b = true;  // its ends
 };
 
-std::optional<Line> line_of(const BadSpring& spring, const ViewportArea& area, const render::Camera& camera) {
+std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& area, const render::Camera& camera) {
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
   const auto depth = [&](const Eigen::Vector3f& p) { return forward.dot(p - camera.eye) - camera.near; };
   const float depth_a = depth(spring.at_a), depth_b = depth(spring.at_b);
@@ -59,7 +59,7 @@ std::string length_text(float metres) {
 }
 
 std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
-  const BadSpring& spring = *robot.spring;
+  const CulpritSpring& spring = *robot.spring;
   std::vector<std::string> lines{fmt::format("{}: spring {} went first", robot.name, spring.index)};
   if (!all) return lines;
   lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));

@@ -73,7 +73,7 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
     drag_ = Drag::pull;
     if (const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos))) {
       pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
-      scene_.begin_pull(*hit);
+      scene_.begin_perturbation(*hit);
       scene_.select(hit->robot);
       log_.write(
           "pull",
@@ -88,10 +88,10 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
   const float far = std::abs(io.MousePos.x - pressed_at_.x) + std::abs(io.MousePos.y - pressed_at_.y);
   if (far > 4) dragged_ = true;
   if (drag_ == Drag::pull) {
-    if (!scene_.pull()) return;
+    if (!scene_.perturbation()) return;
     const render::Ray ray = ray_at(area, camera, io.MousePos);
     const float along = pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera)));
-    scene_.move_pull(ray.origin + along * ray.direction);
+    scene_.move_perturbation(ray.origin + along * ray.direction);
     return;
   }
   if (!dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
@@ -102,9 +102,9 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
 
 void MouseController::release(const ViewportArea& area, const render::Camera& camera) {
   if (drag_ == Drag::pull) {
-    if (const auto pull = scene_.pull())
+    if (const auto pull = scene_.perturbation())
       log_.write("pulled", {{"force", pull->force}, {"at", {pull->at.x(), pull->at.y(), pull->at.z()}}});
-    scene_.end_pull();
+    scene_.end_perturbation();
   } else if (drag_ == Drag::turn && !dragged_) {
     const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
     const bool add = ImGui::GetIO().KeyShift;
@@ -112,7 +112,7 @@ void MouseController::release(const ViewportArea& area, const render::Camera& ca
     if (hit && add) scene_.toggle_selected(hit->robot);
     if (hit && !add) scene_.select(hit->robot);
     if (hit && follows_) {
-      camera_.follow(scene_.moment().robots->index_of(hit->robot));
+      camera_.follow(scene_.snapshot().robots->index_of(hit->robot));
       const DocumentRobot* robot = scene_.document().find(hit->robot);
       toasts_.show(Tone::info, fmt::format("following {} (G to stop)", robot ? robot->body.name : "it"));
     }
@@ -133,7 +133,7 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
-  if (const auto pull = scene_.pull()) {
+  if (const auto pull = scene_.perturbation()) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 at = on_screen(area, camera, pull->at), target = on_screen(area, camera, pull->target);
     const float text = ImGui::GetFontSize();
@@ -143,7 +143,7 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
     label({target.x + text, target.y - 0.5f * text}, force_text(pull->force));
   }
   if (!hovered_) return;
-  const HitFigures figures = scene_.describe(*hovered_);
+  const HitDetails figures = scene_.describe(*hovered_);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float text_height = ImGui::GetFontSize();
   const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;

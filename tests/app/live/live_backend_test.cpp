@@ -43,12 +43,12 @@ TEST_P(LiveOn, StepsAndEditsGiveWhatTheSimulationGives) {
     simulation.step(70);
     for (const std::size_t robot : {1u, 2u}) {
       const State state = simulation.state(robot);
-      EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(robot - 1), state.positions)) << robot;
-      EXPECT_TRUE(std::ranges::equal(scene.moment().velocities_of(robot - 1), state.velocities)) << robot;
+      EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(robot - 1), state.positions)) << robot;
+      EXPECT_TRUE(std::ranges::equal(scene.snapshot().velocities_of(robot - 1), state.velocities)) << robot;
     }
     scene.undo();
     scene.wait_until_done();
-    EXPECT_EQ(scene.moment().robots->size(), 3u);
+    EXPECT_EQ(scene.snapshot().robots->size(), 3u);
     EXPECT_THAT(scene.take_messages(), testing::IsEmpty());
   }
 }
@@ -59,21 +59,21 @@ TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
   scene.set_speed(unlimited_speed);
   scene.play();
   std::uint64_t pictures = 0;
-  for (std::int64_t seen = -1; scene.moment().steps < 4000 || pictures < 5; std::this_thread::yield()) {
+  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5; std::this_thread::yield()) {
     scene.frame();
-    pictures += scene.moment().steps != seen;
-    seen = scene.moment().steps;
-    if (scene.moment().playing && pictures > 3) {
-      EXPECT_TRUE(scene.moment().velocities.empty()) << "they are not read when nobody asks";
+    pictures += scene.snapshot().steps != seen;
+    seen = scene.snapshot().steps;
+    if (scene.snapshot().playing && pictures > 3) {
+      EXPECT_TRUE(scene.snapshot().velocities.empty()) << "they are not read when nobody asks";
     }
   }
   scene.pause();
   scene.wait_until_done();
   Simulation simulation(options().configuration, random_voxel_robots({}, 5, 4));
-  simulation.step(scene.moment().steps);
+  simulation.step(scene.snapshot().steps);
   for (std::size_t robot = 0; robot < 4; ++robot) {
-    EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(robot), simulation.positions(robot)));
-    EXPECT_FALSE(scene.moment().velocities_of(robot).empty()) << "at rest they are there";
+    EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(robot), simulation.positions(robot)));
+    EXPECT_FALSE(scene.snapshot().velocities_of(robot).empty()) << "at rest they are there";
   }
   // However many samples were left out, those that are there are evenly spaced.
   const Series series = scene.series(test::ids_of(scene)[0]);
@@ -89,8 +89,8 @@ TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
   const RobotId robot = test::ids_of(scene)[1];
   scene.step(50);
   scene.wait_until_done();
-  scene.begin_pull({.robot = robot, .index = 1, .mass = 2}, 30);
-  scene.move_pull(scene.pull()->at + Eigen::Vector3f(0.3f, 0, 0));
+  scene.begin_perturbation({.robot = robot, .index = 1, .mass = 2}, 30);
+  scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.3f, 0, 0));
   scene.step(50);
   scene.wait_until_done();
   Configuration coarse = scene.configuration();
@@ -103,7 +103,8 @@ TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
   ASSERT_NE(found, exploded.end());
   ASSERT_TRUE(found->spring);
   const std::size_t index = found->index;
-  const std::vector<Vec3> frozen(scene.moment().positions_of(index).begin(), scene.moment().positions_of(index).end());
+  const std::vector<Vec3> frozen(scene.snapshot().positions_of(index).begin(),
+                                 scene.snapshot().positions_of(index).end());
   scene.remove({robot});
   scene.wait_until_done();
   scene.undo();
@@ -113,7 +114,7 @@ TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
   ASSERT_NE(again, back.end());
   EXPECT_EQ(again->time, found->time);
   EXPECT_EQ(again->spring->index, found->spring->index);
-  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(again->index), frozen));
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(again->index), frozen));
 }
 
 TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {

@@ -67,17 +67,17 @@ TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
   ASSERT_THAT(exploded, SizeIs(1));
   EXPECT_EQ(exploded[0].name, "pairs");
   EXPECT_EQ(exploded[0].robot, ids_of(scene)[0]);
-  EXPECT_EQ(exploded[0].time, scene.moment().telemetry[0].exploded_at);
+  EXPECT_EQ(exploded[0].time, scene.snapshot().telemetry[0].exploded_at);
   ASSERT_TRUE(exploded[0].spring);
-  const BadSpring& spring = *exploded[0].spring;
+  const CulpritSpring& spring = *exploded[0].spring;
   EXPECT_EQ(spring.index, 2u);
   EXPECT_EQ(spring.a, 5);
   EXPECT_EQ(spring.b, 4);
   EXPECT_EQ(spring.figures.material_name, "brittle");
   EXPECT_GT(spring.figures.length, 16 * length);
   const Eigen::Vector3f offset = scene.picture().offsets()[0];
-  EXPECT_EQ(spring.at_a, Eigen::Vector3f(eigen(scene.moment().positions_of(0)[5]) + offset));
-  EXPECT_EQ(spring.at_b, Eigen::Vector3f(eigen(scene.moment().positions_of(0)[4]) + offset));
+  EXPECT_EQ(spring.at_a, Eigen::Vector3f(eigen(scene.snapshot().positions_of(0)[5]) + offset));
+  EXPECT_EQ(spring.at_b, Eigen::Vector3f(eigen(scene.snapshot().positions_of(0)[4]) + offset));
   EXPECT_FLOAT_EQ((spring.at_b - spring.at_a).norm(), spring.figures.length);
   for (const Eigen::Vector3f& end : {spring.at_a, spring.at_b}) {
     EXPECT_TRUE((end.array() > spring.surroundings.low.array()).all());
@@ -129,7 +129,7 @@ TEST(LiveExplosion, InAChainItIsTheSpringAndThePlaceThatASimpleLoopFinds) {
     ASSERT_TRUE(exploded[0].spring);
     const Blamed blamed = blamed_in(robot, scene.configuration().dt);
     ASSERT_LT(blamed.spring, robot.springs.size());
-    const BadSpring& spring = *exploded[0].spring;
+    const CulpritSpring& spring = *exploded[0].spring;
     EXPECT_EQ(spring.index, blamed.spring) << bad;
     const float expected = static_cast<float>(blamed.positions[spring.b] - blamed.positions[spring.a]);
     EXPECT_NEAR((spring.at_b - spring.at_a).x(), expected, 0.02f * std::abs(expected)) << bad;
@@ -178,7 +178,7 @@ TEST(LiveExplosion, IsThereAtOnceWhenEditsAreTakenBackAndDoesNotPause) {
   scene.undo();
   scene.undo();
   scene.wait_until_done();
-  const auto stops = scene.moment().stops;
+  const auto stops = scene.snapshot().stops;
   const auto after = scene.exploded();
   ASSERT_THAT(after, SizeIs(1)) << "no step was made since";
   EXPECT_EQ(after[0].robot, ids[0]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of the window: robots opened and saved, commands that make the scene again, repro files, what is remembered.
+// Files of the window: robots opened and saved, commands that make the scene again, repro files, what is session
+// settings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "app/live/remembered.h"
+#include "app/live/session_settings.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
@@ -92,7 +93,7 @@ TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
   scene.wait_until_done();
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
-  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(0), random_voxel_robot({}, 5, 0).masses));
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(0), random_voxel_robot({}, 5, 0).masses));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
   EXPECT_EQ(messages[0].severity, Severity::note);
@@ -236,7 +237,7 @@ TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
   const auto report = nlohmann::json::parse(run.output);
   Simulation same(test::on_cpu().configuration, random_voxel_robots({}, 5, 2));
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto positions = scene.moment().positions_of(i), velocities = scene.moment().velocities_of(i);
+    const auto positions = scene.snapshot().positions_of(i), velocities = scene.snapshot().velocities_of(i);
     same.set_state(i, positions, velocities);
     EXPECT_EQ(report["robots"][i]["hash"], hash_text(same.hash(i)));
   }
@@ -245,17 +246,17 @@ TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
 TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   Messages messages;
   const auto file = folder_ / "mercury" / "scene.toml";
-  EXPECT_EQ(load_remembered(file, messages).generation.count, Generation{}.count);
-  Remembered remembered{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
-  remembered.view.color = &color_quantity("force");
-  remembered.view.shown = {.skin = false, .springs = true, .scale_bar = true};
-  remembered.view.theme = render::Theme::light;
-  remembered.view.layout = Layout::race;
-  remembered.generation = {.kind = Generation::Kind::network, .count = 7, .seed = 1234567890123456789u};
-  remembered.generation.network.points = 100;
-  remembered.generation.voxel.air = 0.001;
-  save_remembered(file, remembered, messages);
-  const Remembered back = load_remembered(file, messages);
+  EXPECT_EQ(load_session_settings(file, messages).generation.count, Generation{}.count);
+  SessionSettings settings{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
+  settings.view.color = &color_quantity("force");
+  settings.view.shown = {.skin = false, .springs = true, .scale_bar = true};
+  settings.view.theme = render::Theme::light;
+  settings.view.layout = Layout::race;
+  settings.generation = {.kind = Generation::Kind::network, .count = 7, .seed = 1234567890123456789u};
+  settings.generation.network.points = 100;
+  settings.generation.voxel.air = 0.001;
+  save_session_settings(file, settings, messages);
+  const SessionSettings back = load_session_settings(file, messages);
   EXPECT_THAT(messages.take(), IsEmpty());
   EXPECT_EQ(back.view.color, &color_quantity("force"));
   EXPECT_FALSE(back.view.shown.skin);
@@ -263,17 +264,17 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   EXPECT_EQ(back.view.theme, render::Theme::light);
   EXPECT_EQ(back.view.layout, Layout::race);
   EXPECT_TRUE(back.pause_on_explosion);
-  EXPECT_EQ(back.folder, remembered.folder);
+  EXPECT_EQ(back.folder, settings.folder);
   EXPECT_EQ(back.generation.kind, Generation::Kind::network);
   EXPECT_EQ(back.generation.count, 7u);
-  EXPECT_EQ(back.generation.seed, remembered.generation.seed);
+  EXPECT_EQ(back.generation.seed, settings.generation.seed);
   EXPECT_EQ(back.generation.network.points, 100u);
   EXPECT_EQ(back.generation.voxel.air, 0.001);
   write("mercury/scene.toml", "color = \"tartan\"\n");
-  EXPECT_EQ(load_remembered(file, messages).view.color, &material_color());
+  EXPECT_EQ(load_session_settings(file, messages).view.color, &material_color());
   EXPECT_THAT(messages.take(), SizeIs(1));
   EXPECT_EQ(read("mercury/scene.toml.broken"), "color = \"tartan\"\n");
-  save_remembered(folder_ / "mercury" / "scene.toml.broken" / "x.toml", remembered, messages);
+  save_session_settings(folder_ / "mercury" / "scene.toml.broken" / "x.toml", settings, messages);
   EXPECT_THAT(messages.take(), SizeIs(1));
 }
 

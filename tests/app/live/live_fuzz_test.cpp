@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is asked for in whatever order: nothing throws, nothing hangs, and the moments hold together.
+// Whatever is asked for in whatever order: nothing throws, nothing hangs, and the snapshots hold together.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -128,13 +128,13 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
         scene.reset_materials(some());
         break;
       case 18:
-        if (const auto hit = scene.pick(ray())) scene.begin_pull(*hit, number());
+        if (const auto hit = scene.pick(ray())) scene.begin_perturbation(*hit, number());
         break;
       case 19:
-        scene.move_pull({number(), number(), number()});
+        scene.move_perturbation({number(), number(), number()});
         break;
       case 20:
-        scene.end_pull();
+        scene.end_perturbation();
         break;
       case 21:
         scene.set_hidden(robot(), below(2) == 0);
@@ -155,7 +155,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
         scene.rename(robot(), below(2) ? "eel" : "");
         break;
       case 27:
-        scene.begin_pull({.robot = robot(), .mass = static_cast<std::uint16_t>(below(70000))}, number());
+        scene.begin_perturbation({.robot = robot(), .mass = static_cast<std::uint16_t>(below(70000))}, number());
         break;
       case 28:
         scene.describe({.robot = robot(),
@@ -169,15 +169,15 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
 
   void look() {
     scene.frame(number());
-    const Moment& moment = scene.moment();
-    ASSERT_EQ(moment.telemetry.size(), moment.robots->size());
-    ASSERT_EQ(moment.positions.size(), moment.robots->mass_offsets.back());
-    ASSERT_EQ(scene.picture().offsets().size(), moment.robots->size());
-    ASSERT_EQ(scene.picture().scene().placements.size(), moment.robots->size());
-    if (!moment.details.values.mass.empty()) {
-      ASSERT_EQ(moment.details.values.mass.size(), moment.positions.size());
+    const Snapshot& snapshot = scene.snapshot();
+    ASSERT_EQ(snapshot.telemetry.size(), snapshot.robots->size());
+    ASSERT_EQ(snapshot.positions.size(), snapshot.robots->mass_offsets.back());
+    ASSERT_EQ(scene.picture().offsets().size(), snapshot.robots->size());
+    ASSERT_EQ(scene.picture().scene().placements.size(), snapshot.robots->size());
+    if (!snapshot.details.values.mass.empty()) {
+      ASSERT_EQ(snapshot.details.values.mass.size(), snapshot.positions.size());
     }
-    scene.pull();
+    scene.perturbation();
     scene.ranking();
     scene.csv(test::ids_of(scene));
     scene.command();
@@ -194,10 +194,10 @@ TEST_P(LiveFuzz, AnythingInAnyOrder) {
   scene.pause();
   scene.wait_until_done();
   // What is left is the scene that was asked for.
-  ASSERT_EQ(scene.moment().robots->size(), scene.document().robots.size());
+  ASSERT_EQ(scene.snapshot().robots->size(), scene.document().robots.size());
   for (std::size_t i = 0; i < scene.document().robots.size(); ++i)
-    EXPECT_EQ(scene.moment().robots->robots[i].id, scene.document().robots[i].body.id);
-  EXPECT_EQ(scene.moment().configuration, scene.configuration());
+    EXPECT_EQ(scene.snapshot().robots->robots[i].id, scene.document().robots[i].body.id);
+  EXPECT_EQ(scene.snapshot().configuration, scene.configuration());
 }
 
 }  // namespace

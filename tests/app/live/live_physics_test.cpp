@@ -50,11 +50,11 @@ TEST(LivePhysics, StepsGiveWhatTheSimulationAloneGives) {
     physics.wait_until_done();
     Simulation simulation = alone(robots, on_cpu(environment));
     simulation.step(637);
-    const auto moment = physics.newest();
-    EXPECT_EQ(moment->steps, 637);
-    EXPECT_EQ(moment->time, simulation.time());
-    EXPECT_EQ(moment->positions, positions_of(simulation));
-    EXPECT_EQ(moment->telemetry[1].kinetic_energy, simulation.telemetry(1).kinetic_energy);
+    const auto snapshot = physics.newest();
+    EXPECT_EQ(snapshot->steps, 637);
+    EXPECT_EQ(snapshot->time, simulation.time());
+    EXPECT_EQ(snapshot->positions, positions_of(simulation));
+    EXPECT_EQ(snapshot->telemetry[1].kinetic_energy, simulation.telemetry(1).kinetic_energy);
     EXPECT_TRUE(messages.take().empty());
   }
 }
@@ -69,11 +69,11 @@ TEST(LivePhysics, WhatPlayedUntilPausedIsWhatSoManyStepsGive) {
   while (physics.newest()->steps < 300) std::this_thread::yield();
   physics.pause();
   physics.wait_until_done();
-  const auto moment = physics.newest();
-  EXPECT_FALSE(moment->playing);
+  const auto snapshot = physics.newest();
+  EXPECT_FALSE(snapshot->playing);
   Simulation simulation = alone(robots, on_cpu());
-  simulation.step(moment->steps);
-  EXPECT_EQ(moment->positions, positions_of(simulation));
+  simulation.step(snapshot->steps);
+  EXPECT_EQ(snapshot->positions, positions_of(simulation));
 }
 
 TEST(LivePhysics, ResetGoesBackToRestAtTimeZero) {
@@ -103,12 +103,12 @@ TEST(LivePhysics, RobotsThatStayGoOnWhenOthersComeAndGo) {
   physics.set_scene({robots[2], robots[1]}, on_cpu());
   physics.step(60);
   physics.wait_until_done();
-  const auto moment = physics.newest();
+  const auto snapshot = physics.newest();
   Simulation simulation = alone(robots, on_cpu());
   simulation.step(100);
   const auto expected = simulation.positions(1);
-  EXPECT_TRUE(std::ranges::equal(moment->positions_of(1), expected));
-  EXPECT_EQ(moment->robots->robots[0].id, robots[2].id);
+  EXPECT_TRUE(std::ranges::equal(snapshot->positions_of(1), expected));
+  EXPECT_EQ(snapshot->robots->robots[0].id, robots[2].id);
   // The first one comes back as it left, at step 40.
   physics.set_scene(robots, on_cpu());
   physics.wait_until_done();
@@ -151,13 +151,13 @@ TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
   physics.wait_until_done();
   while (physics.newest()->stops == 0) std::this_thread::yield();
   physics.wait_until_done();
-  const auto moment = physics.newest();
-  EXPECT_FALSE(moment->playing);
-  EXPECT_TRUE(moment->telemetry[0].exploded);
+  const auto snapshot = physics.newest();
+  EXPECT_FALSE(snapshot->playing);
+  EXPECT_TRUE(snapshot->telemetry[0].exploded);
   const auto explosions = physics.take_explosions();
   ASSERT_EQ(explosions.size(), 1u);
   EXPECT_EQ(explosions[0].robot, robots[0].id);
-  EXPECT_EQ(explosions[0].time, moment->telemetry[0].exploded_at);
+  EXPECT_EQ(explosions[0].time, snapshot->telemetry[0].exploded_at);
   EXPECT_LT(explosions[0].culprit_spring, robots[0].robot->springs.size());
   physics.step(5);
   physics.wait_until_done();

@@ -38,13 +38,13 @@ TEST(LivePicking, MeetsTheFaceThatBruteForceFinds) {
   test::make_robots(scene, 6);
   scene.step(200);
   scene.wait_until_done();
-  const Moment& moment = scene.moment();
+  const Snapshot& snapshot = scene.snapshot();
   Random random(1);
   int met = 0;
   for (int shot = 0; shot < 400; ++shot) {
-    const std::size_t aim = random.below(moment.robots->size());
-    const Vector3f target =
-        eigen(moment.positions_of(aim)[random.below(moment.positions_of(aim).size())]) + scene.picture().offsets()[aim];
+    const std::size_t aim = random.below(snapshot.robots->size());
+    const Vector3f target = eigen(snapshot.positions_of(aim)[random.below(snapshot.positions_of(aim).size())]) +
+                            scene.picture().offsets()[aim];
     render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)),
                                static_cast<float>(random.uniform(-5, 5))}};
     const Vector3f jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
@@ -53,10 +53,10 @@ TEST(LivePicking, MeetsTheFaceThatBruteForceFinds) {
     double nearest = INFINITY, second = INFINITY;
     std::size_t robot = 0;
     std::uint32_t face = 0;
-    for (std::size_t i = 0; i < moment.robots->size(); ++i) {
-      const auto& faces = moment.robots->robots[i].robot->faces;
+    for (std::size_t i = 0; i < snapshot.robots->size(); ++i) {
+      const auto& faces = snapshot.robots->robots[i].robot->faces;
       const auto place = [&](std::uint16_t mass) -> Vector3d {
-        return (eigen(moment.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>();
+        return (eigen(snapshot.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>();
       };
       for (std::uint32_t f = 0; f < faces.size(); ++f) {
         const auto t = crossing(ray, place(faces[f].a), place(faces[f].b), place(faces[f].c));
@@ -101,13 +101,13 @@ TEST(LivePicking, MeetsSpringsWithinTheRadiusAndTellsTheirForce) {
   const auto from_above = [&](float x, float y) {
     return render::Ray{.origin = offset + Vector3f(x, y, 2), .direction = {0, 0, -1}};
   };
-  const auto hit = pick(scene.moment(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
+  const auto hit = pick(scene.snapshot(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->spring, 0u);
   EXPECT_EQ(hit->mass, 1);
   EXPECT_NEAR(hit->distance, 2, 1e-5f);
-  EXPECT_FALSE(pick(scene.moment(), scene.picture().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
-  const HitFigures figures = scene.describe(*hit);
+  EXPECT_FALSE(pick(scene.snapshot(), scene.picture().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
+  const HitDetails figures = scene.describe(*hit);
   ASSERT_TRUE(figures.spring);
   EXPECT_EQ(figures.robot, "pair");
   EXPECT_EQ(figures.spring->material_name, "tissue");

@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "app/live/histories.h"
+#include "app/live/replay_log.h"
 #include "app/recording/repro.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
@@ -30,10 +30,10 @@ class LiveRepro : public test::FolderTest {
       scene.wait_until_done();
     };
     step(40);
-    const std::size_t index = *scene.moment().robots->index_of(robot);
-    scene.begin_pull({.robot = robot, .index = index, .mass = 3}, 40);
+    const std::size_t index = *scene.snapshot().robots->index_of(robot);
+    scene.begin_perturbation({.robot = robot, .index = index, .mass = 3}, 40);
     for (int i = 0; i < 5; ++i) {
-      scene.move_pull(scene.pull()->at + Eigen::Vector3f(0.1f * static_cast<float>(i), 0.2f, 0));
+      scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.1f * static_cast<float>(i), 0.2f, 0));
       step(7);
     }
     Material muscle = scene.materials(robot)[2];
@@ -47,7 +47,7 @@ class LiveRepro : public test::FolderTest {
     configuration.dt = 7e-4;
     scene.set_configuration(configuration);
     step(50);
-    scene.set_pull_stiffness(90);
+    scene.set_perturbation_stiffness(90);
     configuration.dt = 0.3;
     scene.set_configuration(configuration);
     step(300);
@@ -59,10 +59,10 @@ class LiveRepro : public test::FolderTest {
     return document;
   }
   static std::string hash_of(const LiveScene& scene, RobotId robot) {
-    const std::size_t index = *scene.moment().robots->index_of(robot);
+    const std::size_t index = *scene.snapshot().robots->index_of(robot);
     Simulation same({.device = {.kind = DeviceKind::cpu}},
-                    std::span(scene.moment().robots->robots[index].robot.get(), 1));
-    same.set_state(0, scene.moment().positions_of(index), scene.moment().velocities_of(index));
+                    std::span(scene.snapshot().robots->robots[index].robot.get(), 1));
+    same.set_state(0, scene.snapshot().positions_of(index), scene.snapshot().velocities_of(index));
     std::ostringstream text;
     text << std::hex << std::setw(16) << std::setfill('0') << same.hash(0);
     return text.str();
@@ -102,9 +102,9 @@ TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
     again.open({file});
     again.wait_until_done();
     EXPECT_EQ(test::names_of(again), std::vector<std::string>{"voxel-9-0"});
-    EXPECT_NEAR(again.moment().time, 0.025, 1e-12);
+    EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
     for (int round = 0; round < 2; ++round) {
-      again.step(scene.moment().steps - again.moment().steps);
+      again.step(scene.snapshot().steps - again.snapshot().steps);
       again.wait_until_done();
       ASSERT_THAT(again.exploded(), SizeIs(1));
       EXPECT_EQ(again.exploded()[0].time, it->time);
@@ -115,7 +115,7 @@ TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
       EXPECT_TRUE(content("again/voxel-9-0.repro") == content(folder + "/voxel-9-0.repro"));
       again.reset();
       again.wait_until_done();
-      EXPECT_NEAR(again.moment().time, 0.025, 1e-12);
+      EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
       EXPECT_THAT(again.exploded(), IsEmpty());
     }
   }
@@ -134,7 +134,7 @@ TEST_F(LiveRepro, AChangeInTheWindowEndsTheReplay) {
   again.step(400);
   again.wait_until_done();
   EXPECT_THAT(again.exploded(), IsEmpty()) << "the time step stays what it was";
-  EXPECT_EQ(again.moment().configuration.dt, 1e-3);
+  EXPECT_EQ(again.snapshot().configuration.dt, 1e-3);
   EXPECT_EQ(again.save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
   // With other files it cannot be opened, and they can.
   save_robot(path("one.json"), random_voxel_robot({}, 1, 0));
@@ -152,20 +152,20 @@ TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
   const Configuration configuration = test::on_cpu().configuration;
   Simulation simulation(configuration, std::span(robot.get(), 1));
   LiveRobots robots{.robots = {{.id = 4, .name = "it", .robot = robot}}, .mass_offsets = {0, robot->masses.size()}};
-  Histories histories;
-  histories.follow(simulation, robots, {});
+  ReplayLog replay_log;
+  replay_log.follow(simulation, robots, {});
   for (int i = 0; i < 5; ++i) {
     simulation.step(100);
     const std::vector<LivePerturbation> perturbations{
         {.robot = 4, .mass = 1, .target = {0.1f * static_cast<float>(i), 0, 1}, .stiffness = 20}};
     simulation.set_perturbations(
         std::vector<Perturbation>{{.mass = 1, .target = perturbations[0].target, .stiffness = 20}});
-    histories.follow(simulation, robots, perturbations);
+    replay_log.follow(simulation, robots, perturbations);
     simulation.step(100);
-    histories.stepped(6, simulation, robots);
+    replay_log.stepped(6, simulation, robots);
   }
   simulation.step(50);
-  const Repro repro = histories.repro(simulation, robots, 0, simulation.telemetry(0))();
+  const Repro repro = replay_log.repro(simulation, robots, 0, simulation.telemetry(0))();
   EXPECT_EQ(repro.clock.step, 800);
   EXPECT_THAT(repro.changes, SizeIs(1));
   const Repro read = parse_repro(serialize_repro(repro));

@@ -26,7 +26,7 @@ TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
   make_robots(scene, 3);
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-5-2"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
-  EXPECT_EQ(scene.moment().robots->size(), 3u);
+  EXPECT_EQ(scene.snapshot().robots->size(), 3u);
   EXPECT_TRUE(scene.entries()[0].unsaved);
   EXPECT_THAT(scene.take_messages(), IsEmpty());
 }
@@ -36,16 +36,16 @@ TEST(LiveScene, UndoAndRedoGiveBackWhatWasThereBitForBit) {
   make_robots(scene, 3);
   scene.step(50);
   scene.wait_until_done();
-  const auto before = scene.hold_moment();
+  const auto before = scene.hold_snapshot();
   scene.remove({ids_of(scene)[1]});
   scene.wait_until_done();
-  EXPECT_EQ(scene.moment().robots->size(), 2u);
+  EXPECT_EQ(scene.snapshot().robots->size(), 2u);
   EXPECT_EQ(scene.undo_name(), "remove 1 robot");
   scene.undo();
   scene.wait_until_done();
-  EXPECT_EQ(scene.moment().positions, before->positions);
-  EXPECT_EQ(scene.moment().velocities, before->velocities);
-  EXPECT_EQ(scene.moment().time, before->time);
+  EXPECT_EQ(scene.snapshot().positions, before->positions);
+  EXPECT_EQ(scene.snapshot().velocities, before->velocities);
+  EXPECT_EQ(scene.snapshot().time, before->time);
   scene.redo();
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-2"));
@@ -66,8 +66,8 @@ TEST(LiveScene, ADuplicateStartsAtRestWithANameOfItsOwn) {
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-0-2"));
   const Robot& robot = *scene.document().robots[0].body.robot;
-  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(1), robot.masses));
-  EXPECT_FALSE(std::ranges::equal(scene.moment().positions_of(0), robot.masses));
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(1), robot.masses));
+  EXPECT_FALSE(std::ranges::equal(scene.snapshot().positions_of(0), robot.masses));
 }
 
 TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
@@ -139,7 +139,7 @@ TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
   configuration.solver = Solver::xpbd;
   EXPECT_TRUE(scene.set_configuration(configuration));
   scene.wait_until_done();
-  EXPECT_EQ(scene.moment().configuration, configuration);
+  EXPECT_EQ(scene.snapshot().configuration, configuration);
   scene.undo();
   EXPECT_EQ(scene.configuration().solver, Solver::force);
   EXPECT_DOUBLE_EQ(scene.configuration().damping, 1.0);
@@ -168,8 +168,8 @@ TEST(LiveScene, TunedMaterialsMoveTheRobotAsTheSimulationSays) {
   const auto table = scene.materials(ids[0]);
   for (std::size_t id = 1; id < table.size(); ++id) simulation.set_material(0, static_cast<MaterialId>(id), table[id]);
   simulation.step(100);
-  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(0), simulation.positions(0)));
-  EXPECT_TRUE(std::ranges::equal(scene.moment().positions_of(1), simulation.positions(1)));
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(0), simulation.positions(0)));
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(1), simulation.positions(1)));
   EXPECT_FALSE(scene.set_material(ids, 1, {.stiffness = -1}));
   EXPECT_FALSE(scene.scale_materials(ids, {.stiffness = NAN}));
   EXPECT_THAT(scene.take_messages(), SizeIs(2));
@@ -220,23 +220,23 @@ TEST(LiveScene, APullShowsTheForceOfItsSpring) {
   const RobotId id = ids_of(scene)[last];
   const Eigen::Vector3f offset = scene.picture().offsets()[last];
   EXPECT_GT(offset.norm(), 0.1f) << "the robots stand side by side";
-  scene.begin_pull({.robot = id, .index = last, .mass = 2}, 30);
-  ASSERT_TRUE(scene.pull());
-  EXPECT_EQ(scene.pull()->force, 0);
-  const Eigen::Vector3f target = scene.pull()->at + Eigen::Vector3f(0, 0.3f, 0.4f);
-  scene.move_pull(target);
-  EXPECT_NEAR(scene.pull()->force, 30 * 0.5f, 1e-4f);
-  EXPECT_LT((scene.pull()->target - target).norm(), 1e-6f);
+  scene.begin_perturbation({.robot = id, .index = last, .mass = 2}, 30);
+  ASSERT_TRUE(scene.perturbation());
+  EXPECT_EQ(scene.perturbation()->force, 0);
+  const Eigen::Vector3f target = scene.perturbation()->at + Eigen::Vector3f(0, 0.3f, 0.4f);
+  scene.move_perturbation(target);
+  EXPECT_NEAR(scene.perturbation()->force, 30 * 0.5f, 1e-4f);
+  EXPECT_LT((scene.perturbation()->target - target).norm(), 1e-6f);
   // Momentum after n steps is what the hand and nothing else gave: water takes some, so little time is looked at.
   scene.step(2);
   scene.wait_until_done();
   Vec3 momentum;
-  for (const Vec3 v : scene.moment().velocities_of(last)) momentum += v;
+  for (const Vec3 v : scene.snapshot().velocities_of(last)) momentum += v;
   EXPECT_NEAR(momentum.y, 2e-3f * 30 * 0.3f, 1e-3f);
   EXPECT_NEAR(momentum.z, 2e-3f * 30 * 0.4f, 1e-3f);
   scene.remove({id});
   scene.frame();
-  EXPECT_FALSE(scene.pull());
+  EXPECT_FALSE(scene.perturbation());
 }
 
 TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
@@ -252,8 +252,8 @@ TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
   scene.wait_until_done();
   EXPECT_EQ(scene.picture().bodies_revision(), revision);
   const render::Scene& drawn = scene.picture().scene();
-  EXPECT_EQ(drawn.positions.size(), 3 * scene.moment().positions.size());
-  EXPECT_EQ(drawn.mass_values.size(), scene.moment().positions.size());
+  EXPECT_EQ(drawn.positions.size(), 3 * scene.snapshot().positions.size());
+  EXPECT_EQ(drawn.mass_values.size(), scene.snapshot().positions.size());
   EXPECT_FALSE(drawn.arrows.empty());
   ASSERT_TRUE(drawn.legend);
   EXPECT_EQ(drawn.legend->title, "strain");
@@ -277,7 +277,7 @@ TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
     return drawn.looks[drawn.placements[robot].first_look + id].activation;
   };
   const auto expected = [&](const Material& material) {
-    return -std::sin(static_cast<double>(material.frequency) * scene.moment().time +
+    return -std::sin(static_cast<double>(material.frequency) * scene.snapshot().time +
                      static_cast<double>(material.phase));
   };
   scene.scale_materials({ids[7], ids[110]}, {.frequency = 3});
@@ -307,16 +307,16 @@ TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
 TEST(LiveScene, AnEditMakesNoShapesOfRobotsThatWereThere) {
   LiveScene scene(on_cpu());
   make_robots(scene, 3);
-  const auto before = scene.hold_moment();
+  const auto before = scene.hold_snapshot();
   scene.duplicate({ids_of(scene)[1]});
   scene.remove({ids_of(scene)[0]});
   scene.wait_until_done();
-  const LiveRobots& after = *scene.moment().robots;
+  const LiveRobots& after = *scene.snapshot().robots;
   ASSERT_EQ(after.shapes.size(), 3u);
   EXPECT_EQ(after.shapes[0], before->robots->shapes[1]);
   EXPECT_EQ(after.shapes[1], before->robots->shapes[2]);
   EXPECT_EQ(after.shapes[2], before->robots->shapes[1]) << "the copy's shape is its original's";
-  EXPECT_EQ(after.bodies->mass_offsets.back(), scene.moment().positions.size());
+  EXPECT_EQ(after.bodies->mass_offsets.back(), scene.snapshot().positions.size());
 }
 
 TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {

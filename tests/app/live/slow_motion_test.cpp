@@ -10,20 +10,20 @@ namespace mercury {
 namespace {
 
 // One mass that moves at 2 m/s, after so many steps; due at its step's time on the wall.
-std::shared_ptr<const Moment> moment_at(std::int64_t steps, double speed, bool playing = true,
-                                        std::uint64_t resets = 0) {
+std::shared_ptr<const Snapshot> snapshot_at(std::int64_t steps, double speed, bool playing = true,
+                                            std::uint64_t resets = 0) {
   static const auto robots = std::make_shared<const LiveRobots>(LiveRobots{.revision = 1, .mass_offsets = {0, 1}});
-  auto moment = std::make_shared<Moment>();
-  moment->robots = robots;
-  moment->steps = steps;
-  moment->resets = resets;
-  moment->time = static_cast<double>(steps) * moment->configuration.dt;
-  moment->positions = {{static_cast<float>(2 * moment->time), 0, 1}};
-  moment->telemetry = {{.center_of_mass = moment->positions[0]}};
-  moment->playing = playing;
-  moment->speed = speed;
-  moment->due_at = moment->time / speed;
-  return moment;
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->robots = robots;
+  snapshot->steps = steps;
+  snapshot->resets = resets;
+  snapshot->time = static_cast<double>(steps) * snapshot->configuration.dt;
+  snapshot->positions = {{static_cast<float>(2 * snapshot->time), 0, 1}};
+  snapshot->telemetry = {{.center_of_mass = snapshot->positions[0]}};
+  snapshot->playing = playing;
+  snapshot->speed = speed;
+  snapshot->due_at = snapshot->time / speed;
+  return snapshot;
 }
 
 TEST(SlowMotion, MovesEvenlyHoweverStepsFallIntoPictures) {
@@ -31,14 +31,14 @@ TEST(SlowMotion, MovesEvenlyHoweverStepsFallIntoPictures) {
   for (const double speed : {0.001, 0.05, 0.07, 0.2}) {
     SlowMotion motion;
     const double picture = 1 / 60.0, period = 0.001 / speed;
-    motion.take(moment_at(0, speed));
+    motion.take(snapshot_at(0, speed));
     double last = 0;
     std::int64_t told = 0;
     int pictures = 0;
     for (double wall = 0; wall < std::max(1.0, 12 * period); wall += picture) {
       // Physics tells of the newest step one picture late.
       const auto steps = static_cast<std::int64_t>(std::floor(std::max(0.0, wall - picture) / period + 1e-9));
-      if (steps > told) motion.take(moment_at(told = steps, speed));
+      if (steps > told) motion.take(snapshot_at(told = steps, speed));
       const SlowMotion::Shown shown = motion.at(wall);
       const double expected = std::max(0.0, (wall - period - SlowMotion::allowance) * speed);
       EXPECT_NEAR(shown.time, expected, 1e-9) << speed << " at " << wall;
@@ -55,27 +55,27 @@ TEST(SlowMotion, MovesEvenlyHoweverStepsFallIntoPictures) {
 
 TEST(SlowMotion, ShowsTheStateItselfAtRestAndAtSpeed) {
   SlowMotion motion;
-  motion.take(moment_at(3, 0.001));
-  motion.take(moment_at(4, 0.001));
+  motion.take(snapshot_at(3, 0.001));
+  motion.take(snapshot_at(4, 0.001));
   EXPECT_LT(motion.at(4.0).time, 0.004);
-  motion.take(moment_at(4, 0.001, false));  // paused
+  motion.take(snapshot_at(4, 0.001, false));  // paused
   EXPECT_EQ(motion.at(4.1).time, 0.004);
   EXPECT_EQ(motion.at(4.1).positions[0].x, 0.008f);
-  motion.take(moment_at(900, 1));
-  motion.take(moment_at(916, 1));
+  motion.take(snapshot_at(900, 1));
+  motion.take(snapshot_at(916, 1));
   EXPECT_EQ(motion.at(0.917).time, 0.916) << "a thousand steps a second are smooth by themselves";
 }
 
 TEST(SlowMotion, NeverRunsBackwardsButAtAReset) {
   SlowMotion motion;
-  motion.take(moment_at(10, 0.001));
-  motion.take(moment_at(11, 0.001));
+  motion.take(snapshot_at(10, 0.001));
+  motion.take(snapshot_at(11, 0.001));
   const double before = motion.at(12.0).time;
   EXPECT_GT(before, 0.0105);
   // Faster, which is further behind.
-  motion.take(moment_at(12, 0.2));
-  EXPECT_GE(motion.at(moment_at(12, 0.2)->due_at).time, before);
-  motion.take(moment_at(0, 0.2, true, 1));
+  motion.take(snapshot_at(12, 0.2));
+  EXPECT_GE(motion.at(snapshot_at(12, 0.2)->due_at).time, before);
+  motion.take(snapshot_at(0, 0.2, true, 1));
   EXPECT_EQ(motion.at(100).time, 0);
 }
 

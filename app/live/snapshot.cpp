@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 
 #include <algorithm>
 
@@ -26,8 +26,8 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
 }
 
-std::span<const Vec3> Moment::positions_of(std::size_t robot) const { return part(positions, *robots, robot); }
-std::span<const Vec3> Moment::velocities_of(std::size_t robot) const {
+std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const { return part(positions, *robots, robot); }
+std::span<const Vec3> Snapshot::velocities_of(std::size_t robot) const {
   return velocities.empty() ? std::span<const Vec3>{} : part(velocities, *robots, robot);
 }
 

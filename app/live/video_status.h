@@ -7,7 +7,7 @@
 
 namespace mercury {
 
-struct FilmStatus {
+struct VideoStatus {
   enum class State { running, finishing, done, cancelled, failed } state = State::running;
   std::int64_t frames = 0;   // written
   std::int64_t total = 0;    // to be written; 0 = open end

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/histories.h"
+#include "app/live/replay_log.h"
 
 #include <algorithm>
 #include <limits>
@@ -24,7 +24,7 @@ bool same(const Perturbation& a, const Perturbation& b) {
 
 }  // namespace
 
-void Histories::restart() {
+void ReplayLog::restart() {
   tracks_.clear();
   events_.clear();
   first_event_ = sealed_ = 0;
@@ -33,7 +33,7 @@ void Histories::restart() {
 }
 
 // As a slider or a hand makes them, many changes of one kind come between two steps: the last one counts.
-void Histories::add(Event event) {
+void ReplayLog::add(Event event) {
   copied_.reset();
   if (!events_.empty() && first_event_ + events_.size() > sealed_) {
     Event& last = events_.back();
@@ -49,7 +49,7 @@ void Histories::add(Event event) {
   events_.push_back(std::move(event));
 }
 
-void Histories::follow(const Simulation& simulation, const LiveRobots& robots,
+void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
                        const std::vector<LivePerturbation>& perturbations) {
   const std::int64_t step = simulation.steps();
   if (!tracks_.empty() && simulation.configuration() != configuration_)
@@ -81,7 +81,7 @@ void Histories::follow(const Simulation& simulation, const LiveRobots& robots,
   forget_events();
 }
 
-std::shared_ptr<const Histories::Start> Histories::start(const Simulation& simulation, std::size_t index,
+std::shared_ptr<const ReplayLog::Start> ReplayLog::start(const Simulation& simulation, std::size_t index,
                                                          const Materials& materials) const {
   return std::make_shared<const Start>(Start{.clock = simulation.clock(),
                                              .configuration = simulation.configuration(),
@@ -91,7 +91,7 @@ std::shared_ptr<const Histories::Start> Histories::start(const Simulation& simul
                                              .next = first_event_ + events_.size()});
 }
 
-void Histories::stepped(double seconds, const Simulation& simulation, const LiveRobots& robots) {
+void ReplayLog::stepped(double seconds, const Simulation& simulation, const LiveRobots& robots) {
   since_ += seconds;
   if (since_ < period || simulation.mass_count() > most_masses) return;
   since_ = 0;
@@ -105,7 +105,7 @@ void Histories::stepped(double seconds, const Simulation& simulation, const Live
   forget_events();
 }
 
-void Histories::forget_events() {
+void ReplayLog::forget_events() {
   std::uint64_t needed = first_event_ + events_.size();
   for (const auto& [id, track] : tracks_) needed = std::min(needed, track.older->next);
   if (needed > first_event_) copied_.reset();
@@ -113,7 +113,7 @@ void Histories::forget_events() {
   first_event_ = needed;
 }
 
-std::function<Repro()> Histories::repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
+std::function<Repro()> ReplayLog::repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
                                         const Telemetry& telemetry) {
   const LiveRobot& robot = robots.robots[index];
   const auto found = tracks_.find(robot.id);
@@ -124,7 +124,7 @@ std::function<Repro()> Histories::repro(const Simulation& simulation, const Live
                           simulation.device_name()}] { return record.repro(); };
 }
 
-Repro Histories::Record::repro() const {
+Repro ReplayLog::Record::repro() const {
   LiveRobot then = robot;
   then.materials = start->materials;
   Repro repro{.robot = whole_robot(then),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/remembered.h"
+#include "app/live/session_settings.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -37,18 +37,18 @@ class RememberedOptions {
     add_text(scene, "--folder", folder_, "", "PATH");
   }
 
-  Remembered read(const fs::path& path) {
+  SessionSettings read(const fs::path& path) {
     const ConfigFile file(path.string(), program_, *program_.get_subcommand("scene"), {});
     std::vector<std::string> arguments{"scene"};
     arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
     program_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    Remembered remembered{.view = view_.settings(), .pause_on_explosion = pause_, .folder = folder_};
-    remembered.generation.kind = kind_ == "nn" ? Generation::Kind::network : Generation::Kind::voxel;
-    remembered.generation.count = std::clamp<std::uint64_t>(count_, 1, 100'000);
-    remembered.generation.seed = seed_;
-    remembered.generation.voxel = voxel_.chosen();
-    remembered.generation.network = network_.chosen();
-    return remembered;
+    SessionSettings settings{.view = view_.settings(), .pause_on_explosion = pause_, .folder = folder_};
+    settings.generation.kind = kind_ == "nn" ? Generation::Kind::network : Generation::Kind::voxel;
+    settings.generation.count = std::clamp<std::uint64_t>(count_, 1, 100'000);
+    settings.generation.seed = seed_;
+    settings.generation.voxel = voxel_.chosen();
+    settings.generation.network = network_.chosen();
+    return settings;
   }
 
  private:
@@ -63,14 +63,14 @@ class RememberedOptions {
 
 }  // namespace
 
-fs::path remembered_path() {
+fs::path session_settings_path() {
   if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder == '/')
     return fs::path(folder) / "mercury/scene.toml";
   if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".config/mercury/scene.toml";
   return {};
 }
 
-Remembered load_remembered(const fs::path& path, Messages& messages) {
+SessionSettings load_session_settings(const fs::path& path, Messages& messages) {
   std::error_code error;
   if (path.empty() || !fs::exists(path, error)) return {};
   try {
@@ -84,17 +84,17 @@ Remembered load_remembered(const fs::path& path, Messages& messages) {
   }
 }
 
-void save_remembered(const fs::path& path, const Remembered& remembered, Messages& messages) {
+void save_session_settings(const fs::path& path, const SessionSettings& settings, Messages& messages) {
   if (path.empty()) return;
-  OptionValues options = options_of(remembered.view);
-  for (const auto& more : {options_of(remembered.generation.voxel), options_of(remembered.generation.network)})
+  OptionValues options = options_of(settings.view);
+  for (const auto& more : {options_of(settings.generation.voxel), options_of(settings.generation.network)})
     options.insert(options.end(), more.begin(), more.end());
-  const Generation& generation = remembered.generation;
+  const Generation& generation = settings.generation;
   options.emplace_back("--kind", generation.kind == Generation::Kind::voxel ? "voxel" : "nn");
   options.emplace_back("--count", fmt::to_string(generation.count));
   options.emplace_back("--seed", fmt::to_string(generation.seed));
-  if (remembered.pause_on_explosion) options.emplace_back("--pause-on-explosion", "");
-  if (!remembered.folder.empty()) options.emplace_back("--folder", remembered.folder);
+  if (settings.pause_on_explosion) options.emplace_back("--pause-on-explosion", "");
+  if (!settings.folder.empty()) options.emplace_back("--folder", settings.folder);
   const SaveResult result = save_files({{path, toml_of(options, "What mercury view remembers.")}}, true);
   if (!result.ok()) messages.add(Severity::warning, "settings: " + result.message);
 }

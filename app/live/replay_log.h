@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
 #include "app/recording/repro.h"
 
 namespace mercury {
 
 // Keeps two states a robot from which it can be started again, the older one some seconds of stepping ago, and all that
 // was changed since. Nothing is ever left out: where states would take too much memory, the robot's first one stays.
-class Histories {
+class ReplayLog {
  public:
   // Time began anew.
   void restart();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/group_film.h"
+#include "app/live/group_video.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace mercury {
 namespace {
 
-FilmTiming timing_of(const GroupFilmOptions& options) {
+FilmTiming timing_of(const GroupVideoOptions& options) {
   const double interval = options.speed / options.frames_per_second;
   if (!(std::isfinite(options.seconds) && options.seconds > 0))
     throw InputError("seconds", "give a finite number above 0");
@@ -42,17 +42,17 @@ Simulation simulation_of(const std::vector<LiveRobot>& live, const Configuration
 
 }  // namespace
 
-struct GroupFilm::Parts {
+struct GroupVideo::Parts {
   std::vector<LiveRobot> robots;
   Configuration configuration;
   ViewSettings view;
-  GroupFilmOptions options;
+  GroupVideoOptions options;
   FilmControl control;
   mutable std::mutex mutex;
-  FilmStatus told;
+  VideoStatus told;
   std::thread thread;
 
-  void tell(FilmStatus::State state, const std::string& error = {}) {
+  void tell(VideoStatus::State state, const std::string& error = {}) {
     const std::lock_guard lock(mutex);
     told.state = state;
     told.error = error;
@@ -61,9 +61,9 @@ struct GroupFilm::Parts {
   // The unfinished file of a film that was cancelled is gone when that is told.
   void make() {
     try {
-      tell(write() ? FilmStatus::State::done : FilmStatus::State::cancelled);
+      tell(write() ? VideoStatus::State::done : VideoStatus::State::cancelled);
     } catch (const std::exception& error) {
-      tell(FilmStatus::State::failed, error.what());
+      tell(VideoStatus::State::failed, error.what());
     }
   }
 
@@ -85,14 +85,14 @@ struct GroupFilm::Parts {
     Studio studio(stage, std::move(simulation), view);
     const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
     if (control.stop || result.interrupted) return false;
-    tell(FilmStatus::State::finishing);
+    tell(VideoStatus::State::finishing);
     writer->finish();
     return true;
   }
 };
 
-GroupFilm::GroupFilm(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
-                     const GroupFilmOptions& options)
+GroupVideo::GroupVideo(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
+                       const GroupVideoOptions& options)
     : parts_(std::make_unique<Parts>()) {
   parts_->robots = std::move(robots);
   parts_->configuration = configuration;
@@ -102,21 +102,21 @@ GroupFilm::GroupFilm(std::vector<LiveRobot> robots, const Configuration& configu
   parts_->thread = std::thread([parts = parts_.get()] { parts->make(); });
 }
 
-GroupFilm::~GroupFilm() {
+GroupVideo::~GroupVideo() {
   cancel();
   wait();
 }
 
-FilmStatus GroupFilm::status() const {
+VideoStatus GroupVideo::status() const {
   const std::lock_guard lock(parts_->mutex);
-  FilmStatus status = parts_->told;
+  VideoStatus status = parts_->told;
   status.frames = parts_->control.frames;
   return status;
 }
 
-void GroupFilm::cancel() { parts_->control.stop = true; }
+void GroupVideo::cancel() { parts_->control.stop = true; }
 
-void GroupFilm::wait() {
+void GroupVideo::wait() {
   if (parts_->thread.joinable()) parts_->thread.join();
 }
 

@@ -11,7 +11,7 @@
 
 namespace mercury {
 
-struct Remembered {
+struct SessionSettings {
   ViewSettings view;
   Generation generation;  // of the panel that makes random robots
   bool pause_on_explosion = false;
@@ -19,11 +19,11 @@ struct Remembered {
 };
 
 // $XDG_CONFIG_HOME/mercury/scene.toml, else that in ~/.config; empty where neither is known.
-std::filesystem::path remembered_path();
+std::filesystem::path session_settings_path();
 
 // The defaults where there is no such file. One that cannot be used is told of, and put aside as scene.toml.broken.
-Remembered load_remembered(const std::filesystem::path& path, Messages& messages);
+SessionSettings load_session_settings(const std::filesystem::path& path, Messages& messages);
 // Written whole or not at all; told of if it cannot be.
-void save_remembered(const std::filesystem::path& path, const Remembered& remembered, Messages& messages);
+void save_session_settings(const std::filesystem::path& path, const SessionSettings& settings, Messages& messages);
 
 }  // namespace mercury

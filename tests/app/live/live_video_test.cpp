@@ -22,7 +22,7 @@ render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
 }
 
 template <class Film>
-FilmStatus over(const Film& film) {
+VideoStatus over(const Film& film) {
   while (!film.status().over()) std::this_thread::yield();
   return film.status();
 }
@@ -53,8 +53,8 @@ TEST_F(LiveFilm, ARecordingKeepsRealTime) {
   EXPECT_FALSE(recording.offer(6.0, plain(64, 48, {0, 0, 200}))) << "another size";
   EXPECT_TRUE(recording.offer(6.06, plain(65, 49, {0, 0, 200})));
   recording.finish();
-  const FilmStatus status = over(recording);
-  ASSERT_EQ(status.state, FilmStatus::State::done) << status.error;
+  const VideoStatus status = over(recording);
+  ASSERT_EQ(status.state, VideoStatus::State::done) << status.error;
   EXPECT_EQ(status.frames, 22);
   EXPECT_EQ(status.dropped, 0);
   const auto stream = test::probe(file);
@@ -65,14 +65,14 @@ TEST_F(LiveFilm, ARecordingKeepsRealTime) {
 
 TEST_F(LiveFilm, ARecordingThatCannotBeMadeSaysSoAndACancelledOneLeavesNothing) {
   ScreenRecording wrong(path("screen.avi"), {64, 48});
-  const FilmStatus status = over(wrong);
-  EXPECT_EQ(status.state, FilmStatus::State::failed);
+  const VideoStatus status = over(wrong);
+  EXPECT_EQ(status.state, VideoStatus::State::failed);
   EXPECT_THAT(status.error, testing::HasSubstr(".avi"));
   EXPECT_FALSE(wrong.offer(0, plain(64, 48, {})));
   ScreenRecording cancelled(path("screen.mp4"), {64, 48});
   cancelled.offer(0, plain(64, 48, {}));
   cancelled.cancel();
-  EXPECT_EQ(over(cancelled).state, FilmStatus::State::cancelled);
+  EXPECT_EQ(over(cancelled).state, VideoStatus::State::cancelled);
   EXPECT_TRUE(listing().empty());
 }
 
@@ -80,15 +80,15 @@ TEST_F(LiveFilm, AGroupFilmIsMadeWhileTheSceneGoesOn) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   scene.step(10);
-  const auto film = scene.film({.output = path("group.mp4"),
-                                .size = {160, 90},
-                                .frames_per_second = 10,
-                                .seconds = 0.5,
-                                .quality = render::Quality::low});
+  const auto film = scene.export_video({.output = path("group.mp4"),
+                                        .size = {160, 90},
+                                        .frames_per_second = 10,
+                                        .seconds = 0.5,
+                                        .quality = render::Quality::low});
   scene.play();
   while (!film->status().over()) scene.frame();
-  const FilmStatus status = film->status();
-  ASSERT_EQ(status.state, FilmStatus::State::done) << status.error;
+  const VideoStatus status = film->status();
+  ASSERT_EQ(status.state, VideoStatus::State::done) << status.error;
   EXPECT_EQ(status.frames, 5);
   EXPECT_EQ(status.total, 5);
   EXPECT_EQ(test::probe(path("group.mp4"))["nb_read_frames"], "5");
@@ -96,13 +96,13 @@ TEST_F(LiveFilm, AGroupFilmIsMadeWhileTheSceneGoesOn) {
 
 TEST_F(LiveFilm, ACancelledGroupFilmLeavesNothingAndAnEmptyOneSaysWhy) {
   LiveScene scene(test::on_cpu());
-  EXPECT_EQ(over(*scene.film({.output = path("none.mp4")})).state, FilmStatus::State::failed);
+  EXPECT_EQ(over(*scene.export_video({.output = path("none.mp4")})).state, VideoStatus::State::failed);
   test::make_robots(scene, 1);
-  const auto film =
-      scene.film({.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
+  const auto film = scene.export_video(
+      {.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
   film->cancel();
   film->wait();
-  EXPECT_EQ(film->status().state, FilmStatus::State::cancelled);
+  EXPECT_EQ(film->status().state, VideoStatus::State::cancelled);
   EXPECT_TRUE(listing().empty());
 }
 

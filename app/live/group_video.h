@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/live/film_status.h"
-#include "app/live/moment.h"
+#include "app/live/snapshot.h"
+#include "app/live/video_status.h"
 #include "app/scene/view_settings.h"
 #include "app/video/frame_writer.h"
 #include "render/context.h"
@@ -15,7 +15,7 @@
 
 namespace mercury {
 
-struct GroupFilmOptions {
+struct GroupVideoOptions {
   std::string output;            // .mp4, .webm, .gif, or a folder for PNG pictures; replaced if it exists
   PictureSize size{1920, 1080};  // made even where the format needs it
   double frames_per_second = 30;
@@ -27,13 +27,13 @@ struct GroupFilmOptions {
 
 // Simulates, draws in an OpenGL context of its own, and encodes, all on threads of its own. Nothing throws; what fails
 // is in the status.
-class GroupFilm {
+class GroupVideo {
  public:
-  GroupFilm(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
-            const GroupFilmOptions& options);
-  ~GroupFilm();  // cancels, and waits until it has
+  GroupVideo(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
+             const GroupVideoOptions& options);
+  ~GroupVideo();  // cancels, and waits until it has
 
-  FilmStatus status() const;
+  VideoStatus status() const;
   void cancel();  // nothing is left behind
   void wait();    // until it is over
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the physics thread tells of a moment; never changes once it is given away.
+// What the physics thread tells of a snapshot; never changes once it is given away.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct LiveRobot {
 
 std::span<const Material> materials_of(const LiveRobot& robot);
 
-// The robots of a moment, in the order of the window's list.
+// The robots of a snapshot, in the order of the window's list.
 struct LiveRobots {
   std::uint64_t revision = 0;  // grows whenever robots come, go or are replaced
   std::vector<LiveRobot> robots;
@@ -58,7 +58,7 @@ struct LivePerturbation {
   friend bool operator==(const LivePerturbation&, const LivePerturbation&) = default;
 };
 
-struct Moment {
+struct Snapshot {
   std::shared_ptr<const LiveRobots> robots;
   Configuration configuration;
   double time = 0;  // [s]
@@ -74,11 +74,11 @@ struct Moment {
 
   bool playing = false;
   double speed = 1;               // wanted, simulated seconds a second
-  double due_at = 0;              // when this moment is to be seen, if playing at a finite speed [s of wall time]
+  double due_at = 0;              // when this snapshot is to be seen, if playing at a finite speed [s of wall time]
   double achieved_speed = 0;      // over the last second or so; 0 = at rest
   double springs_per_second = 0;  // while stepping
   double step_seconds = 0;        // of wall time one step takes, 0 = not known
-  double telling_seconds = 0;     // that it took to gather this moment
+  double gathering_seconds = 0;   // that it took to gather this snapshot
 
   std::span<const Vec3> positions_of(std::size_t robot) const;
   std::span<const Vec3> velocities_of(std::size_t robot) const;  // empty where they were not read
