@@ -136,7 +136,7 @@ class LiveScene {
   void move_perturbation(const Eigen::Vector3f& target);
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
-  std::optional<PerturbationDetails> pull() const;
+  std::optional<PerturbationDetails> perturbation() const;
 
   // Files. None replaces a file that exists unless told to.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);

@@ -38,7 +38,7 @@ struct LiveScene::Parts {
   bool playing = false;
   std::uint64_t stops = 0;
   double speed = 1;
-  std::optional<LivePerturbation> pull;
+  std::optional<LivePerturbation> perturbation;
   mutable int described = 0;  // frames until velocities are no longer read for figures
 
   Background background;  // last: its pieces end before the rest does
@@ -75,7 +75,8 @@ struct LiveScene::Parts {
   void put_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
   void send_perturbation() {
-    physics.set_perturbations(pull ? std::vector<LivePerturbation>{*pull} : std::vector<LivePerturbation>{});
+    physics.set_perturbations(perturbation ? std::vector<LivePerturbation>{*perturbation}
+                                           : std::vector<LivePerturbation>{});
   }
 };
 
