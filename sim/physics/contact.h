@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells of one contact distance, hashed into buckets that list their masses: finding the pairs that touch costs a few
-// look-ups a mass instead of one for every other mass. Lists stand in any order; sums are integers, so it has no
-// effect.
+// A grid that finds pairs of near masses. Its cells are as wide as the contact distance, so masses that touch are in
+// the same cell or in neighbours. Cells are hashed into buckets, and each bucket lists its masses:
+//
+//   +---+---+---+
+//   | o | o | o |     A mass looks at its own cell and at half of the neighbours (o: 13 of 26 in 3D).
+//   +---+---+---+     The other half looks at it, so every pair is found once.
+//   | . | x | o |
+//   +---+---+---+     Other cells may share a bucket. The distance test rejects their masses.
+//   | . | . | . |
+//   +---+---+---+
+//
+// The order in a list depends on timing. It does not matter, because sums are integers (fixed_point.h).
 #pragma once
 
 #include <cstdint>
@@ -21,14 +30,14 @@ struct Cell {
 MERCURY_HOST_DEVICE std::int32_t cell_coordinate(float x, float inverse_size) {
   constexpr float most = 1e9f;
   const float scaled = std::floor(x * inverse_size);
-  return static_cast<std::int32_t>(!(scaled > -most) ? -most : scaled > most ? most : scaled);  // NaN as well
+  return static_cast<std::int32_t>(!(scaled > -most) ? -most : scaled > most ? most : scaled);  // NaN gives -most
 }
 
 MERCURY_HOST_DEVICE Cell cell_of(Vec3 x, float inverse_size) {
   return {cell_coordinate(x.x, inverse_size), cell_coordinate(x.y, inverse_size), cell_coordinate(x.z, inverse_size)};
 }
 
-// mask + 1 buckets, a power of two.
+// There are mask + 1 buckets, a power of two.
 MERCURY_HOST_DEVICE std::uint32_t bucket_of(Cell cell, std::uint32_t mask) {
   const std::uint32_t h = static_cast<std::uint32_t>(cell.x) * 0x9e3779b1u +
                           static_cast<std::uint32_t>(cell.y) * 0x85ebca77u +
@@ -36,7 +45,7 @@ MERCURY_HOST_DEVICE std::uint32_t bucket_of(Cell cell, std::uint32_t mask) {
   return (h ^ (h >> 15)) & mask;
 }
 
-// The cell itself and the 13 neighbours that come after it: with them every pair is met once.
+// The cell itself (index 0) and the 13 neighbours after it.
 inline constexpr int half_neighbourhood = 14;
 MERCURY_HOST_DEVICE Cell neighbour_cell(Cell cell, int index) {
   const int code = 13 + index;  // (dx + 1) + 3 (dy + 1) + 9 (dz + 1); 13 is the cell itself

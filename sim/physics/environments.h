@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three environments as the solvers see them. A new one is one struct with these functions:
-//   has_faces, has_contacts, has_floor, still_water   what a step has to do, known at compile time
-//   on_mass(v)                               force on a unit mass of velocity v [N]
-//   on_face(area_normal, v)                  force on a face, if has_faces
-//   on_face(normal, u, u.u, drag, lift)      the same with fewer multiplications, for of_sums()
-//   floor(x, displacement)                   resolves the end of a step on positions, if has_floor
-// Vector is a Vec3 or a vector of several (sim/cpu/lanes.h).
+// The equations of the environments. Solvers are compiled once per environment model, so what a model does not have
+// costs nothing. A new environment is one struct in mercury/configuration.h, one model here, and model_of() at the end.
+// A model has
+//
+//   has_faces, has_contacts, has_floor    which of the parts below a step contains
+//   still_water                           on_mass() is zero, so a step leaves it out
+//   on_mass(v)                            force on a mass of 1 kg that has velocity v [N]
+//   on_face(area_normal, v)               force on a face, if has_faces [N]
+//   on_face(normal, u, u.u, drag, lift)   the same with fewer multiplications, see OceanModel::Coefficients
+//   floor(x, displacement)                contact with the floor at the end of a step, if has_floor
+//
+// Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/lanes.h).
 #pragma once
 
 #include "mercury/configuration.h"
@@ -18,6 +23,19 @@ MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
   return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
 
+// Drag and lift on faces (equation 1), with u = flow - v, where v is the mean velocity of the corners:
+//
+//             |                      drag, along u:    rho A / 2 (C_D - C_L) (u . n) u
+//     u       |    n                 lift, along n:    rho A / 2 C_L |u|^2 n
+//   ----->    |---->
+//             |                      A third of the sum acts on each corner.
+//            face
+//
+// Equation 1 as printed has v in place of u, and n as the face has it. This differs from it:
+// 1. u is relative to the water, which may flow.
+// 2. n points to the side that u leaves by, so u . n >= 0. With n as it is, opposite faces of a body that moves rigidly
+//    cancel: the sum over a closed surface is exactly zero, and there is no drag.
+// 3. Hence F . u = rho A / 2 C_D (u . n) |u|^2 >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_floor = false, still_water = false;
   Vec3 gravity, flow, thrice_flow;
@@ -32,17 +50,20 @@ struct OceanModel {
     return {gravity.x, gravity.y, gravity.z};
   }
 
-  // Eq. 1 with the flow relative to the face, u = flow - v, and the normal turned to the side that u leaves by, so that
-  // drag never adds energy. As printed (v itself, the normal as it is) the sum over a closed rigid body is zero.
-  // `area_normal` is A n; either orientation gives the same force.
+  // `area_normal` is A n. Both orientations give the same force.
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
     const Vector u = flow - velocity;
     return on_face(area_normal, u, inner(u, u), half_density * drag_minus_lift, half_density * lift);
   }
 
-  // The same for normals and flows (u) of another length, the coefficients scaled to match. Both the other way around,
-  // with coefficients of the other sign, give the same bits.
+  // The same for a normal and a flow of any length, with coefficients scaled to match. Instead of turning n, the terms
+  // take the sign of u . n:
+  //
+  //   flux  = normal . u
+  //   F     = drag |flux| u  +  lift sign(flux) |u|^2 normal
+  //
+  // If normal and u both have the opposite sign, coefficients of the opposite sign give the same bits.
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, Real drag, Real lift) {
     const auto flux = inner(normal, u);
@@ -53,11 +74,15 @@ struct OceanModel {
             multiply_add(along_flow, u.z, along_normal * normal.z)};
   }
 
-  // Coefficients for a third of the force times `scale`, of 2 A n and of the sum of u over the face's masses, which
-  // need no multiplication; both vectors the other way around.
+  // Coefficients for the force on one corner, times `scale`, for vectors that need no multiplication to compute:
+  //
+  //   normal = -2 A n      cross product of two edges
+  //   sum    = -3 u        sum of the corners' velocities, minus 3 flow
+  //   F / 3  = rho A / 6 (... (u . n) u + ... |u|^2 n)
+  //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
   struct Coefficients {
     float drag = 0, lift = 0;
-    // No component of a force is more than this times |normal| |u|^2.
+    // No component of a force exceeds this times |normal| |sum|^2.
     float most() const { return std::fabs(drag) + std::fabs(lift); }
   };
   Coefficients of_sums(float scale) const {
@@ -66,12 +91,13 @@ struct OceanModel {
   }
 };
 
-// Water that does not flow, without gravity: nothing acts on a mass but what acts on its faces.
+// Water that does not flow, without gravity. Only faces feel it, so a step needs neither on_mass() nor the flow.
 struct StillWaterOceanModel : OceanModel {
   static constexpr bool still_water = true;
   static bool fits(const OceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
 };
 
+// Drag on each mass, F = drag (flow - v) (paper, II.E).
 struct OceanSimpleModel {
   static constexpr bool has_faces = false, has_contacts = false, has_floor = false, still_water = false;
   Vec3 gravity, flow;
@@ -87,6 +113,13 @@ struct OceanSimpleModel {
   }
 };
 
+// A floor at z = 0 with Coulomb friction, resolved on positions at the end of a step:
+//
+//        o x            x is the start of the step, x' its end without the floor.
+//         .
+//   -------.-+------    z = 0
+//           .| depth    The mass is put back to z = 0. Friction shortens its tangential displacement by at most
+//            o x'       friction * depth, because a deeper contact means a larger normal force.
 struct LandModel {
   static constexpr bool has_faces = false, has_contacts = true, has_floor = true, still_water = false;
   Vec3 gravity;
@@ -99,8 +132,8 @@ struct LandModel {
     return {gravity.x, gravity.y, gravity.z};
   }
 
-  // A mass that would end below the floor ends on it, and moves along it less by at most friction times its depth.
-  // `x` is where the step ends and `displacement` what it moved; both are mended. True if the mass touched.
+  // `x` is the position at the end of the step and `displacement` the way the mass moved in it. Corrects both. Returns
+  // whether the mass touched the floor.
   template <class Vector>
   MERCURY_HOST_DEVICE auto floor(Vector& x, Vector& displacement) const {
     const auto depth = -x.z;
@@ -121,15 +154,15 @@ inline OceanModel model_of(const Ocean& ocean) { return OceanModel(ocean); }
 inline OceanSimpleModel model_of(const OceanSimple& ocean) { return OceanSimpleModel(ocean); }
 inline LandModel model_of(const Land& land) { return LandModel(land); }
 
-// Repulsion of two masses that no spring joins: the force on the first is this times d = x_second - x_first, pointing
-// away from the second, k_c (distance - |d|) / |d|; zero at and beyond the distance.
+// Repulsion of two masses that no spring joins, F = k_c (distance - |d|) away from each other; zero at and beyond the
+// distance. The force on the first mass is this times d = x_second - x_first: -k_c (distance - |d|) / |d|.
 MERCURY_HOST_DEVICE float repulsion(float squared, float distance, float stiffness) {
   return squared < distance * distance ? stiffness * multiply_add(-distance, inverse_sqrt(squared), 1.0f) : 0.0f;
 }
 
-// k_c of a step [N/m]. Repulsion is an explicit force, and XPBD promises to be stable at any time step: there one
-// contact moves a mass by at most an eighth of the distance missing a step, which is stable with up to 16 contacts at a
-// mass. (On land as it comes that softens nothing below dt = 2.5e-3 s.)
+// k_c in a step [N/m]. Repulsion is an explicit force, which can be unstable at long time steps, while XPBD is stable
+// at any. So with XPBD a contact moves a mass by at most 1/8 of the missing distance per step: k_c dt^2 <= 1/8. That is
+// stable with up to 16 contacts per mass. With the default parameters it changes nothing below dt = 2.5e-3 s.
 inline float contact_stiffness_of(const Land& land, Solver solver, double dt) {
   if (!land.self_collision) return 0;
   const float stiffness = land.contact_stiffness * land.stiffness_scale;

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces two by two, so that masses common to both are read once and forces on them added once.
+// Faces in pairs that share an edge. A pair reads and updates four masses, two single faces read and update six.
+//
+//     d-------c
+//     |     / |      triangles (a, b, c) and (a, c, d)
+//     |   /   |
+//     | /     |
+//     a-------b
 #pragma once
 
 #include <cstdint>
@@ -9,16 +15,16 @@
 
 namespace mercury {
 
-// Two triangles (a, b, c) and (a, c, d) that share an edge. A triangle without a neighbour left has d = a: its second
-// triangle has no area and no force.
+// A face without a free neighbour is a pair with d = a. Its second triangle has no area, so no force.
 struct FacePair {
   std::uint16_t a = 0, b = 0, c = 0, d = 0;
   friend constexpr bool operator==(const FacePair&, const FacePair&) = default;
 };
 
-// Every face once. A face may be told from another corner or the other way around than in the robot; its force is the
-// same. Pairs of two faces are told by where their masses are at rest (z first, then y, then x): a before c, b before
-// d; so a pair of another robot in the same place is told the same way.
+// Contains every face once. The vertex order of a face may differ from the robot's: another first corner, or the
+// opposite orientation. Its force is the same.
+// The vertex order of a pair follows from the rest positions of its masses, compared by z, then y, then x: a is before
+// c, and b before d. So congruent pairs of different robots have the same order and can be computed in one vector.
 std::vector<FacePair> pair_faces(const Robot& robot);
 
 }  // namespace mercury

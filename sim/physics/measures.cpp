@@ -11,7 +11,7 @@
 namespace mercury {
 namespace {
 
-// A spring of the greatest length allowed may want to lose all of it and its largest rest length, 2 L0, besides.
+// Bound of ||d| - L| in longest rest lengths: |d| is at most stretch_limit of them, and L between 0 and 2.
 constexpr float reach = stretch_limit + 2;
 
 // The largest power of two p with p * range <= spring_limit_units.
@@ -62,7 +62,7 @@ std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t
     const auto lost = std::ranges::find_if_not(state.positions, [](Vec3 x) { return within_reach(x); });
     return lost == state.positions.end() ? noted : static_cast<std::uint32_t>(lost - state.positions.begin());
   }
-  const auto blame = [&](std::uint32_t mass) {
+  const auto speed = [&](std::uint32_t mass) {
     const Vec3 v = state.velocities[mass];
     const float squared = dot(v, v);
     const bool sound = within_reach(state.positions[mass]) && std::isfinite(squared);
@@ -77,7 +77,7 @@ std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t
   }
   std::uint32_t worst = noted;
   for (std::uint32_t mass = 0; mass < near.size(); ++mass)
-    if (near[mass] && blame(mass) > blame(worst)) worst = mass;
+    if (near[mass] && speed(mass) > speed(worst)) worst = mass;
   return worst;
 }
 
@@ -89,7 +89,7 @@ std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions
   if (const auto found = std::ranges::find_if(robot.springs, has_bad_mass); found != robot.springs.end())
     return index_of(found);
   const float limit = measure(robot).squared_stretch_limit();
-  // Springs beside the one that fails leave the limit in the same step, but less.
+  // Neighbours of the failing spring may exceed the limit in the same step, but by less.
   const auto strain = [&](const Spring& spring) {
     const Vec3 d = positions[spring.b] - positions[spring.a];
     const float squared = dot(d, d);

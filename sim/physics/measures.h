@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step needs to know of a robot as a whole, the same for every backend.
+// Properties of a whole robot that a step needs, the same for every backend.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 namespace mercury {
 
 struct RobotMeasures {
-  float longest = 0;                                       // rest length [m]; 0 without springs
-  float shortest = 0;                                      // rest length [m]
-  std::array<bool, max_materials> used{};                  // materials that some spring has
+  float longest = 0;                                       // longest rest length [m]; 0 without springs
+  float shortest = 0;                                      // shortest rest length [m]
+  std::array<bool, max_materials> used{};                  // by material: whether a spring has it
   float contact_distance() const { return shortest / 2; }  // [m], on land
   // No spring's |d|^2 may exceed this [m2].
   float squared_stretch_limit() const { return stretch_limit * longest * stretch_limit * longest; }
@@ -25,20 +25,27 @@ struct RobotMeasures {
 
 RobotMeasures measure(const Robot& robot);
 
-// Number of springs at each mass: s of the split masses (Tonge et al. 2012).
+// Number of springs at each mass: s of the mass splitting (springs.h).
 std::vector<std::uint32_t> valences(const Robot& robot);
 
-// The finest powers of two at which no spring below the stretch limit leaves spring_limit_units.
+// The finest powers of two at which no spring within the stretch limit exceeds spring_limit_units:
+//
+//   force       2^22 units >= 18 L_max k_max             |d| <= 16 L_max, and L lies in [0, 2 L_max]
+//   correction  2^22 units >= 18 L_max / (2 + 1 / (k_max dt^2))
+//
+// Land's contacts and a minimum of 16 N extend the range of forces.
 FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const Material> materials,
                                   const Configuration& configuration);
 
-// The spring to blame for an explosion, or no_spring: the first that `bad_mass` belongs to, if a mass left the finite,
-// else the most strained of those that are longer than the stretch limit allows, else the most strained one.
+// The spring that caused an explosion, as far as can be known: the first spring of `bad_mass`, if there is one; else,
+// of the springs beyond the stretch limit, the one with the largest strain; else the one with the largest strain of
+// all. no_spring if the robot has no springs.
 std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
 
-// `noted`, or a mass at most two faces from it that is more to blame: one that is out of reach or not finite, else the
-// fastest. A backend that finds a face's force out of range notes a mass of that face or of one beside it, whichever is
-// at hand; one that finds a spring too long may note none, and then a mass out of reach is to blame, if there is one.
+// The mass that caused an explosion, given the mass that the backend noted (RobotStatus::bad_mass). A backend that
+// finds a face's force out of range notes some mass of that face or of a neighbouring one. So this searches up to two
+// faces around it, for a mass that is out of reach or not finite, otherwise for the fastest. A backend that finds a
+// spring too long may note no mass. Then this returns a mass that is out of reach, or `noted` if there is none.
 std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted);
 
 }  // namespace mercury

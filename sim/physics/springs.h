@@ -1,6 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device; Real is a float or a vector of
-// them.
+// One spring's force (Algorithm 1) or correction (Algorithm 2), for host and device. Real is a float or a vector of
+// floats.
+//
+// Both are a scalar times the vector d = x_b - x_a from the first mass to the second, and the second mass gets the
+// opposite. No square root is needed: with r = 1 / |d|,
+//
+//   constraint ratio   (|d| - L) / |d|  =  1 - L r
+//
+// Force (equation 2, Hooke's law):
+//   F_a = k (|d| - L) d / |d|
+//       = k (1 - L r) d                                                            hooke()
+//
+// XPBD (equations 3 and 4) moves both ends along d to reduce C = |d| - L, with the compliance 1 / (k dt^2):
+//   lambda = C / (|grad C|^2 + 1 / (k dt^2))
+//   dx_a   = lambda d / |d|
+//
+// All springs are projected from the same predicted positions (Jacobi), so corrections at a mass add up, and would
+// overshoot. Mass splitting (Tonge et al. 2012) divides a mass among its s springs: each sees 1/s of it, and inverse
+// masses enter |grad C|^2, which becomes s_a + s_b. A sweep is then stable at any dt.
+//   dx_a   = (|d| - L) / (s_a + s_b + 1 / (k dt^2)) d / |d|
+//          = (1 - L r) / (s_a + s_b + 1 / (k dt^2)) d                              xpbd()
+//
+// Equation 3 of the paper lacks `- L`; it is restored. The paper does not split the masses.
 #pragma once
 
 #include "mercury/host_device.h"
@@ -8,35 +29,35 @@
 
 namespace mercury {
 
-// |d|^2, kept off zero so that two masses in one place push nothing instead of dividing by zero.
+// |d|^2 [m2], and 1e-20 more, so that two masses in one place give no force instead of a division by zero.
 template <class Vector>
 MERCURY_HOST_DEVICE auto squared_length(Vector d) {
   return multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, 1e-20f)));
 }
 
-// (|d| - L) / |d|, the part of d that a spring wants to lose. With a power of two for `one`, and L times it, the result
-// is times it, too, bit for bit.
+// (|d| - L) / |d| times `one`. `one` is 1, or a power of two that `length` was multiplied by as well: results then
+// differ in the exponent alone, so that units of fixed point cost nothing.
 template <class Real>
-MERCURY_HOST_DEVICE Real excess(Real squared, Real length, Real one = 1.0f) {
+MERCURY_HOST_DEVICE Real constraint_ratio(Real squared, Real length, Real one = 1.0f) {
   return fnma(length, inverse_sqrt(squared), one);
 }
 
-// Eq. 2 (Hooke's law): the force on the first mass is this times d = x_second - x_first.
+// The force on the first mass is this times d.
 template <class Real>
 MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness, Real one = 1.0f) {
-  return stiffness * excess(squared, length, one);
+  return stiffness * constraint_ratio(squared, length, one);
 }
 
-// Eq. 3 and 4, with the missing -L restored and the gradient's square replaced by the split masses (Tonge et al. 2012):
-// lambda / |d| with lambda = (|d| - L) / (s_a + s_b + 1/(k dt^2)). The first mass moves by this times d.
+// The first mass moves by this times d. `valence_sum` is s_a + s_b, the numbers of springs at the two ends.
 template <class Real>
-MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real splits, Real compliance, Real one = 1.0f) {
-  return excess(squared, length, one) * inverse(splits + compliance);
+MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real valence_sum, Real compliance, Real one = 1.0f) {
+  return constraint_ratio(squared, length, one) * inverse(valence_sum + compliance);
 }
-// The last factor, which a spring keeps from step to step: with it for stiffness, hooke() gives xpbd() bit for bit.
+// The factor of xpbd() that stays the same from step to step. With it as the stiffness, hooke() gives xpbd() bit for
+// bit.
 template <class Real>
-MERCURY_HOST_DEVICE Real xpbd_stiffness(Real splits, Real compliance) {
-  return inverse(splits + compliance);
+MERCURY_HOST_DEVICE Real xpbd_stiffness(Real valence_sum, Real compliance) {
+  return inverse(valence_sum + compliance);
 }
 
 }  // namespace mercury

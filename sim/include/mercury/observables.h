@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quantities that can be observed of a robot: lengths, forces, energies and power, each by one formula. Telemetry of
+// both backends, pictures, the window and programs of your own call these. The solvers use the same equations in forms
+// of their own (sim/physics), so values agree with theirs within rounding.
+//
+//                    |d|
+//     a o--/\/\/\/\/\/\/\/\--o b      d = x_b - x_a
+//       |<---- L ---->|               L = L0 (1 + dL0 sin(omega t + phi)), the present rest length
+//       |<---- L0 ------>|            L0 = Spring::rest_length
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mercury/clock.h"
+#include "mercury/configuration.h"
+#include "mercury/host_device.h"
+#include "mercury/material.h"
+#include "mercury/robot.h"
+#include "mercury/vec3.h"
+
+namespace mercury {
+
+// What a material is at an instant, in an environment.
+struct MaterialNow {
+  float stiffness = 0;      // k times the environment's stiffness scale [N/m]
+  float length_factor = 1;  // L / L0 [1]
+  float length_rate = 0;    // d(L / L0) / dt [1/s]
+};
+// By id, as many as the table has. The phase is exact at any time, see sim/physics/muscle.h.
+std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment,
+                                      const Clock& clock);
+// `time` in s since the start; exact only while dt has not changed, or nearly so.
+std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment, double time);
+
+// |d| [m]
+inline float spring_length(const Spring& spring, std::span<const Vec3> positions) {
+  return length(positions[spring.b] - positions[spring.a]);
+}
+
+// (|d| - L0) / L0 [1]
+MERCURY_HOST_DEVICE float strain(float length, float rest_length) {
+  return (length - rest_length) * inverse(rest_length);
+}
+
+// |d| - L, with L = L0 length_factor [m]
+MERCURY_HOST_DEVICE float stretch(float length, float rest_length, float length_factor) {
+  return fnma(rest_length, length_factor, length);
+}
+inline float stretch(const Spring& spring, const MaterialNow& material, std::span<const Vec3> positions) {
+  return stretch(spring_length(spring, positions), spring.rest_length, material.length_factor);
+}
+
+// k (|d| - L) (Hooke's law). Positive: the spring pulls its ends together [N]. Real is float or double.
+template <class Real>
+MERCURY_HOST_DEVICE Real spring_force(Real stiffness, Real stretch) {
+  return stiffness * stretch;
+}
+
+// k (|d| - L)^2 / 2 [J]
+template <class Real>
+MERCURY_HOST_DEVICE Real elastic_energy(Real stiffness, Real stretch) {
+  return Real(0.5) * spring_force(stiffness, stretch) * stretch;
+}
+
+// Power that the muscle of a spring delivers [W]: the rate at which the change of L alone changes the elastic energy,
+//     dE/dL dL/dt = -k (|d| - L) dL/dt.
+// Positive: the muscle does work on the body. Negative: the body does work on the muscle. 0 for passive materials.
+inline float muscle_power(const Spring& spring, const MaterialNow& material, float stretch) {
+  return -spring_force(material.stiffness, stretch) * spring.rest_length * material.length_rate;
+}
+
+// The forces of all springs on each mass [N], one per mass. `materials` by id.
+std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
+                                std::span<const Vec3> positions);
+
+// Whether an environment acts on faces.
+bool has_face_forces(const Environment& environment);
+
+// The force of the water on a face, in two parts that add up to it.
+struct FaceForce {
+  Vec3 center;     // of the face [m]
+  float area = 0;  // [m2]
+  Vec3 drag;       // parallel to the flow past the face [N]
+  Vec3 lift;       // perpendicular to it [N]
+};
+// Equation 1 of the paper as the solvers compute it (sim/physics/environments.h), with positions and velocities of the
+// robot's masses. Drag and lift are 0 in an environment that does not act on faces.
+FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
+                     std::span<const Vec3> velocities);
+
+// The floor's force on one mass.
+struct FloorForce {
+  std::uint32_t mass = 0;  // index in Robot::masses
+  Vec3 force;              // [N]
+};
+// The force that holds each mass on the floor in the next step, if nothing touches it except springs, gravity and the
+// floor: it cancels their forces and the mass's momentum, but does not pull the mass down, and friction is at most the
+// friction coefficient times the push. Only masses with such a force are listed. Empty in an environment without a
+// floor.
+std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& configuration,
+                                     std::span<const MaterialNow> materials, std::span<const Vec3> positions,
+                                     std::span<const Vec3> velocities);
+
+}  // namespace mercury

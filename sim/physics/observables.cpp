@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/observables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "sim/physics/environments.h"
+#include "sim/physics/muscle.h"
+
+namespace mercury {
+
+std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment,
+                                      const Clock& clock) {
+  const float scale = stiffness_scale_of(environment);
+  std::vector<MaterialNow> now;
+  now.reserve(table.size());
+  for (const Material& material : table) {
+    const std::uint64_t phase = phase_at(muscle_phase(material, clock), clock.step - clock.base_step);
+    now.push_back({.stiffness = scale * material.stiffness,
+                   .length_factor = muscle_factor(material.amplitude, phase),
+                   .length_rate = material.amplitude * material.frequency * cosine_of_phase(phase)});
+  }
+  return now;
+}
+
+std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment, double time) {
+  return materials_at(table, environment, Clock{.base_time = time});
+}
+
+std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
+                                std::span<const Vec3> positions) {
+  std::vector<Vec3> forces(robot.masses.size());
+  for (const Spring& spring : robot.springs) {
+    const MaterialNow& material = materials[spring.material];
+    const Vec3 d = positions[spring.b] - positions[spring.a];
+    // Masses in one place exert no force on each other, as in the solvers.
+    const float length_now = std::max(length(d), 1e-10f);
+    const float along =
+        spring_force(material.stiffness, stretch(length_now, spring.rest_length, material.length_factor));
+    const Vec3 on_a = (along / length_now) * d;
+    forces[spring.a] += on_a;
+    forces[spring.b] -= on_a;
+  }
+  return forces;
+}
+
+bool has_face_forces(const Environment& environment) {
+  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_faces; }, environment);
+}
+
+FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
+                     std::span<const Vec3> velocities) {
+  const Vec3 a = positions[face.a], b = positions[face.b], c = positions[face.c];
+  const Vec3 area_normal = 0.5f * cross(b - a, c - a);
+  const float third = 1.0f / 3;
+  const Vec3 velocity = third * (velocities[face.a] + velocities[face.b] + velocities[face.c]);
+  FaceForce result{.center = third * (a + b + c), .area = length(area_normal), .drag = {}, .lift = {}};
+  std::visit(
+      [&](const auto& kind) {
+        const auto model = model_of(kind);
+        if constexpr (decltype(model)::has_faces) {
+          const Vec3 force = model.on_face(area_normal, velocity);
+          const Vec3 flow = kind.flow - velocity;
+          const float squared = dot(flow, flow);
+          result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};
+          result.lift = force - result.drag;
+        }
+      },
+      environment);
+  return result;
+}
+
+std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& configuration,
+                                     std::span<const MaterialNow> materials, std::span<const Vec3> positions,
+                                     std::span<const Vec3> velocities) {
+  const auto* land = std::get_if<Land>(&configuration.environment);
+  if (!land) return {};
+  const std::vector<Vec3> springs = spring_forces(robot, materials, positions);
+  const auto inverse_dt = static_cast<float>(1 / configuration.dt);
+  std::vector<FloorForce> forces;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (positions[i].z > 0) continue;
+    // The force that leaves a mass of 1 kg where it is.
+    const Vec3 hold = -(springs[i] + land->gravity + inverse_dt * velocities[i]);
+    if (!(hold.z > 0)) continue;
+    const float along = std::hypot(hold.x, hold.y), most = land->friction * hold.z;
+    const float share = along > most ? most / along : 1;
+    forces.push_back({static_cast<std::uint32_t>(i), {share * hold.x, share * hold.y, hold.z}});
+  }
+  return forces;
+}
+
+}  // namespace mercury
