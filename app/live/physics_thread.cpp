@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "app/live/physics_parts.h"
-#include "app/scene/face_forces.h"
+#include "mercury/observables.h"
 
 namespace mercury {
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "app/scene/eigen_vec3.h"
+#include "mercury/observables.h"
 
 namespace mercury {
 namespace {
@@ -206,13 +207,11 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index,
   const Material& material = materials_of(live)[spring.material];
   const auto positions = snapshot.positions_of(index);
   const double time = snapshot.telemetry[index].exploded ? snapshot.telemetry[index].exploded_at : snapshot.time;
-  const double angle = static_cast<double>(material.frequency) * time + static_cast<double>(material.phase);
-  const float rest_now =
-      spring.rest_length * (1 + material.amplitude * static_cast<float>(std::sin(std::remainder(angle, 2 * M_PI))));
+  const MaterialNow now = materials_at({&material, 1}, snapshot.configuration.environment, time).front();
   HitDetails::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
-  of.length = length(positions[spring.b] - positions[spring.a]);
-  of.strain = of.length / spring.rest_length - 1;
-  of.force = material.stiffness * stiffness_scale_of(snapshot.configuration.environment) * (of.length - rest_now);
+  of.length = spring_length(spring, positions);
+  of.strain = strain(of.length, spring.rest_length);
+  of.force = spring_force(now.stiffness, stretch(spring, now, positions));
   if (!robot.material_names.empty())
     of.material_name = robot.material_names[spring.material];
   else

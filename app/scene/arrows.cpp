@@ -9,10 +9,9 @@
 
 #include "app/scene/color_scale.h"
 #include "app/scene/eigen_vec3.h"
-#include "app/scene/face_forces.h"
-#include "app/scene/floor_forces.h"
 #include "app/scene/group_layout.h"
 #include "mercury/error.h"
+#include "mercury/observables.h"
 
 namespace mercury {
 namespace {
@@ -71,9 +70,8 @@ float Arrows::Gauge::fit(float largest) {
 void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
                        std::vector<render::Arrow>& lift) const {
   const Robot& body = simulation_.robot(robot);
-  const std::size_t first = simulation_.mass_offsets()[robot];
-  const auto positions = std::span(state.positions).subspan(first, body.masses.size());
-  const auto velocities = std::span(state.velocities).subspan(first, body.masses.size());
+  const auto positions = masses_of(simulation_, robot, state.positions);
+  const auto velocities = masses_of(simulation_, robot, state.velocities);
   for (const Face& face : body.faces) {
     const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
     const auto index = static_cast<std::uint32_t>(robot);

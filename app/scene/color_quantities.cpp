@@ -8,19 +8,15 @@
 #include <vector>
 
 #include "app/scene/color_quantity.h"
-#include "app/scene/face_forces.h"
 #include "mercury/error.h"
+#include "mercury/observables.h"
 
 namespace mercury {
 namespace {
 
-float length_of(const RobotState& state, const Spring& spring) {
-  return length(state.positions[spring.b] - state.positions[spring.a]);
-}
-
 // |d| - L(t) [m]
 float stretch_of(const RobotState& state, const Spring& spring) {
-  return length_of(state, spring) - spring.rest_length * state.materials[spring.material].length_factor;
+  return stretch(spring, state.materials[spring.material], state.positions);
 }
 
 // (L0 - L(t)) / L0 [%]
@@ -35,13 +31,13 @@ float activation_of_face(const RobotState& state, std::size_t face) {
 }
 
 // (|d| - L0) / L0 [%]
-float strain(const RobotState& state, const Spring& spring) {
-  return 100 * (length_of(state, spring) / spring.rest_length - 1);
+float strain_percent(const RobotState& state, const Spring& spring) {
+  return 100 * strain(spring_length(spring, state.positions), spring.rest_length);
 }
 
 // Hooke's law [N]; positive = the spring pulls its ends together.
 float force(const RobotState& state, const Spring& spring) {
-  return state.materials[spring.material].stiffness * stretch_of(state, spring);
+  return spring_force(state.materials[spring.material].stiffness, stretch_of(state, spring));
 }
 
 float speed(const RobotState& state, std::size_t mass) { return length(state.velocities[mass]); }
@@ -54,8 +50,7 @@ float pressure(const RobotState& state, std::size_t face) {
 
 // Elastic, k (|d| - L)^2 / 2 [mJ]
 float energy(const RobotState& state, const Spring& spring) {
-  const float stretch = stretch_of(state, spring);
-  return 1000 * state.materials[spring.material].stiffness * stretch * stretch / 2;
+  return 1000 * elastic_energy(state.materials[spring.material].stiffness, stretch_of(state, spring));
 }
 
 // Times the environment's scale [N/m].
@@ -80,7 +75,7 @@ constexpr std::array quantities{
                   .help = "how far springs are stretched (red) or pressed together (blue)",
                   .map = render::Colormap::diverging,
                   .is_signed = true,
-                  .of_spring = strain},
+                  .of_spring = strain_percent},
     ColorQuantity{.key = "force",
                   .name = "Force",
                   .unit = "N",

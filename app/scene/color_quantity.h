@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/scene/materials_now.h"
 #include "mercury/configuration.h"
+#include "mercury/observables.h"
 #include "mercury/robot.h"
 #include "mercury/vec3.h"
 #include "render/colormap.h"

@@ -29,15 +29,6 @@ bool averages_springs(const ColorQuantity& quantity) {
 
 }  // namespace
 
-GroupState read_state(const Simulation& simulation) {
-  GroupState state{.time = simulation.time(),
-                   .positions = std::vector<Vec3>(simulation.mass_count()),
-                   .velocities = std::vector<Vec3>(simulation.mass_count())};
-  simulation.read_positions(state.positions);
-  simulation.read_velocities(state.velocities);
-  return state;
-}
-
 Coloring::Coloring(const Simulation& simulation, const ColorQuantity& quantity)
     : simulation_(simulation), quantity_(quantity) {
   const Environment& environment = simulation.configuration().environment;
@@ -66,16 +57,15 @@ ColorValues Coloring::values(const GroupState& state) const {
 void Coloring::fill(ColorValues& values, std::size_t index, const GroupState& state) const {
   const Robot& robot = simulation_.robot(index);
   const std::size_t first_mass = simulation_.mass_offsets()[index];
-  std::vector<Material> table;
-  for (std::size_t id = 0; id < materials_of(robot).size(); ++id)
-    table.push_back(simulation_.material(index, static_cast<MaterialId>(id)));
-  const std::vector<MaterialNow> materials = materials_at(simulation_, index, state.time);
+  const Environment& environment = simulation_.configuration().environment;
+  const std::vector<Material> table = materials_of(simulation_, index);
+  const std::vector<MaterialNow> materials = materials_at(table, environment, state.time);
   const RobotState robot_state{
       .robot = robot,
-      .environment = simulation_.configuration().environment,
+      .environment = environment,
       .time = state.time,
-      .positions = std::span(state.positions).subspan(first_mass, robot.masses.size()),
-      .velocities = std::span(state.velocities).subspan(first_mass, robot.masses.size()),
+      .positions = masses_of(simulation_, index, state.positions),
+      .velocities = masses_of(simulation_, index, state.velocities),
       .material_table = table,
       .materials = materials,
       .face_materials = face_materials_[index],

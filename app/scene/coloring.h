@@ -5,17 +5,10 @@
 #include <vector>
 
 #include "app/scene/color_quantity.h"
+#include "app/scene/group_state.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
-
-// Positions and velocities of all masses of a group at one time.
-struct GroupState {
-  double time = 0;              // [s]
-  std::vector<Vec3> positions;  // as Simulation::read_positions [m]
-  std::vector<Vec3> velocities;
-};
-GroupState read_state(const Simulation& simulation);
 
 // One element per face, mass and spring of all robots, one robot after the other; empty where the quantity has none.
 struct ColorValues {

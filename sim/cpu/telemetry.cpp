@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mercury/observables.h"
+
 namespace mercury::cpu {
 namespace {
 
@@ -41,11 +43,10 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
   for (std::size_t id = 0; id < max_materials; ++id) factor[id] = muscle_factor(body.materials[id], clock);
   for (const Spring& spring : body.robot->springs) {
     const float distance = length(body.position(spring.b) - body.position(spring.a));
-    const float rest = spring.rest_length;
-    const auto stretch = static_cast<double>(distance - rest * factor[spring.material]);
+    const float too_long = stretch(distance, spring.rest_length, factor[spring.material]);
     result.elastic_energy +=
-        0.5 * static_cast<double>(scale * body.materials[spring.material].stiffness) * stretch * stretch;
-    result.largest_strain = std::max(result.largest_strain, std::abs(distance - rest) / rest);
+        elastic_energy(double{scale * body.materials[spring.material].stiffness}, double{too_long});
+    result.largest_strain = std::max(result.largest_strain, std::abs(strain(distance, spring.rest_length)));
   }
   return result;
 }

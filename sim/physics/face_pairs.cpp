@@ -30,23 +30,25 @@ FacePair pair_of(const Face& first, const Face& second, std::uint32_t key) {
   return {a, b, c, a};
 }
 
-FacePair told_by_place(FacePair pair, const Robot& robot) {
-  const auto place = [&](std::uint16_t mass) {
+// Chooses the vertex order by rest positions (face_pairs.h).
+FacePair ordered_by_position(FacePair pair, const Robot& robot) {
+  const auto key = [&](std::uint16_t mass) {
     const Vec3 x = robot.masses[mass];
     return std::tuple(x.z, x.y, x.x, mass);
   };
   if (pair.d == pair.a) return pair;
-  if (place(pair.c) < place(pair.a)) std::swap(pair.a, pair.c);
-  if (place(pair.d) < place(pair.b)) std::swap(pair.b, pair.d);
+  if (key(pair.c) < key(pair.a)) std::swap(pair.a, pair.c);
+  if (key(pair.d) < key(pair.b)) std::swap(pair.b, pair.d);
   return pair;
 }
 
 struct Candidate {
-  std::uint32_t apart, face, key;  // the second face stands so far behind the first
+  std::uint32_t apart, face, key;  // apart: index of the second face minus index of the first
   friend auto operator<=>(const Candidate&, const Candidate&) = default;
 };
 
-// Pairs of faces with a common edge, those that stand close in the file first: a square's two triangles do.
+// Pairs of faces with a common edge. Pairs whose faces are close in the file come first: they are often the two
+// triangles of a square.
 std::vector<Candidate> candidates_of(const Robot& robot) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * robot.faces.size());
@@ -73,7 +75,7 @@ std::vector<FacePair> pair_faces(const Robot& robot) {
   for (const auto& [apart, face, key] : candidates_of(robot)) {
     if (matched[face] || matched[face + apart]) continue;
     matched[face] = matched[face + apart] = 1;
-    pairs.push_back(told_by_place(pair_of(robot.faces[face], robot.faces[face + apart], key), robot));
+    pairs.push_back(ordered_by_position(pair_of(robot.faces[face], robot.faces[face + apart], key), robot));
   }
   for (std::size_t f = 0; f < robot.faces.size(); ++f)
     if (!matched[f]) pairs.push_back({robot.faces[f].a, robot.faces[f].b, robot.faces[f].c, robot.faces[f].a});

@@ -11,8 +11,7 @@
 
 #include "app/scene/arrows.h"
 #include "app/scene/color_scale.h"
-#include "app/scene/face_forces.h"
-#include "app/scene/floor_forces.h"
+#include "app/scene/group_state.h"
 #include "mercury/error.h"
 
 namespace mercury::test {
