@@ -112,7 +112,7 @@ RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recor
   const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
   bool on = true;
   while (on && simulation.steps() < steps) {
-    if (changes) changes->make(simulation);
+    if (changes) changes->apply(simulation);
     const std::int64_t sample = std::min(steps, (simulation.steps() / period + 1) * period);
     const std::int64_t stop = changes ? std::min(sample, changes->next_step()) : sample;
     on = stepper.advance_to(recorder ? std::min(stop, recorder->next_step()) : stop);

@@ -18,7 +18,7 @@ namespace {
 
 CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
 
-// Whether this command or one below it has the option.
+// Whether this command or one of its subcommands has the option.
 bool known_anywhere(CLI::App& command, const std::string& key) {
   if (find_option(command, key)) return true;
   const auto below = command.get_subcommands([](CLI::App*) { return true; });
@@ -35,7 +35,7 @@ bool is_given(const CLI::Option& option, const std::vector<std::string>& given) 
   });
 }
 
-// A scalar as it would be written on the command line; empty for other nodes.
+// A scalar as written on the command line; empty for other nodes.
 std::string scalar_text(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto whole = node.value_exact<std::int64_t>()) return fmt::to_string(*whole);
@@ -43,8 +43,8 @@ std::string scalar_text(const toml::node& node) {
   return {};
 }
 
-// The arguments of one key. Empty result for a flag that is false; throws std::invalid_argument for what no option
-// takes.
+// The arguments of one key; empty for a flag that is false. Throws std::invalid_argument for a value that no option
+// accepts.
 std::vector<std::string> arguments_of(const CLI::Option& option, const std::string& name, const toml::node& value) {
   const bool is_flag = option.get_expected_max() == 0;
   if (const auto flag = value.value_exact<bool>()) {
@@ -100,7 +100,7 @@ ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& com
       if (!option || is_given(*option, given)) continue;
       try {
         const std::vector<std::string> taken = arguments_of(*option, name, value);
-        // A command's own table is read last and replaces what the top level said.
+        // A command's own table is read last and overrides the top level.
         std::erase_if(arguments_, [&](const std::string& old) { return old == name || old.starts_with(name + "="); });
         arguments_.insert(arguments_.end(), taken.begin(), taken.end());
         lines_[name] = line;

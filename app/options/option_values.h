@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options whose values are checked as they are read: every error names the option and says what is accepted.
+// Options that check their values while they are parsed. Every error names the option and says what is accepted.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -26,19 +26,19 @@ std::string switch_of(std::string_view parameter, bool is_on_by_default);
 template <class Number>
 Number number_from(const std::string& option, std::string_view text);
 
-// The parts of a text between separators; one part if there is none.
+// The parts of a text between separators; one part if there is no separator.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-// So many numbers with commas between them. Throws InputError; `form` says what is accepted.
+// `count` numbers, separated by commas. Throws InputError, with `form` as what is accepted.
 std::vector<float> numbers_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
 
 // "1,0,-2.5". Throws InputError.
 Vec3 vector_from(const std::string& option, std::string_view text);
 
-// "WxH" or "WxHxD": positive whole numbers. Throws InputError; `form` says what is accepted, as in "WIDTHxHEIGHT".
+// "WxH" or "WxHxD": positive whole numbers. Throws InputError, with `form` as what is accepted: "WIDTHxHEIGHT".
 std::vector<int> sizes_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
 
-// An option with one value; given twice, the last one counts. `name` may list several, as in "-o,--output".
+// An option with one value. If it is given twice, the last value counts. `name` may list several names: "-o,--output".
 template <class Value, class Parse>
 CLI::Option* add_value(CLI::App& app, const std::string& name, Value& value, const std::string& description,
                        const std::string& form, Parse parse) {
@@ -49,7 +49,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, Value& value, con
       ->type_name(form);
 }
 
-// An option that is a number.
+// An option with a number as value.
 template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, const std::string& description,
                         const std::string& form) {
@@ -61,14 +61,14 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<Nu
   return add_value(app, name, value, description, form, number_from<Number>);
 }
 
-// An option that is text.
+// An option with text as value.
 inline CLI::Option* add_text(CLI::App& app, const std::string& name, std::string& value, const std::string& description,
                              const std::string& form) {
   return add_value(app, name, value, description, form,
                    [](const std::string&, const std::string& text) { return text; });
 }
 
-// An option that is one of several names.
+// An option with one of several words as value.
 CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value, std::vector<std::string> choices,
                         const std::string& description);
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t at_once = 64;  // robots made before they are written
+constexpr std::uint64_t at_once = 64;  // robots made together, then written
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many new robots into files: what all of `mercury new` has in common.
+// Writes new robots into files, for all kinds of `mercury new`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ namespace mercury {
 // Makes the index-th robot of a seed. Throws InputError if it cannot be made.
 using MakeRobot = std::function<Robot(std::uint64_t seed, std::uint64_t index)>;
 
-// A robot, or why there is none.
+// A robot, or the reason why it could not be made.
 struct MadeRobot {
   std::optional<Robot> robot;
   std::string failure;
@@ -36,10 +36,10 @@ class RobotOutput {
   std::uint64_t count() const { return count_; }
   std::uint64_t seed() const { return seed_; }
 
-  // Makes folders on the way. Throws InputError when the name cannot be used for so many robots.
+  // Creates the folders. Throws InputError if the name cannot be used for this number of robots.
   void prepare() const;
-  // Writes one robot, whole or not at all, into the file or as NAME.json into the folder, and prints the file's name.
-  // Throws InputError for a file that exists, unless it may be replaced.
+  // Writes one robot to the file, or to NAME.json in the folder, and prints the file's name. On an error no partial
+  // file is left. Throws InputError if the file exists, unless --force is given.
   void write(const Robot& robot) const;
 
  private:
@@ -53,8 +53,8 @@ class RobotOutput {
   std::string config_;
 };
 
-// Makes robots 0 .. count - 1 of the seed and writes them. A robot that cannot be made is told on standard error, and
-// the next one made. Returns the exit status: 0, or 1 if one could not be made or the user interrupted.
+// Makes robots 0 .. count - 1 of the seed and writes them. A robot that cannot be made is reported on standard
+// error, and the next one is made. Returns the exit status: 0, or 1 if one could not be made or the user interrupted.
 int write_robots(const RobotOutput& output, const MakeRobot& make);
 
 }  // namespace mercury

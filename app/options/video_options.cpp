@@ -34,18 +34,18 @@ Grid grid_from(const std::string& option, const std::string& text) {
 
 void VideoOptions::add_to(CLI::App& command) {
   const auto add = [](CLI::Option* option) { option->group("Picture"); };
-  add_text(command, "-o,--output", output_, "Video (.mp4, .webm, .gif), picture (.png), or a folder for a PNG a frame",
-           "FILE|FOLDER")
+  add_text(command, "-o,--output", output_,
+           "Video (.mp4, .webm, .gif), picture (.png), or a folder for one PNG per frame", "FILE|FOLDER")
       ->required();
   add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from));
-  add(add_number(command, "--fps", frames_per_second_, "Frames a second of video (default 30; 25 for .gif)", "N"));
-  add(add_number(command, "--speed", speed_, "Simulated seconds a second of video (default 1)", "X"));
+  add(add_number(command, "--fps", frames_per_second_, "Frames per second of video (default 30; 25 for .gif)", "N"));
+  add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X"));
   add(add_number(command, "--still", still_, "One picture (.png) of this moment rather than a video", "S"));
   add(add_value(command, "--contact-sheet", contact_sheet_,
-                "So many moments of --seconds in one picture (.png), which is as wide as --size", "CxR", grid_from));
+                "Columns and rows of moments of --seconds in one picture (.png), as wide as --size", "CxR", grid_from));
   add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4"));
   add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
-                 "How well it is drawn (default auto: high on a GPU, low without)"));
+                 "Quality of the drawing (default auto: high on a GPU, low without)"));
   add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},
                  "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
   add(command.add_flag("--no-interop", no_interop_,
@@ -89,7 +89,7 @@ VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
   const PictureSize frame{width,
                           static_cast<int>(std::lround(static_cast<double>(width) * sheet.height / sheet.width))};
   if (frame.width < 16 || frame.height < 16)
-    throw InputError("--contact-sheet", "so many moments leave no room for each; give a larger --size or fewer");
+    throw InputError("--contact-sheet", "the moments are too small to be drawn; give a larger --size or fewer moments");
   const std::int64_t frames = static_cast<std::int64_t>(contact_sheet_->columns) * contact_sheet_->rows;
   const double interval = frames > 1 ? seconds / static_cast<double>(frames - 1) : 0;
   return {.size = frame, .timing = {.frames = frames, .interval = interval, .pace = interval}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that say which pictures are made, and how they are drawn and kept.
+// The options for pictures and videos: size, timing, quality, encoding.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,18 +20,18 @@ class VideoOptions {
   // Adds the options to a command. The object must outlive it.
   void add_to(CLI::App& command);
 
-  // All of the following throw InputError naming the option that cannot be used.
+  // All of the following throw InputError that names the option that cannot be used.
 
-  // What is made of `seconds` of simulated time.
+  // The frames to make of `seconds` of simulated time.
   struct Plan {
     PictureSize size;  // of a frame
     render::PixelFormat pixels = render::PixelFormat::rgb;
     FilmTiming timing;
   };
   Plan plan(double seconds) const;
-  // Where it goes. `name`: of the robot that is filmed alone; empty = all.
+  // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots.
   std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name) const;
-  // The name of what open() makes.
+  // The file or folder that open() writes.
   std::string output_of(const std::string& name) const;
 
   double speed() const { return speed_; }

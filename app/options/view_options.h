@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that say what is seen and how.
+// The options for what pictures show, and how.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ class ViewOptions {
   // Adds the options to a command. The object must outlive it.
   void add_to(CLI::App& command);
 
-  // What was chosen. Throws InputError naming the option that cannot be used.
+  // The settings that the options describe. Throws InputError that names an option that cannot be used.
   ViewSettings settings() const;
 
  private:
@@ -30,7 +30,7 @@ class ViewOptions {
   bool smooth_ = false, follow_ = false;
 };
 
-// "skin,labels,clock": exactly these are shown. Throws InputError("--show: ...") that lists what there is.
+// "skin,labels,clock": shows exactly these. Throws InputError("--show: ...") that lists the possible words.
 Shown shown_from(const std::string& text);
 
 }  // namespace mercury

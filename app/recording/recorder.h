@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records a simulation while it runs: every so many steps a frame.
+// Records a simulation while it runs, one frame every few steps.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 namespace mercury {
 
 struct RecordingOptions {
-  std::int64_t every = 1;                 // steps from frame to frame
-  std::optional<std::int64_t> last_step;  // when the recording will end, if that is known
-  std::optional<std::uint64_t> seed;      // of the robots made at random, if there are any
+  std::int64_t every = 1;                 // steps per frame
+  std::optional<std::int64_t> last_step;  // where the recording ends, if known
+  std::optional<std::uint64_t> seed;      // of the random robots, if any
   int deflate = 0;                        // compression: 0 = none, 1 (fast) .. 9
 };
 
 class Recorder {
  public:
-  // Takes the first frame now. Throws as TrajectoryWriter, naming the option --record.
+  // Takes the first frame now. Throws like TrajectoryWriter; its messages name the option --record.
   Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options);
 
   // The step at which the next frame is due.
   std::int64_t next_step() const { return next_; }
-  // Takes a frame if one is due; to be called when the simulation stands at next_step(). Throws as TrajectoryWriter.
+  // Takes a frame if one is due. Call it when the simulation is at next_step(). Throws like TrajectoryWriter.
   void observe();
-  // Ends the file and gives it its name.
+  // Completes the file and gives it its name.
   void finish();
 
   std::int64_t frames() const { return writer_.frames(); }

@@ -81,7 +81,8 @@ std::string table_of(const RunReport& report) {
 
 std::string csv_of(const RunReport& report) {
   std::string text =
-      "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash\n";
+      "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,"
+      "first_bad_spring,hash\n";  // columns
   for (const RobotResult& robot : report.robots)
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
                         csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `mercury run` found, as a table, CSV or JSON.
+// The results of `mercury run` as a table, CSV or JSON.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct RobotResult {
   std::string name;
   std::size_t masses = 0, springs = 0;
   double displacement = 0;    // of the centre of mass, from start to end [m]
-  double mean_speed = 0;      // length of the way of the centre of mass over time [m/s]
-  double largest_strain = 0;  // the largest of all samples [1]
+  double mean_speed = 0;      // length of the path of the centre of mass per time [m/s]
+  double largest_strain = 0;  // over all samples [1]
   bool exploded = false;
   double exploded_at = 0;  // [s]
   std::uint32_t culprit_spring = no_spring;
@@ -25,10 +25,10 @@ struct RobotResult {
 
 struct RunReport {
   Configuration configuration;
-  std::string device;  // what ran it, for people
+  std::string device;  // device name, for people
   std::int64_t steps = 0;
   double seconds = 0;        // simulated
-  double wall_seconds = 0;   // spent in stepping
+  double wall_seconds = 0;   // spent on stepping
   bool interrupted = false;  // the user stopped it before the end
   std::vector<std::string> notes;
   std::vector<RobotResult> robots;
@@ -37,13 +37,13 @@ struct RunReport {
   double springs_per_second() const;
 };
 
-// A field of a CSV line, quoted where it must be (RFC 4180).
+// A field of a CSV line, in quotes where RFC 4180 requires them.
 std::string csv_field(const std::string& text);
 
 std::string table_of(const RunReport& report);
-// One line a robot under a line of names; fields with commas or quotes are quoted (RFC 4180).
+// A line of names, then one line per robot (RFC 4180).
 std::string csv_of(const RunReport& report);
-// What is not finite is null.
+// Numbers that are not finite become null.
 std::string json_of(const RunReport& report);
 
 }  // namespace mercury

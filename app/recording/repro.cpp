@@ -17,7 +17,7 @@ Simulation start_of(const Repro& repro, const Device& device) {
   return simulation;
 }
 
-void ReproChanges::make(Simulation& simulation) {
+void ReproChanges::apply(Simulation& simulation) {
   for (; next_step() <= simulation.steps(); ++next_) {
     const ReproChange& change = repro_.changes[next_];
     if (change.configuration) {

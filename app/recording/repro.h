@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot that explodes, with all that it takes to see it happen again: *.repro.
+// A robot that explodes, with everything needed to reproduce it: *.repro.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@
 
 namespace mercury {
 
-// What was changed when so many steps had been made, before the next one.
+// A change by the user after `step` steps, before the next one.
 struct ReproChange {
   std::int64_t step = 0;
   std::optional<Configuration> configuration;
   std::optional<std::vector<Material>> materials;          // the whole table
-  std::optional<std::vector<Perturbation>> perturbations;  // all there are from then on
+  std::optional<std::vector<Perturbation>> perturbations;  // all of them, from then on
 };
 
 struct Repro {
-  Robot robot;                              // with its materials as at the start
+  Robot robot;                              // with its materials at the start
   Configuration configuration;              // at the start
   Clock clock;                              // the start; its dt is the configuration's
   State state;                              // at the start
@@ -32,33 +32,33 @@ struct Repro {
   std::vector<ReproChange> changes;         // in order
   double exploded_at = 0;                   // [s]
   std::uint32_t culprit_spring = no_spring;
-  std::int64_t last_step = 0;  // by which it has exploded
-  std::string device_name;     // what ran it: on the same kind of device it happens again bit for bit
+  std::int64_t last_step = 0;  // the robot has exploded by then
+  std::string device_name;     // where it exploded; the same kind of device repeats it bit for bit
 };
 
-// By the extension.
+// Whether the extension is .repro.
 bool is_repro_name(const std::filesystem::path& path);
 
-// A JSON document that gives the same again, bit for bit.
+// A JSON document from which parse_repro() restores every bit.
 std::string serialize_repro(const Repro& repro);
-// Throws InputError, in one line without the path, for what is not a whole repro.
+// Throws InputError, one line without the path, unless the document is a complete repro.
 Repro parse_repro(std::string_view document);
-// Throws InputError, the path before the message.
+// Throws InputError that begins with the path.
 Repro load_repro(const std::filesystem::path& path);
 
-// The simulation of a repro as it stands at its start, on that device. Throws as Simulation.
+// The simulation of a repro at its start, on that device. Throws like Simulation.
 Simulation start_of(const Repro& repro, const Device& device);
 
-// Makes the changes of a repro in its simulation as their steps come.
+// Applies the changes of a repro to its simulation, each at its step.
 class ReproChanges {
  public:
   explicit ReproChanges(const Repro& repro) : repro_(repro) {}
-  // The step of the next one; the largest number if none is left.
+  // The step of the next change; the largest number if none is left.
   std::int64_t next_step() const {
     return next_ < repro_.changes.size() ? repro_.changes[next_].step : std::numeric_limits<std::int64_t>::max();
   }
-  // Those of the step at which the simulation stands.
-  void make(Simulation& simulation);
+  // Applies the changes due at the present step of the simulation.
+  void apply(Simulation& simulation);
 
  private:
   const Repro& repro_;

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "mercury-repro";
 constexpr int version = 1;
-constexpr std::int64_t most_steps = 1'000'000'000'000'000;
+constexpr std::int64_t max_steps = 1'000'000'000'000'000;
 
 Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
 
@@ -38,7 +38,7 @@ Json json_of(std::span<const Perturbation> perturbations) {
   return list;
 }
 
-// The materials that differ from those of before, as [id, stiffness, amplitude, frequency, phase].
+// The materials that changed, as [id, stiffness, amplitude, frequency, phase].
 Json changes_of(std::span<const Material> before, std::span<const Material> after) {
   Json list = Json::array();
   for (std::size_t id = 0; id < after.size(); ++id)
@@ -78,7 +78,7 @@ std::vector<Vec3> vectors_of(const Json& json, std::size_t count) {
 
 std::int64_t step_of(const Json& json, std::int64_t least) {
   const auto step = json.is_number_integer() ? json.get<std::int64_t>() : -1;
-  if (step < least || step > most_steps)
+  if (step < least || step > max_steps)
     throw InputError(fmt::format("{} is not accepted as a step here; give {} or more", json.dump(), least));
   return step;
 }
@@ -172,7 +172,7 @@ std::string serialize_repro(const Repro& repro) {
   const auto own = materials_of(repro.robot);
   std::vector<Material> materials(own.begin(), own.end());
   json["changes"] = Json::array();
-  // Changes of one step are of different kinds, which do not touch each other: told in one order, however they came.
+  // Changes of one step are of different kinds and do not depend on each other, so the document has them in one order.
   std::vector<ReproChange> changes = repro.changes;
   std::ranges::stable_sort(changes, {}, [](const ReproChange& c) {
     return std::pair(c.step, c.configuration ? 2 : c.perturbations ? 1 : 0);

@@ -10,7 +10,7 @@
 namespace mercury {
 namespace {
 
-// Tells of robots as the CPU backend does, whose masses it puts where they were.
+// Writes recorded states into a CPU backend, which answers all questions about them.
 class Playback final : public Backend {
  public:
   explicit Playback(std::shared_ptr<TrajectoryReader> trajectory)
@@ -31,22 +31,22 @@ class Playback final : public Backend {
   void step(const Clock& clock, std::int64_t steps) override { go_to(clock.step + steps); }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
-    at_present().read(robot, positions, velocities);
+    current().read(robot, positions, velocities);
   }
-  // A simulation puts its robots at rest to begin anew.
+  // A simulation writes the rest state when it restarts.
   void write(std::size_t, std::span<const Vec3>, std::span<const Vec3>) override { go_to(0); }
   void set_status(std::size_t, const RobotStatus&) override {}
-  void read_positions(std::span<Vec3> out) const override { at_present().read_positions(out); }
-  void read_velocities(std::span<Vec3> out) const override { at_present().read_velocities(out); }
-  RobotStatus status(std::size_t robot) const override { return at_present().status(robot); }
-  std::vector<RobotStatus> statuses() const override { return at_present().statuses(); }
+  void read_positions(std::span<Vec3> out) const override { current().read_positions(out); }
+  void read_velocities(std::span<Vec3> out) const override { current().read_velocities(out); }
+  RobotStatus status(std::size_t robot) const override { return current().status(robot); }
+  std::vector<RobotStatus> statuses() const override { return current().statuses(); }
   void write_materials(std::span<const Material> tables) override { robots_->write_materials(tables); }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     robots_->write_materials(robot, table);
   }
   void set_perturbations(std::span<const Perturbation>) override {}
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
-    at_present().report(clock, telemetry, statuses);
+    current().report(clock, telemetry, statuses);
   }
 
  private:
@@ -55,8 +55,8 @@ class Playback final : public Backend {
     shown_ = false;
   }
 
-  // Frames are read when somebody looks, not for every step.
-  Backend& at_present() const {
+  // Frames are read on demand, not for every step.
+  Backend& current() const {
     if (!shown_) show();
     shown_ = true;
     return *robots_;

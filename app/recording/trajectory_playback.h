@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A trajectory as a simulation: everything that looks at a simulation, such as a film, can look at a recording.
+// A trajectory as a simulation, so that videos and the window can show a recording.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace mercury {
 
-// A simulation whose steps are read rather than computed: it stands at the first frame, and n steps on it is where the
-// recorded one was then, between two frames on the line between them, after the last frame at the last. Its time counts
-// from the first frame. Robots that exploded are marked from then on. Materials, energies and strains are told as ever;
-// pulls and changed parameters change nothing.
+// A simulation that reads its states instead of computing them. It starts at the first frame, and its time counts from
+// there. Between two frames it interpolates linearly; after the last frame it stays. Robots that exploded are marked
+// from that step on. Materials, energies and strains are available as usual; perturbations and changed parameters have
+// no effect.
 Simulation playback(std::shared_ptr<TrajectoryReader> trajectory);
 
 }  // namespace mercury

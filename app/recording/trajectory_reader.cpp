@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 
@@ -28,7 +29,7 @@ Handle open_file(const std::filesystem::path& path) {
   }
 }
 
-// All elements of a dataset whose first axis is free and whose others are `row`.
+// All elements of a dataset of any length whose elements have the extent `row`.
 template <class Element>
 std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memory_type, const Extent& row) {
   const Handle dataset = open_dataset(parent, name);
@@ -79,7 +80,7 @@ std::vector<Spring> read_springs(hid_t robot) {
   return springs;
 }
 
-// A table that equals the defaults is left out, as in a robot that has none of its own.
+// A robot without materials of its own has the default table, so a table that equals it is dropped.
 void read_materials(hid_t group, Robot& robot) {
   robot.materials = read_rows<Material>(group, "materials", material_type(), {});
   if (has_member(group, "material_names")) robot.material_names = read_texts_dataset(group, "material_names");
@@ -175,7 +176,7 @@ void TrajectoryReader::read_robots() {
   }
   offsets_.assign(1, 0);
   for (const RecordedRobot& recorded : robots_) offsets_.push_back(offsets_.back() + recorded.robot.masses.size());
-  frames_a_block_ = std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * offsets_.back()), 1, chunk);
+  frames_per_block_ = std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * offsets_.back()), 1, chunk);
 }
 
 RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group) const {
@@ -206,13 +207,13 @@ std::size_t TrajectoryReader::frame_of_step(std::int64_t step) const { return la
 std::span<const Vec3> TrajectoryReader::read(Block& block, std::size_t frame) {
   if (frame >= frames()) throw std::out_of_range("frame " + std::to_string(frame) + " of " + std::to_string(frames()));
   if (frame < block.first || frame >= block.first + block.count)
-    guarded([&] { read_block(block, frame - frame % frames_a_block_); });
+    guarded([&] { read_block(block, frame - frame % frames_per_block_); });
   return std::span(block.values).subspan((frame - block.first) * mass_count(), mass_count());
 }
 
 void TrajectoryReader::read_block(Block& block, std::size_t first) {
-  block.count = 0;  // nothing, until all of it is there
-  const std::size_t count = std::min(frames_a_block_, frames() - first);
+  block.count = 0;  // none, in case reading throws
+  const std::size_t count = std::min(frames_per_block_, frames() - first);
   block.values.resize(count * mass_count());
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const hsize_t masses = offsets_[i + 1] - offsets_[i];

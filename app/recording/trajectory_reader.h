@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what TrajectoryWriter wrote: robots, configuration, and frames by index.
+// Reads a trajectory: robots, configuration, and frames by index.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct RecordedRobot {
   std::optional<std::uint32_t> culprit_spring;
 };
 
-// Holds a few frames (at most 64 MB, or one frame if that is more); memory follows what the file holds, never what it
-// announces. Every member throws InputError, the path before the message, for a file that cannot be read.
+// Holds a few frames (at most 64 MB, or one frame if that is more). A damaged file cannot make it allocate more memory
+// than its content justifies. Every member throws InputError, which begins with the path, if the file cannot be read.
 class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::filesystem::path& path);
@@ -32,27 +32,27 @@ class TrajectoryReader {
   const std::filesystem::path& path() const { return path_; }
   const std::vector<RecordedRobot>& robots() const { return robots_; }  // in the order of the batch
   const Configuration& configuration() const { return configuration_; }
-  const std::string& device_name() const { return device_name_; }  // what ran it, for people
-  const std::string& program() const { return program_; }          // what wrote it: "mercury 0.1.0"
+  const std::string& device_name() const { return device_name_; }  // for people
+  const std::string& program() const { return program_; }          // that wrote the file: "mercury 0.1.0"
   std::optional<std::uint64_t> seed() const { return seed_; }
-  std::int64_t every() const { return every_; }  // steps from frame to frame
+  std::int64_t every() const { return every_; }  // steps per frame
 
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
   double time(std::size_t frame) const { return times_.at(frame); }  // [s]
-  // The last frame at or before a time or step; 0 for one before the first.
+  // The last frame at or before a time or step; 0 if that is before the first frame.
   std::size_t frame_at(double time) const;
   std::size_t frame_of_step(std::int64_t step) const;
 
-  std::size_t mass_count() const { return offsets_.back(); }              // of all robots together
+  std::size_t mass_count() const { return offsets_.back(); }              // of all robots
   std::span<const std::size_t> mass_offsets() const { return offsets_; }  // size() + 1 elements
-  // All robots' masses, one robot after the other; the span is valid until the next call. One frame after the other is
-  // fastest.
+  // The masses of all robots, one robot after the other. The span is valid until the next call. Reading frames in
+  // order is fastest.
   std::span<const Vec3> positions(std::size_t frame) { return read(positions_, frame); }
   std::span<const Vec3> velocities(std::size_t frame) { return read(velocities_, frame); }
 
  private:
-  // Neighbouring frames of one element, read together since they are stored together.
+  // Consecutive frames of one element, read together because they are stored together.
   struct Block {
     const char* element;
     std::size_t first = 0, count = 0;
@@ -78,7 +78,7 @@ class TrajectoryReader {
   std::vector<double> times_;
   std::vector<RecordedRobot> robots_;
   std::vector<std::size_t> offsets_;
-  std::size_t frames_a_block_ = 1;
+  std::size_t frames_per_block_ = 1;
   Block positions_{"position"}, velocities_{"velocity"};
 };
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "app/base/version.h"
+#include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 
@@ -20,11 +21,11 @@ using namespace hdf5;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Spring) == 12 && sizeof(Face) == 6);
 
-constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames, before they are written
-constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of the largest robot's chunks, at most
+constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames in memory
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of one chunk of the largest robot, at most
 constexpr std::size_t longest_block = 64;                  // frames
 
-// The user's name, which H5MD asks for.
+// The user's name, which H5MD requires.
 std::string author() {
   const passwd* user = getpwuid(getuid());
   if (!user) return "unknown";
@@ -39,12 +40,12 @@ std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t e
   length = std::max<std::size_t>(1, length);
   if (expected_frames <= 0) return length;
   const auto frames = static_cast<std::size_t>(expected_frames), blocks = (frames - 1) / length + 1;
-  return (frames - 1) / blocks + 1;  // equal blocks, so that the last one is hardly padded
+  return (frames - 1) / blocks + 1;  // equal blocks, so that the last one has little padding
 }
 
 Handle create_file(const std::filesystem::path& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
-  // This format checksums all that describes the data, so that damage is found when it is read.
+  // This version of the format has checksums for metadata, so that the reader detects damage.
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST));
   checked(H5Pset_file_locking(access, true, true));  // some network drives lack locks
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
@@ -60,8 +61,8 @@ std::runtime_error write_failure(const std::filesystem::path& path, const Error&
 
 }  // namespace
 
-// Runs work that writes. A file that could not be written takes its room on a full disk until the program ends, so it
-// is emptied.
+// Runs work that writes. If it fails, the file would take space on a full disk until the program ends, so it is
+// truncated.
 template <class Work>
 void TrajectoryWriter::guarded(const Work& work) {
   try {
@@ -98,9 +99,9 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     largest = std::max(largest, robot->masses.size());
   }
   groups_ = group_names(names);
-  frames_a_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
-  positions_.resize(frames_a_block_ * offsets_.back());
-  velocities_.resize(frames_a_block_ * offsets_.back());
+  frames_per_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
+  positions_.resize(frames_per_block_ * offsets_.back());
+  velocities_.resize(frames_per_block_ * offsets_.back());
   guarded([&] {
     write_header(header);
     for (std::size_t i = 0; i < robots.size(); ++i)
@@ -179,7 +180,7 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
 }
 
-// The pairs and triples where H5MD looks for them, and beside the masses as well.
+// Springs and faces where H5MD expects them, with links beside the masses.
 void TrajectoryWriter::write_connectivity(const std::string& name, const Robot& robot, hid_t particles) {
   std::vector<std::uint16_t> ends;
   std::vector<MaterialId> materials;
@@ -204,7 +205,7 @@ void TrajectoryWriter::write_connectivity(const std::string& name, const Robot& 
              "m");
 }
 
-// A robot with the default materials shares one table with all others of that kind.
+// All robots with the default materials share one table.
 void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials) {
   if (std::ranges::equal(materials, default_materials()) && robot.material_names.empty()) {
     link(parameters_, "materials", particles, "materials");
@@ -215,12 +216,12 @@ void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std:
   if (!robot.material_names.empty()) write_text_dataset(particles, "material_names", robot.material_names);
 }
 
-// H5MD lets elements sampled at the same times share one time axis.
+// All elements share one time axis, as H5MD allows.
 void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
   for (const auto& [element, unit] : {std::pair{"position", "m"}, std::pair{"velocity", "m s-1"}}) {
     const Handle group = create_group(particles, element);
     write_unit(create_growing(group, "value", H5T_IEEE_F32LE,
-                              {.row = {masses, 3}, .chunk = frames_a_block_, .deflate = deflate_}),
+                              {.row = {masses, 3}, .chunk = frames_per_block_, .deflate = deflate_}),
                unit);
     link(parameters_, "step", group, "step");
     link(parameters_, "time", group, "time");
@@ -228,7 +229,7 @@ void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
 }
 
 TrajectoryWriter::Frame TrajectoryWriter::add(std::int64_t step, double time) {
-  if (steps_.size() == frames_a_block_) flush();
+  if (steps_.size() == frames_per_block_) flush();
   const std::size_t masses = offsets_.back(), first = steps_.size() * masses;
   steps_.push_back(step);
   times_.push_back(time);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions and velocities of a batch, frame by frame, into an H5MD 1.1 file (docs/formats.md).
+// Writes the positions and velocities of a batch, frame by frame, into an H5MD 1.1 file (docs/formats.md).
 #pragma once
 
 #include <cstdint>
@@ -17,37 +17,37 @@
 
 namespace mercury {
 
-// What a trajectory says besides its frames.
+// Everything in a trajectory except robots and frames.
 struct TrajectoryHeader {
   Configuration configuration;
-  std::string device_name;            // what ran it, for people
-  std::optional<std::uint64_t> seed;  // of the robots made at random, if there are any
-  std::int64_t every = 1;             // steps from frame to frame
-  std::int64_t expected_frames = 0;   // how many will come; 0 = unknown
+  std::string device_name;            // for people
+  std::optional<std::uint64_t> seed;  // of the random robots, if any
+  std::int64_t every = 1;             // steps per frame
+  std::int64_t expected_frames = 0;   // 0 = unknown
   int deflate = 0;                    // compression of the frames: 0 = none, 1 (fast) .. 9
 };
 
-// Streams: holds a few frames (at most 64 MB, or one frame if that is more) and no open object a robot. The file has a
-// temporary name until finish(); without finish() nothing is left behind.
+// Streams: holds a few frames (at most 64 MB, or one frame if that is more) and keeps no HDF5 object open per robot.
+// The file has a temporary name until finish(); without finish() nothing is left behind.
 class TrajectoryWriter {
  public:
-  // `materials` has robots.size() * max_materials elements, as Simulation::materials(). Robots may share names: their
-  // groups are told apart by numbers. Throws InputError naming `option` when the file cannot be made there,
-  // std::runtime_error when the disk is full.
+  // `materials` has robots.size() * max_materials elements, as Simulation::materials(). Robots may share a name;
+  // numbers distinguish their groups. Throws InputError that begins with `option` if the file cannot be created, and
+  // std::runtime_error if the disk is full.
   TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
                    std::span<const Robot* const> robots, std::span<const Material> materials, const char* option);
   ~TrajectoryWriter();
 
-  // One frame to be filled: one element a mass, robot after robot.
+  // A frame that the caller fills: one element per mass, robot after robot.
   struct Frame {
     std::span<Vec3> positions, velocities;
   };
-  // The next frame; it is to be filled before the next call of anything here. Steps grow from frame to frame.
-  // Throws std::runtime_error, as "run.h5: the disk is full; nothing was kept".
+  // The next frame. Fill it before any other call. Steps increase from frame to frame.
+  // Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
   Frame add(std::int64_t step, double time);
 
-  // Notes which robots exploded (`telemetry` has one element a robot), closes the file and gives it its name.
-  // Throws as add().
+  // Records which robots exploded (`telemetry` has one element per robot), closes the file and gives it its name.
+  // Throws like add().
   void finish(std::span<const Telemetry> telemetry);
 
   std::int64_t frames() const { return frames_; }
@@ -69,11 +69,11 @@ class TrajectoryWriter {
   UnfinishedFile unfinished_;
   hdf5::Handle file_, particles_, connectivity_, parameters_;
   std::vector<std::string> groups_;   // names in /particles
-  std::vector<std::size_t> offsets_;  // of the robots' first masses in a frame, and their sum
-  std::vector<std::int64_t> steps_;   // of the frames held
+  std::vector<std::size_t> offsets_;  // of each robot's first mass in a frame, then the number of masses
+  std::vector<std::int64_t> steps_;   // of the frames in memory
   std::vector<double> times_;
-  std::vector<Vec3> positions_, velocities_;  // held: frames_a_block_ times offsets_.back() elements
-  std::size_t frames_a_block_ = 1;
+  std::vector<Vec3> positions_, velocities_;  // frames_per_block_ times offsets_.back() elements
+  std::size_t frames_per_block_ = 1;
   std::int64_t frames_ = 0;
   int deflate_ = 0;
 };

@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "-o: a.mp4: a picture is written as .png; give such a name"},
         BadInput{"TinyMoments",
                  {"render", "--random", "voxel", "-o", "a.png", "--contact-sheet", "500x2"},
-                 "--contact-sheet: so many moments leave no room for each; give a larger --size or fewer"},
+                 "--contact-sheet: the moments are too small to be drawn; give a larger --size or fewer moments"},
         BadInput{"GridTooSmall",
                  {"render", "--random", "voxel:5", "-o", "a.png", "--still", "0", "--grid", "2x2"},
                  "--grid: 5 robots do not fit into 2x2; give more columns or rows"},

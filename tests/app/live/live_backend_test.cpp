@@ -148,7 +148,7 @@ TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
   Simulation same = start_of(read, device());
   ReproChanges changes(read);
   while (same.steps() < 400) {
-    changes.make(same);
+    changes.apply(same);
     same.step(std::min<std::int64_t>(400, changes.next_step()) - same.steps());
   }
   EXPECT_EQ(same.hash(0), simulation.hash(0));

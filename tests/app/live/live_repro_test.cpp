@@ -172,7 +172,7 @@ TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
   Simulation same = start_of(read, configuration.device);
   ReproChanges changes(read);
   while (same.steps() < repro.last_step) {
-    changes.make(same);
+    changes.apply(same);
     same.step(std::min(repro.last_step, changes.next_step()) - same.steps());
   }
   EXPECT_EQ(same.hash(0), simulation.hash(0));

@@ -160,10 +160,10 @@ TEST_F(Recording, FrameAtATimeIsTheLastOneBefore) {
 TEST_F(Recording, ExplodedRobotsAreNotedAndWhatIsNotFiniteIsKept) {
   Configuration configuration = on_cpu();
   configuration.dt = 1;  // omega = sqrt(2 k / m) = 10 rad/s is unstable beyond 0.2 s
-  Robot calm = pair("calm");
-  calm.springs[0].material = 2;
-  calm.materials = {{}, {}, {0.1f, 0, 0, 0}};
-  Simulation simulation(configuration, std::vector{pair("wild"), calm});
+  Robot steady = pair("steady");
+  steady.springs[0].material = 2;
+  steady.materials = {{}, {}, {0.1f, 0, 0, 0}};
+  Simulation simulation(configuration, std::vector{pair("wild"), steady});
   record(simulation, file(), 40, 1);
   const Telemetry wild = simulation.telemetry(0);
   ASSERT_TRUE(wild.exploded);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Attributes and datasets of a trajectory that is read. All functions throw Error, and for content that is not of the
+// expected kind too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/recording/trajectory_hdf5.h"
+
+namespace mercury::hdf5 {
+
+// The names of a group's members, in any order.
+std::vector<std::string> members(hid_t group);
+
+template <class Number>
+Number read_attribute(hid_t object, const std::string& name);
+template <class Number, std::size_t count>
+std::array<Number, count> read_attributes(hid_t object, const std::string& name);
+std::string read_text(hid_t object, const std::string& name);
+
+// Throws Error unless the file is large enough to hold that many bytes of the dataset's content, compressed as far as
+// deflate can. Call it before memory is allocated: a damaged file may announce any size.
+void require_content(hid_t dataset, std::uint64_t bytes);
+// Reads the whole content.
+void read_dataset(hid_t dataset, hid_t memory_type, void* content);
+std::string read_text_dataset(hid_t parent, const std::string& name);
+std::vector<std::string> read_texts_dataset(hid_t parent, const std::string& name);
+
+}  // namespace mercury::hdf5
