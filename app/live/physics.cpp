@@ -10,7 +10,7 @@ namespace mercury {
 
 Physics::Physics(const Configuration& configuration, Messages& messages)
     : parts_(std::make_unique<Parts>(configuration, messages)) {
-  parts_->tell();
+  parts_->publish_snapshot();
   parts_->thread = std::thread([parts = parts_.get()] { parts->run(); });
 }
 
@@ -18,18 +18,19 @@ Physics::~Physics() {
   {
     const std::lock_guard lock(parts_->mutex);
     parts_->pending.quit = true;
-    parts_->asked.notify_all();
+    parts_->wake.notify_all();
   }
   parts_->thread.join();
 }
 
 namespace {
 
+// Changes the pending commands and wakes the physics thread.
 template <class Change>
 void request(auto& parts, Change change) {
   const std::lock_guard lock(parts.mutex);
   change(parts.pending);
-  parts.asked.notify_all();
+  parts.wake.notify_all();
 }
 
 }  // namespace
@@ -87,8 +88,8 @@ void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; 
 
 std::shared_ptr<const Snapshot> Physics::newest() {
   const std::lock_guard lock(parts_->mutex);
-  parts_->looked_at = true;
-  parts_->asked.notify_all();
+  parts_->snapshot_wanted = true;
+  parts_->wake.notify_all();
   return parts_->snapshot;
 }
 
@@ -112,8 +113,8 @@ std::string Physics::device_name() const { return parts_->device; }
 void Physics::wait_until_done() {
   std::unique_lock lock(parts_->mutex);
   const std::uint64_t ticket = parts_->pending.ticket = ++parts_->tickets;
-  parts_->looked_at = true;
-  parts_->asked.notify_all();
+  parts_->snapshot_wanted = true;
+  parts_->wake.notify_all();
   parts_->done.wait(lock, [&] { return parts_->tickets_done >= ticket; });
 }
 

@@ -1,5 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulation of the window, on a thread of its own.
+// The simulation of the window, on its own thread.
+//
+// Threads. Two threads share this class. Each object belongs to one of them, or to both under one mutex:
+//
+//   window thread                          shared, under the mutex              physics thread
+//   -------------                          -----------------------              --------------
+//   play(), step(), set_scene(), ... --->  PendingCommands  ----------------->  carry_out(): Simulation, Population,
+//                                          (latest command of each kind)        ReplayLog, Pace
+//                                                                               advance(): a slice of steps
+//   newest() <---------------------------  newest Snapshot  <-----------------  publish_snapshot(), if newest() was
+//     draws it, holds it as long           "snapshot wanted" flag  ---------->  called since the last one
+//     as it likes
+//   take_explosions(), repro() <---------  Explosions, repros <---------------  report_explosions()
+//
+// Background tasks (background.h) never touch Physics; their results reach it through the window thread.
+//
+// A snapshot is written once by the physics thread and is constant from then on, so the window reads it without a lock.
+// The last reader, on whatever thread, returns its memory to the SnapshotPool.
+//
+// Why it is built this way:
+// 1. The window never waits for physics. A slice of steps takes several milliseconds, in a large scene much longer, but
+//    a click must take effect in the next picture. Only wait_until_done() waits; tests use it.
+// 2. Commands replace each other. A slider sends a value per picture; only the latest counts. Commands that must not be
+//    lost, such as step(), add up.
+// 3. A snapshot is made only after newest() was called. Reading positions from a GPU interrupts the steps, so physics
+//    reads them as often as the window draws and no more. At unlimited speed snapshots take at most a fifth of the
+//    time.
+// 4. Commands take effect between slices and in a fixed order: scene, view, reset, perturbations, speed, steps. The
+//    results depend on the steps and not on how they fall into slices.
 #pragma once
 
 #include <memory>
@@ -14,56 +42,56 @@
 
 namespace mercury {
 
+// An explosion that the physics thread has seen.
 struct Explosion {
   RobotId robot = 0;
   double time = 0;                           // [s]
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
 };
 
-// Steps a simulation in slices of a few milliseconds and tells of it whenever somebody looks. All members are for one
-// other thread, and none but wait_until_done() waits for physics: what is asked for is noted, the last wish of a kind
-// counts, and is carried out between slices in this order: scene, view, reset, steps.
-// The results depend on the steps alone, not on how they fall into slices.
+// All members are called from one thread, the window's.
 class Physics {
  public:
-  // Throws InputError for a configuration that cannot be used, DeviceError when the device is not there.
+  // Throws InputError for an invalid configuration and DeviceError for a missing device. Reports later failures to
+  // `messages`.
   explicit Physics(const Configuration& configuration, Messages& messages);
   ~Physics();
   Physics(const Physics&) = delete;
   Physics& operator=(const Physics&) = delete;
 
-  // Simulates these robots, each valid, under this configuration, whose device must be the first one's. Robots that are
-  // there already keep their state; new ones start at rest at the present time; one that was there before goes on from
-  // where it left, unless time began anew since. If they cannot be simulated, as for want of memory, that is told, and
-  // none is until the next call.
+  // Replaces the robots and the configuration. The robots must be valid, and the device must be that of the
+  // constructor. A robot that is already simulated keeps its state. A robot that was removed and comes back continues
+  // from its last state, unless reset() was called in between. A new robot starts at rest at the present time. If the
+  // robots cannot be simulated, for example for lack of memory, a message says so and no robot is simulated until the
+  // next call.
   void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
-  // One robot, from the start of a repro, whose changes happen again as its steps are made; reset() goes back there,
-  // and steps asked for before are forgotten. The next set_scene() ends that: what the repro would still change, it
-  // does not. `configuration` is the repro's.
+  // Replays a repro: simulates its robot from its start and applies its changes at their steps. reset() returns to the
+  // start. Pending steps are dropped. The next set_scene() ends the replay, and later changes of the repro are not
+  // applied. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
-  void set_view(const ViewSettings& settings);  // what snapshots hold details of
-  void set_perturbations(
-      std::vector<LivePerturbation> perturbations);  // those on masses that are not there are left out
+  void set_view(const ViewSettings& settings);  // selects the details that snapshots hold
+  // Replaces all perturbations. Those on missing robots or masses are ignored.
+  void set_perturbations(std::vector<LivePerturbation> perturbations);
   void play();
   void pause();
-  void set_speed(double speed);   // above 0; unlimited_speed = as fast as it goes
-  void step(std::int64_t count);  // pauses, then so many steps; several calls add up
-  void reset();                   // time 0, all at rest; steps asked for before are forgotten
+  void set_speed(double speed);   // simulated seconds per second, above 0, or unlimited_speed
+  void step(std::int64_t count);  // pauses, then makes `count` steps; several calls add up
+  void reset();                   // back to time 0 and rest; drops pending steps
   void pause_on_explosion(bool pause);
-  // Whether snapshots have velocities while robots play, too; else only at rest, and those that wait_until_done() waits
-  // for.
+  // Snapshots have velocities while physics pauses and after wait_until_done(). With `watch`, those of playing robots
+  // have them, too.
   void watch_velocities(bool watch);
 
-  // The newest snapshot told; asks for a newer one. Never nothing.
+  // Returns the newest snapshot, never null, and requests the next one.
   std::shared_ptr<const Snapshot> newest();
-  // Those since the last call, and robots that came back exploded.
+  // Returns the explosions since the last call, and the robots that came back exploded.
   std::vector<Explosion> take_explosions();
-  // What it takes to see a robot's explosion again; nothing unless it exploded since time began.
+  // Returns what it takes to repeat a robot's explosion, or nothing if it has not exploded since the last reset().
   std::optional<Repro> repro(RobotId robot) const;
   const Measurements& measurements() const;
   std::string device_name() const;
 
-  // Waits until all that was asked for is carried out, steps as well, and newest() tells of it.
+  // Waits until all commands are carried out, steps included, and newest() shows the result.
   void wait_until_done();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Physics holds: what is asked of its thread, and what that thread works on.
+// The private state of Physics. physics.h explains which thread owns what.
 #pragma once
 
 #include <atomic>
@@ -21,12 +21,12 @@
 
 namespace mercury {
 
-// What is asked for and not yet carried out.
+// Commands that the physics thread has not taken yet, the latest of each kind.
 struct PendingCommands {
   struct Scene {
     std::vector<LiveRobot> robots;
     Configuration configuration;
-    std::shared_ptr<const Repro> repro;  // to start from; or nothing
+    std::shared_ptr<const Repro> repro;  // to replay, or nothing
   };
   std::optional<Scene> scene;
   std::optional<ViewSettings> view;
@@ -35,7 +35,7 @@ struct PendingCommands {
   std::optional<double> speed;
   std::int64_t steps = 0;
   bool drop_steps = false, reset = false, quit = false;
-  std::uint64_t ticket = 0;  // of the last who waits until all is done; 0 = nobody
+  std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
     return scene || view || perturbations || playing || pause_on_explosion || speed || steps > 0 || reset || quit ||
@@ -47,22 +47,22 @@ struct Physics::Parts {
   Parts(const Configuration& configuration, Messages& all)
       : messages(all), simulation(configuration), population(simulation), device(simulation.device_name()) {}
 
-  // Shared by both threads, under the mutex.
+  // Shared by both threads under the mutex.
   std::mutex mutex;
-  std::condition_variable asked, done;
+  std::condition_variable wake, done;  // for the physics thread; for wait_until_done()
   PendingCommands pending;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<Explosion> explosions;
   std::map<RobotId, std::function<Repro()>> repros;  // of robots that exploded
-  bool looked_at = true;                             // newest() was called since the last snapshot
-  std::uint64_t tickets = 0, tickets_done = 0;
+  bool snapshot_wanted = true;                       // newest() was called after the last snapshot
+  std::uint64_t tickets = 0, tickets_done = 0;       // calls of wait_until_done() begun and served
 
+  // Safe to use from any thread.
   Messages& messages;
   Measurements measurements;
-
   std::atomic<bool> velocities_wanted = false;
 
-  // The physics thread's own.
+  // Owned by the physics thread.
   Simulation simulation;
   Population population;
   const std::string device;
@@ -73,39 +73,39 @@ struct Physics::Parts {
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
   ReplayLog replay_log;
-  std::shared_ptr<const Repro> replayed;  // what is made to happen again; or nothing
-  std::size_t next_change = 0;            // of it
-  std::set<std::string> told_notes;
+  std::shared_ptr<const Repro> replayed_repro;  // or nothing
+  std::size_t next_change = 0;                  // index in replayed_repro->changes
+  std::set<std::string> reported_notes;
   Pace pace;
   SpeedGauge gauge;
   bool playing = false, stop_at_explosion = false;
   double speed = 1, step_seconds = 0;
-  double told_at = 0, gathering_seconds = 0;           // end and length of the last tell() [s]
-  double stepping_seconds = 0, measuring_seconds = 0;  // since measuring was last weighed [s]
-  std::int64_t steps_left = 0;                         // asked for one by one
-  std::uint64_t ticket = 0;                            // the last one taken
+  double published_at = 0, gathering_seconds = 0;      // end and duration of the last publish_snapshot() [s]
+  double stepping_seconds = 0, measuring_seconds = 0;  // since the last limit_measuring() [s]
+  std::int64_t steps_left = 0;                         // of step()
+  std::uint64_t ticket = 0;                            // the latest one taken
   std::uint64_t resets = 0, stops = 0;
-  bool dirty = true;   // something changed since the last snapshot told
-  std::thread thread;  // last: begins when all else is there
+  bool dirty = true;   // something changed after the last snapshot
+  std::thread thread;  // last: it starts when all other members exist
 
   void run();
-  bool take_pending(PendingCommands& taken);
+  bool wait_for_commands(PendingCommands& taken);
   void carry_out(PendingCommands& taken);
   void guarded(auto work);
   bool set_scene(const PendingCommands::Scene& scene);
   void start_over();
-  void begin_time();
+  void restart();
   void begin_replay();
-  void make_changes();
+  void apply_repro_changes();
   std::int64_t next_change_step() const;
-  void watch();
+  void observe_details();
   void begin_pace();
   void advance();
   void take_steps(std::int64_t count);
-  void note_explosions(bool now);
-  bool may_tell() const;
-  void tell();
-  void weigh_measuring();
+  void report_explosions(bool from_steps);
+  bool may_publish() const;
+  void publish_snapshot();
+  void limit_measuring();
 };
 
 }  // namespace mercury

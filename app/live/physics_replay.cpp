@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The physics thread makes happen again what led to an explosion.
+// Replays a repro on the physics thread: the same start and the same changes at the same steps.
 #include <limits>
 
 #include "app/live/physics_parts.h"
@@ -19,40 +19,40 @@ std::vector<LivePerturbation> live_perturbations(RobotId robot, const std::vecto
 
 }  // namespace
 
-// The one robot there is, at the start of the repro.
+// Puts the only robot at the start of the repro.
 void Physics::Parts::begin_replay() {
   LiveRobot robot = population.robots()->robots.front();
-  robot.materials.reset();  // the repro's robot has them as they were
+  robot.materials.reset();  // the repro's robot has the materials of the start
   population.follow({robot});
-  Configuration configuration = replayed->configuration;
+  Configuration configuration = replayed_repro->configuration;
   configuration.device = simulation.configuration().device;
   simulation.configure(configuration);
-  simulation.set_clock(replayed->clock);
-  simulation.set_state(0, replayed->state);
-  perturbations = live_perturbations(robot.id, replayed->perturbations);
+  simulation.set_clock(replayed_repro->clock);
+  simulation.set_state(0, replayed_repro->state);
+  perturbations = live_perturbations(robot.id, replayed_repro->perturbations);
   simulation.set_perturbations(population.perturbations_of(perturbations));
   next_change = 0;
   replay_log.follow(simulation, *population.robots(), perturbations);
-  watch();
+  observe_details();
   begin_pace();
 }
 
 std::int64_t Physics::Parts::next_change_step() const {
-  return replayed && next_change < replayed->changes.size() ? replayed->changes[next_change].step
-                                                            : std::numeric_limits<std::int64_t>::max();
+  return replayed_repro && next_change < replayed_repro->changes.size() ? replayed_repro->changes[next_change].step
+                                                                        : std::numeric_limits<std::int64_t>::max();
 }
 
-// Those of the step at which the simulation stands.
-void Physics::Parts::make_changes() {
+// Applies the changes that are due at the present step.
+void Physics::Parts::apply_repro_changes() {
   if (next_change_step() > simulation.steps()) return;
   LiveRobot robot = population.robots()->robots.front();
   for (; next_change_step() <= simulation.steps(); ++next_change) {
-    const ReproChange& change = replayed->changes[next_change];
+    const ReproChange& change = replayed_repro->changes[next_change];
     if (change.configuration) {
       Configuration configuration = *change.configuration;
       configuration.device = simulation.configuration().device;
       simulation.configure(configuration);
-      watch();
+      observe_details();
       begin_pace();
     }
     if (change.materials) {

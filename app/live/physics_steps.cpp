@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The physics thread's steps: so many as are due, in slices, with a look at the robots now and then.
+// The steps of the physics thread, in slices: as many as are due, with samples of the telemetry between them.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace mercury {
 namespace {
 
-constexpr double slice_seconds = 0.006;  // of wall time between two looks at what is asked for
+constexpr double slice_seconds = 0.006;  // wall time between two looks at the commands
 constexpr double long_slice_seconds = 0.1;
 
 }  // namespace
@@ -19,13 +19,13 @@ void Physics::Parts::begin_pace() {
   gauge.mark(wall_now(), simulation.time());
 }
 
-// One slice, of what is due.
+// Makes one slice of the steps that are due.
 void Physics::Parts::advance() {
   if (steps_left == 0 && !playing) return;
   const auto steps_in = [&](double seconds) {
     return step_seconds > 0 ? static_cast<std::int64_t>(std::clamp(seconds / step_seconds, 1.0, 1e6)) : 1;
   };
-  // Steps of large batches are quicker several at a time, whose states then stay in the cache.
+  // Several steps per call are faster for large batches, because the state stays in the cache.
   const std::int64_t affordable =
       std::max(steps_in(slice_seconds), std::min(steps_in(long_slice_seconds), std::int64_t{16}));
   if (steps_left > 0) {
@@ -41,12 +41,12 @@ void Physics::Parts::advance() {
   gauge.mark(wall_now(), simulation.time());
 }
 
-// Samples are taken on the way, at steps of their own.
+// Interrupts the steps where a sample of the telemetry is due and where a replay changes something.
 void Physics::Parts::take_steps(std::int64_t count) {
   const std::int64_t target = simulation.steps() + count;
   double spent = 0;
   while (simulation.steps() < target) {
-    make_changes();
+    apply_repro_changes();
     const std::int64_t sample = std::max(measurements.next_step(), simulation.steps() + 1);
     const std::int64_t stop = std::min({target, sample, next_change_step()});
     const double start = wall_now();
@@ -56,34 +56,34 @@ void Physics::Parts::take_steps(std::int64_t count) {
     if (stop != sample && stop != target) continue;
     telemetry = simulation.telemetry();
     measurements.observe(simulation.time(), simulation.steps(), telemetry);
-    note_explosions(true);
+    report_explosions(true);
     measuring_seconds += wall_now() - stepped;
     if (!playing && steps_left == 0) break;  // stopped by an explosion
   }
   stepping_seconds += spent;
-  weigh_measuring();
+  limit_measuring();
   replay_log.stepped(spent, simulation, *population.robots());
   const double each = spent / static_cast<double>(count);
   step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
   dirty = true;
 }
 
-// As fast as it goes, short calls between samples would take a good part of the time: they become fewer.
-void Physics::Parts::weigh_measuring() {
-  constexpr double most = 0.04, enough = 0.05;  // share of the time; [s] to tell it
+// At unlimited speed, samples must not take much of the time: makes them rarer.
+void Physics::Parts::limit_measuring() {
+  constexpr double most = 0.04, enough = 0.05;  // share of the time; [s] of steps before it is known
   if (stepping_seconds < enough) return;
   if (playing && !std::isfinite(speed) && measuring_seconds > most * stepping_seconds) measurements.thin_out();
   stepping_seconds = measuring_seconds = 0;
 }
 
-// `now`: in the steps just made, not by robots that came back as they were.
-void Physics::Parts::note_explosions(bool now) {
+// `from_steps`: the robots exploded in the steps just made. Otherwise they came back exploded, and there is no repro.
+void Physics::Parts::report_explosions(bool from_steps) {
   const LiveRobots& robots = *population.robots();
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (!telemetry[i].exploded || !exploded.insert(robots.robots[i].id).second) continue;
     std::function<Repro()> repro;
-    if (now) repro = replay_log.repro(simulation, robots, i, telemetry[i]);
-    if (now && stop_at_explosion) {
+    if (from_steps) repro = replay_log.repro(simulation, robots, i, telemetry[i]);
+    if (from_steps && stop_at_explosion) {
       playing = false;
       steps_left = 0;
       ++stops;

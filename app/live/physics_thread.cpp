@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The physics thread: what is asked for is taken, carried out, and what came of it told.
+// The loop of the physics thread: take commands, carry them out, step, publish a snapshot.
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -12,41 +12,41 @@ namespace mercury {
 void Physics::Parts::run() {
   begin_pace();
   PendingCommands taken;
-  while (take_pending(taken)) {
+  while (wait_for_commands(taken)) {
     guarded([&] { carry_out(taken); });
     guarded([&] { advance(); });
     bool wanted;
     {
       const std::lock_guard lock(mutex);
-      wanted = looked_at || ticket > tickets_done;
+      wanted = snapshot_wanted || ticket > tickets_done;
     }
-    if (!dirty || !wanted || !may_tell()) continue;
-    dirty = false;  // also when it fails: not again before something else changes
-    guarded([&] { tell(); });
+    if (!dirty || !wanted || !may_publish()) continue;
+    dirty = false;  // also if publishing fails, so that the failure is not repeated
+    guarded([&] { publish_snapshot(); });
   }
 }
 
-// Waits for pending, or for the next step's time. False when it is time to go.
-bool Physics::Parts::take_pending(PendingCommands& taken) {
+// Waits for commands or for the time of the next step. Returns false when the thread must end.
+bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
   const auto due = std::chrono::steady_clock::time_point(
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
           playing && std::isfinite(speed) ? std::min(pace.next_due(), wall_now() + 1) : 0)));
   std::unique_lock lock(mutex);
-  const auto ready = [&] { return pending.any() || (dirty && (looked_at || ticket > tickets_done)); };
+  const auto ready = [&] { return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)); };
   if (steps_left == 0 && !ready()) {
     tickets_done = ticket;
     done.notify_all();
     if (playing)
-      asked.wait_until(lock, due, ready);
+      wake.wait_until(lock, due, ready);
     else
-      asked.wait(lock, ready);
+      wake.wait(lock, ready);
   }
   taken = std::exchange(pending, {});
   ticket = std::max(ticket, taken.ticket);
   return !taken.quit;
 }
 
-// The window must not end because physics failed: it is told, and physics rests.
+// A failure of physics must not end the window: reports the error and pauses.
 void Physics::Parts::guarded(auto work) {
   try {
     work();
@@ -62,11 +62,11 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
-  const bool other_dt = taken.scene && taken.scene->configuration.dt != simulation.configuration().dt;
-  const bool others = taken.scene && set_scene(*taken.scene);
+  const bool dt_changed = taken.scene && taken.scene->configuration.dt != simulation.configuration().dt;
+  const bool robots_changed = taken.scene && set_scene(*taken.scene);
   if (taken.view) view = *taken.view;
-  if (taken.view || others) watch();
-  if (taken.reset || (taken.scene && replayed)) begin_time();
+  if (taken.view || robots_changed) observe_details();
+  if (taken.reset || (taken.scene && replayed_repro)) restart();
   if (taken.perturbations) perturbations = std::move(*taken.perturbations);
   if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
   if (taken.perturbations || taken.scene || taken.reset)
@@ -75,11 +75,11 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
   steps_left += taken.steps;
-  if (taken.playing || taken.speed || taken.reset || others || other_dt) begin_pace();
+  if (taken.playing || taken.speed || taken.reset || robots_changed || dt_changed) begin_pace();
 }
 
-// All from the start: at rest at time 0, or where what is made to happen again begins.
-void Physics::Parts::begin_time() {
+// Returns all robots to rest at time 0, or a replay to its start.
+void Physics::Parts::restart() {
   simulation.reset();
   population.forget_departed();
   exploded.clear();
@@ -90,19 +90,19 @@ void Physics::Parts::begin_time() {
     const std::lock_guard lock(mutex);
     repros.clear();
   }
-  if (replayed) begin_replay();
+  if (replayed_repro) begin_replay();
   telemetry = simulation.telemetry();
   const double time = simulation.time();
   measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration().dt, telemetry);
   measurements.observe(time, simulation.steps(), telemetry);
 }
 
-// Whether there are other robots now, or another kind of environment.
+// Returns whether the list of robots or the kind of environment changed.
 bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   const auto& [robots, configuration, repro] = scene;
-  replayed = repro;
+  replayed_repro = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
-  const bool other_dt = configuration.dt != simulation.configuration().dt;
+  const bool dt_changed = configuration.dt != simulation.configuration().dt;
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
   simulation.configure(configuration);
   simulation.set_perturbations({});
@@ -114,21 +114,21 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
     throw;
   }
   telemetry = simulation.telemetry();
-  if (first || (other_dt && simulation.steps() == 0))
+  if (first || (dt_changed && simulation.steps() == 0))
     measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration.dt, telemetry);
   else
     measurements.set_robots(*population.robots(), simulation.time(), telemetry);
   if (first) measurements.observe(simulation.time(), simulation.steps(), telemetry);
   if (!changed) return moved;
   std::erase_if(exploded, [&](RobotId id) { return !population.robots()->index_of(id); });
-  note_explosions(false);  // of robots that came back as they were
+  report_explosions(false);
   for (const std::string& note : simulation.notes())
-    if (told_notes.insert(note).second) messages.add(Severity::note, note);
+    if (reported_notes.insert(note).second) messages.add(Severity::note, note);
   return true;
 }
 
-// A simulation that could not take its robots, as for want of memory, is left half changed: an empty one takes its
-// place.
+// If a simulation cannot take its robots, for example for lack of memory, it is left half changed. Replaces it by an
+// empty one.
 void Physics::Parts::start_over() {
   details.reset();
   simulation = Simulation(simulation.configuration());
@@ -136,13 +136,13 @@ void Physics::Parts::start_over() {
   telemetry.clear();
   exploded.clear();
   replay_log.restart();
-  replayed.reset();
+  replayed_repro.reset();
   ++resets;
   measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
 }
 
-// Details that this environment knows.
-void Physics::Parts::watch() {
+// Observes the details of the view that exist in this environment.
+void Physics::Parts::observe_details() {
   details.reset();
   const Environment& environment = simulation.configuration().environment;
   ViewSettings known = view;
@@ -152,14 +152,14 @@ void Physics::Parts::watch() {
   details.emplace(simulation, known);
 }
 
-// As fast as it goes, pictures may take a fifth of the time from the steps, and no more.
-bool Physics::Parts::may_tell() const {
+// At unlimited speed, snapshots may take at most a fifth of the time.
+bool Physics::Parts::may_publish() const {
   constexpr double share = 0.2;
   if (!playing || std::isfinite(speed) || ticket > tickets_done) return true;
-  return wall_now() - told_at >= (1 / share - 1) * gathering_seconds;
+  return wall_now() - published_at >= (1 / share - 1) * gathering_seconds;
 }
 
-void Physics::Parts::tell() {
+void Physics::Parts::publish_snapshot() {
   const double start = wall_now();
   std::shared_ptr<Snapshot> next = pool.take();
   next->robots = population.robots();
@@ -169,7 +169,7 @@ void Physics::Parts::tell() {
   next->resets = resets;
   next->stops = stops;
   next->positions.resize(simulation.mass_count());
-  // On a card, each of the two is a copy that the steps wait for.
+  // On a GPU, positions and velocities are a copy each, and the steps wait for it.
   const bool with_velocities = !playing || velocities_wanted || ticket > tickets_done;
   next->velocities.resize(with_velocities ? simulation.mass_count() : 0);
   simulation.read_positions(next->positions);
@@ -188,11 +188,11 @@ void Physics::Parts::tell() {
   next->springs_per_second = step_seconds > 0 && (playing || steps_left > 0)
                                  ? static_cast<double>(population.robots()->springs) / step_seconds
                                  : 0;
-  told_at = wall_now();
-  next->gathering_seconds = gathering_seconds = told_at - start;
+  published_at = wall_now();
+  next->gathering_seconds = gathering_seconds = published_at - start;
   const std::lock_guard lock(mutex);
   snapshot = std::move(next);
-  looked_at = false;
+  snapshot_wanted = false;
 }
 
 }  // namespace mercury

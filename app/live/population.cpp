@@ -33,7 +33,7 @@ std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, c
   auto list = std::make_shared<LiveRobots>(
       LiveRobots{.revision = before.revision + (changed ? 1 : 0), .robots = robots, .mass_offsets = {0}});
   for (const LiveRobot& robot : robots) {
-    list->places.emplace(robot.id, list->places.size());
+    list->indices.emplace(robot.id, list->indices.size());
     list->mass_offsets.push_back(list->mass_offsets.back() + robot.robot->masses.size());
     list->springs += robot.robot->springs.size();
   }

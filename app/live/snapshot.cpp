@@ -18,9 +18,9 @@ std::span<const Material> materials_of(const LiveRobot& robot) {
 }
 
 std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
-  if (!places.empty()) {
-    const auto place = places.find(id);
-    return place == places.end() ? std::nullopt : std::optional(place->second);
+  if (!indices.empty()) {
+    const auto index = indices.find(id);
+    return index == indices.end() ? std::nullopt : std::optional(index->second);
   }
   const auto found = std::ranges::find(robots, id, &LiveRobot::id);
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
