@@ -31,13 +31,17 @@ struct TypicalRange {
 // `Value` is double, float, int, bool or Vec3.
 template <class Struct, class Value>
 struct Parameter {
+  // Aliases, since nvcc rewrites a pointer to member with parentheses that g++ warns about.
+  using Member = Value Struct::*;
+  using Switch = bool Struct::*;
+
   std::string_view name;  // the member's name; the option of "drag_coefficient" is --drag-coefficient
-  Value Struct::*member;
+  Member member;
   std::string_view unit;  // "kg/m3"; empty = none
   Accepts accepts = Accepts::any;
   TypicalRange typical;
   std::string_view help;                  // one line, without the default, the unit and a full stop
-  bool Struct::*enabled_by = nullptr;     // the parameter has an effect only while this member is true
+  Switch enabled_by = nullptr;            // the parameter has an effect only while this member is true
   bool takes_downward_magnitude = false;  // the option also takes one number g, for (0, 0, -g)
 
   constexpr Parameter(std::string_view name_, Value Struct::*member_, std::string_view unit_, Accepts accepts_,
