@@ -1,155 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Initial weights of network robots. Weights drawn from one normal distribution give the same body
-// over and over, a lump with spikes: a sum of many small bends is again a normal cloud, and its outliers decide the
-// alpha shape. Here a few neurons have a large say, each drawn as a feature of a body: a limb, a bend, a cup. The
-// others have little, and are there for evolution. Nothing but + - * / and square roots is used, and no two numbers are
-// drawn in one expression whose order is the compiler's choice, so that the weights are the same everywhere.
+// Random genomes of network robots: the layers of the network, from features of a body (nn_features.h) to materials.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
-#include <tuple>
 #include <utility>
 
-#include "mercury/error.h"
 #include "mercury/nn_robot.h"
 #include "mercury/random.h"
+#include "robots/nn_features.h"
 
 namespace mercury {
 namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector operator*(double s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Vector operator*(const Vector& a, const Vector& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
-Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vector operator-(const Vector& a) { return {-a[0], -a[1], -a[2]}; }
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vector unit(const Vector& a) { return 1 / std::sqrt(dot(a, a)) * a; }
-Vector mirror(const Vector& a) { return {a[0], -a[1], a[2]}; }
-
-Vector direction(Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return unit({x, y, z});
-}
-
-Vector direction_across(const Vector& axis, Random& random) {
-  const Vector d = direction(random);
-  return unit(d + -dot(d, axis) * axis);
-}
-
-// A neuron max(0, along . place - threshold); places move by `move` times its value.
-struct Feature {
-  Vector along{};
-  double threshold = 0;
-  Vector move{};
-  std::size_t twin = 0;  // index of the feature mirrored in y; its own if there is none
-};
-
-// The features of a layer, as many as it has neurons for.
-class Features {
- public:
-  Features(std::size_t room, bool mirrored) : room_(room), mirrored_(mirrored) {}
-  const std::vector<Feature>& list() const { return list_; }
-
-  // In a mirrored body the mirrored feature comes with it. False if there is no room.
-  bool add(const Vector& along, double threshold, const Vector& move) {
-    const std::size_t self = list_.size(), needed = mirrored_ ? 2 : 1;
-    if (room_ - self < needed) return false;
-    list_.push_back({along, threshold, move, self + needed - 1});
-    if (mirrored_) list_.push_back({mirror(along), threshold, mirror(move), self});
-    return true;
-  }
-
-  void add_alone(const Feature& feature) {
-    if (list_.size() < room_) list_.push_back(feature);
-  }
-
- private:
-  std::vector<Feature> list_;
-  std::size_t room_;
-  bool mirrored_;
-};
-
-constexpr double ball_radius = 1.7;  // what `gather` leaves of a normal cloud
-
-// Normal points have outliers, of which the alpha shape would make spikes. They are drawn in from twelve sides, the
-// corners of an icosahedron, in two steps: what is left is a ball whose skin has many points.
-void gather(Features& features, const Vector& proportions) {
-  const double golden = (1 + std::sqrt(5.)) / 2;
-  for (const auto& [threshold, pull] : {std::pair(1.05, 0.3), std::pair(1.45, 0.15)})
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const double one : {-1., 1.})
-        for (const double other : {-golden, golden}) {
-          Vector corner{};
-          corner[axis] = one;
-          corner[(axis + 1) % 3] = other;
-          corner = unit(corner);
-          const std::size_t self = features.list().size();
-          const std::size_t flip_of_y = axis == 0 ? 1 : axis == 1 ? 2 : 0;  // bit of `other` or of `one`
-          features.add_alone({corner, threshold, -pull * (proportions * corner), self ^ flip_of_y});
-        }
-}
-
-// A cap of the ball is pulled out, in a direction of its own.
-void add_limbs(Features& features, std::uint64_t count, Random& random) {
-  std::vector<Vector> taken;
-  const auto crowded = [&](const Vector& d) {
-    return std::any_of(taken.begin(), taken.end(), [&](const Vector& t) { return dot(t, d) > 0.6; });
-  };
-  for (std::uint64_t i = 0; i < count; ++i) {
-    Vector along = direction(random);
-    for (int attempt = 0; attempt < 20 && crowded(along); ++attempt) along = direction(random);
-    taken.push_back(along);
-    taken.push_back(mirror(along));
-    const double threshold = random.uniform(0.3, 0.9), reach = random.uniform(1.5, 3);
-    const Vector move = reach / (ball_radius - threshold) * unit(along + 0.5 * direction(random));
-    features.add(along, threshold, move);
-  }
-}
-
-// Three to six equal limbs around the z axis: a star.
-void add_arms(Features& features, std::uint64_t count, Random& random) {
-  const double threshold = random.uniform(0.6, 0.9), reach = random.uniform(1.5, 3);
-  const double lean = random.uniform(-0.4, 0.4), droop = random.uniform(-0.8, 0.8);
-  const double cosine[] = {-0.5, 0, (std::sqrt(5.) - 1) / 4, 0.5};  // of a third, a quarter, a fifth, a sixth of a turn
-  const double c = cosine[count - 3], s = std::sqrt(1 - c * c);
-  const std::size_t first = features.list().size();
-  double x = 1, y = 0;
-  for (std::size_t arm = 0; arm < count; ++arm) {
-    const Vector move = reach / (ball_radius - threshold) * unit({x, y, droop});
-    features.add_alone({unit({x, y, lean}), threshold, move, first + (count - arm) % count});
-    std::tie(x, y) = std::pair(c * x - s * y, s * x + c * y);
-  }
-}
-
-// All beyond a plane is sheared sideways; planes mostly stand across the long axes.
-void add_bends(Features& features, std::uint64_t count, const Vector& proportions, Random& random) {
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const Vector along = unit(proportions * proportions * direction(random));
-    const double threshold = random.uniform(-0.6, 0.6), amount = random.uniform(0.3, 0.9);
-    const Vector move = amount * direction_across(along, random);
-    features.add(along, threshold, move);
-  }
-}
-
-// The rim all around an axis is moved along it: a bell.
-void add_cup(Features& features, const Vector& axis, Random& random) {
-  const double amount = random.uniform(0.2, 0.5), height = std::sqrt(0.75);
-  const Vector x = direction_across(axis, random), y = cross(axis, x);
-  for (const Vector& d : {x, 0.5 * x + height * y, -0.5 * x + height * y})
-    for (const Vector& out : {d, -d}) features.add(out, 0.3, -amount * axis);
-}
-
-void fill_with_small_features(Features& features, Random& random) {
-  for (bool room = true; room;) {
-    const Vector along = direction(random), move = 0.03 * direction(random);
-    room = features.add(along, random.uniform(-1.2, 1.2), move);
-  }
-}
 
 struct Plan {
   Vector proportions;  // of the trunk, the longest 1
@@ -174,7 +35,7 @@ Plan random_plan(bool mirrored, Random& random) {
 // Grows layers from the input on and knows how the place is read from the last one.
 class Trunk {
  public:
-  static constexpr std::size_t carried = 6;  // neurons that hand a place on: max(0, x), max(0, -x), ...
+  static constexpr std::size_t carried = min_hidden_width;  // neurons that carry a place: max(0, x), max(0, -x), ...
 
   std::vector<Layer> layers;
   std::vector<Vector> readout = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // place = sum of activation times readout
@@ -290,23 +151,6 @@ Layer last_layer(const Trunk& trunk, bool mirrored, Random& random) {
 }
 
 }  // namespace
-
-void validate(const NnOptions& options) {
-  const auto refuse = [](const char* option, const auto& value, const char* accepted) {
-    std::ostringstream given;
-    given << value;
-    throw InputError(option, given.str() + " is not accepted; give " + accepted);
-  };
-  if (options.hidden.size() >= max_network_layers) refuse("--hidden", options.hidden.size(), "at most 15 layers");
-  for (const int width : options.hidden)
-    if (width < static_cast<int>(Trunk::carried) || width > max_network_width)
-      refuse("--hidden", width, "6 to 4096 neurons a layer");
-  if (options.points < min_cloud_points || options.points > max_masses)
-    refuse("--points", options.points, "64 to 65535");
-  if (!(options.alpha >= 0 && std::isfinite(options.alpha)))
-    refuse("--alpha", options.alpha, "a radius > 0 m, or 0 for the smallest that holds all points");
-  if (!(options.mirrored >= 0 && options.mirrored <= 1)) refuse("--mirrored", options.mirrored, "a share from 0 to 1");
-}
 
 NnGenome random_nn_genome(const NnOptions& options, std::uint64_t seed, std::uint64_t index) {
   validate(options);

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/random_voxel.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/make_all.h"
 
 namespace mercury {
 namespace {
 
-constexpr int phases = 4;  // of the base muscles
-constexpr int most_frequencies = muscle_count / phases;
+constexpr int phases = muscle_count / voxel_frequencies;  // of the base muscles
 
 // A box of random numbers in [0, 1), read between its points by linear interpolation: smooth noise.
 class Noise {
@@ -74,7 +71,7 @@ class Palette {
 
  private:
   const RandomVoxelOptions& options_;
-  std::array<int, most_frequencies> frequencies_{};
+  std::array<int, voxel_frequencies> frequencies_{};
 };
 
 // Regions of one material: each voxel takes that of the nearest of the sites, one a block of patch^3 voxels.
@@ -157,20 +154,6 @@ std::vector<bool> carve(Random& random, const VoxelGrid& grid, const std::array<
 
 }  // namespace
 
-void validate(const RandomVoxelOptions& options) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (options.smallest[axis] < 1 || options.largest[axis] < options.smallest[axis])
-      throw InputError("--size", "voxels " + std::to_string(options.smallest[axis]) + " to " +
-                                     std::to_string(options.largest[axis]) + " are not accepted; give at least 1");
-  if (!(options.air >= 0 && options.air < 1)) throw InputError("--air", "give a share of at least 0 and below 1");
-  if (options.patch < 1) throw InputError("--patch", "give at least 1 voxel");
-  if (options.frequencies < 1 || options.frequencies > most_frequencies)
-    throw InputError("--frequencies", "give 1 to " + std::to_string(most_frequencies));
-  const double sum = options.muscle + options.tissue + options.bone;
-  if (!(options.muscle >= 0 && options.tissue >= 0 && options.bone >= 0 && sum > 0 && std::isfinite(sum)))
-    throw InputError("--muscle, --tissue, --bone", "give shares of at least 0, one of them above");
-}
-
 VoxelGrid random_voxel_grid(const RandomVoxelOptions& options, std::uint64_t seed, std::uint64_t index) {
   validate(options);
   Random random(seed_of(seed, index));
@@ -210,10 +193,9 @@ Robot random_voxel_robot(const RandomVoxelOptions& options, std::uint64_t seed, 
 std::vector<Robot> random_voxel_robots(const RandomVoxelOptions& options, std::uint64_t seed, std::size_t count,
                                        std::uint64_t first) {
   validate(options);
-  std::vector<Robot> robots(count);
-  oneapi::tbb::parallel_for(std::size_t{0}, count,
-                            [&](std::size_t i) { robots[i] = random_voxel_robot(options, seed, first + i); });
-  return robots;
+  return make_all(
+      "voxel", seed, count, first, [&](std::uint64_t index) { return random_voxel_robot(options, seed, index); },
+      nullptr);
 }
 
 }  // namespace mercury

@@ -98,19 +98,29 @@ Robot robot_of(const VoxelGrid& grid, const Robot& parent, std::uint64_t seed, c
 }
 
 void validate_patch(int patch) {
-  if (patch < 1) throw InputError("--patch", "give at least 1 voxel");
+  if (patch < 1) throw ParameterError("patch", "give at least 1 voxel");
 }
 
 }  // namespace
 
 void validate(const VoxelMutation& mutation) {
-  if (!(mutation.flip >= 0 && mutation.flip <= 1)) throw InputError("--flip", "give a chance between 0 and 1");
-  if (!(mutation.air >= 0 && mutation.air <= 1)) throw InputError("--air", "give a chance between 0 and 1");
-  if (mutation.swaps < 0) throw InputError("--swaps", "give 0 or more");
+  if (!(mutation.flip >= 0 && mutation.flip <= 1)) throw ParameterError("flip", "give a chance between 0 and 1");
+  if (!(mutation.air >= 0 && mutation.air <= 1)) throw ParameterError("air", "give a chance between 0 and 1");
+  if (mutation.swaps < 0) throw ParameterError("swaps", "give 0 or more");
   validate_patch(mutation.patch);
   for (const MaterialId material : mutation.materials)
     if (material < 1 || material > base_material_count)
-      throw InputError("--materials", std::to_string(material) + " is not a base material; give 1 to 22");
+      throw ParameterError("materials", std::to_string(material) + " is not a base material; give 1 to 22");
+}
+
+Mirror mirror_of(const VoxelGrid& grid) {
+  const Place size = size_of(grid);
+  for (const Mirror mirror : {Mirror::y, Mirror::x, Mirror::z}) {
+    bool alike = true;
+    for_each(size, [&](const Place& at) { alike = alike && cell(grid, at) == cell(grid, folded(at, size, mirror)); });
+    if (alike) return mirror;
+  }
+  return Mirror::none;
 }
 
 VoxelGrid mutate(const VoxelGrid& parent, const VoxelMutation& mutation, std::uint64_t seed) {

@@ -15,6 +15,7 @@
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/robot_file.h"
@@ -78,10 +79,11 @@ void describe_fit(const Robot& robot) {
 void describe(const Robot& robot) {
   const Inspection found = inspect(robot);
   const std::string kind = kind_of(robot), environment = environment_of(robot);
+  const Generator* generator = find_generator(kind);
   fmt::print("{}\n", robot.name);
   if (!kind.empty() || !environment.empty())
     line("made",
-         fmt::format("{}{}{}", kind.empty() ? "" : (kind == "nn" ? "as an " : "as a ") + kind + " robot",
+         fmt::format("{}{}{}", kind.empty() ? "" : "as " + (generator ? generator->noun : "a " + kind + " robot"),
                      kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
   line("masses", fmt::format("{}{}", found.masses,
                              found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));

@@ -8,16 +8,15 @@
 #include "app/base/interrupt.h"
 #include "app/commands/best_of.h"
 #include "app/commands/commands.h"
-#include "app/options/nn_options.h"
+#include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
-#include "app/options/voxel_options.h"
 
 namespace mercury {
 namespace {
 
-// What all kinds of new robots share.
+// Options that all kinds of robots share.
 struct NewOptions {
   RobotOutput output;
   std::uint64_t best_of = 0;  // 0 = no search
@@ -26,9 +25,9 @@ struct NewOptions {
 
   void add_to(CLI::App& command) {
     output.add_to(command);
-    add_number(command, "--best-of", best_of, "Simulate so many, and keep the --count that get farthest", "N");
+    add_number(command, "--best-of", best_of, "Simulate N robots and keep the --count that get farthest", "N");
     add_number(command, "--settle", settle,
-               "Of --best-of: distances count from this time on, when robots have fallen (default 0)", "S");
+               "With --best-of: count distances from this time on, after robots have fallen (default 0)", "S");
     simulation.add_to(command);
   }
 };
@@ -60,7 +59,7 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
   return winners.size() < output.count() ? 1 : 0;
 }
 
-// Robots that were tried, or made, for an environment say so in their origin.
+// The environment that the robots are made for or tried in; their origin names it. Empty if the user named none.
 std::string environment_for(const NewOptions& options) {
   if (options.best_of > 0) return std::string(name_of(options.simulation.configuration().environment));
   return options.simulation.chosen_environment();
@@ -70,25 +69,39 @@ int make_files(const NewOptions& options, const MakeRobot& make) {
   return options.best_of > 0 ? keep_best(options, make) : write_robots(options.output, make);
 }
 
-// One kind of robot; Options has add_to() and chosen(), `make` makes the index-th robot of a seed from what was chosen.
-template <class Options, class Make>
-void add_kind(CLI::App& family, const Choose& choose, const char* name, const char* description, const char* footer,
-              Make make) {
-  struct Chosen {
+std::string footer_of(const Generator& generator) {
+  std::string text =
+      "The same seed and options give the same robots on every machine. The names of the files are printed.";
+  if (!generator.note.empty()) text += " " + generator.note;
+  const Generator::Example& example = generator.example;
+  text +=
+      fmt::format("\n\nExamples:\n  mercury new {} -o {}.json --seed {}", generator.kind, example.name, example.seed);
+  for (const auto& [parameter, value] : example.values) text += fmt::format(" {} {}", option_of(parameter), value);
+  return text + fmt::format(
+                    "\n  mercury new {0} -o my-robots --count 100 --seed 1 --format cbor\n"
+                    "  mercury new {0} -o best/ --count 5 --best-of 1000 --environment land --seconds 10",
+                    generator.kind);
+}
+
+// The command for one kind of robot.
+void add_kind(CLI::App& family, const Choose& choose, const Generator& generator) {
+  struct Options {
     NewOptions shared;
-    Options kind;
+    GeneratorOptions shape;
   };
-  auto options = std::make_shared<Chosen>();
-  CLI::App* command = family.add_subcommand(name, description);
-  options->kind.add_to(*command);
+  auto options = std::make_shared<Options>();
+  CLI::App* command = family.add_subcommand(generator.kind, generator.help);
+  options->shape.add_to(*command, generator);
   options->shared.add_to(*command);
-  command->footer(footer);
-  command->callback([options, choose, make] {
-    choose([options, make] {
-      auto chosen = options->kind.chosen();
-      chosen.environment = environment_for(options->shared);
-      return make_files(options->shared,
-                        [&](std::uint64_t seed, std::uint64_t index) { return make(chosen, seed, index); });
+  command->footer(footer_of(generator));
+  command->callback([options, choose, &generator] {
+    choose([options, &generator] {
+      const ParameterValues& values = options->shape.values();
+      generator.validate(values);
+      const std::string environment = environment_for(options->shared);
+      return make_files(options->shared, [&](std::uint64_t seed, std::uint64_t index) {
+        return generator.make(values, environment, seed, index);
+      });
     });
   });
 }
@@ -98,23 +111,7 @@ void add_kind(CLI::App& family, const Choose& choose, const char* name, const ch
 void add_new_command(CLI::App& program, const Choose& choose) {
   CLI::App* command = program.add_subcommand("new", "Make robot files");
   command->require_subcommand(1);
-  add_kind<VoxelOptions>(
-      *command, choose, "voxel", "Random voxel robots",
-      "The same seed and options give the same robots on every machine. The names of the files are printed.\n\n"
-      "Examples:\n"
-      "  mercury new voxel -o eel.json --seed 4 --voxels 12x2x3\n"
-      "  mercury new voxel -o my-robots --count 100 --seed 1 --format cbor\n"
-      "  mercury new voxel -o best/ --count 5 --best-of 1000 --environment land --seconds 10",
-      random_voxel_robot);
-  add_kind<NnRobotOptions>(
-      *command, choose, "nn", "Robots grown by random neural networks",
-      "The same seed and options give the same robots on every machine. The names of the files are printed. A file\n"
-      "keeps the network, so that the robot can be changed and grown again.\n\n"
-      "Examples:\n"
-      "  mercury new nn -o blob.json --seed 4 --points 1000\n"
-      "  mercury new nn -o my-robots --count 64 --seed 1\n"
-      "  mercury new nn -o best/ --count 3 --best-of 500 --seconds 10",
-      random_nn_robot);
+  for (const Generator& generator : generators()) add_kind(*command, choose, generator);
 }
 
 }  // namespace mercury

@@ -39,16 +39,6 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   return result;
 }
 
-Generation generation_of(const RobotOptions::RandomRobots& request) {
-  const bool network = request.kind == RobotOptions::RandomRobots::Kind::network;
-  return {.kind = network ? Generation::Kind::network : Generation::Kind::voxel,
-          .count = request.count,
-          .seed = request.seed,
-          .first = request.first,
-          .voxel = request.voxel,
-          .network = request.network};
-}
-
 int view(const ViewCommandOptions& options) {
   window::ViewerOptions viewer = viewer_options(options);
   viewer.configuration = options.simulation.configuration();
@@ -67,8 +57,7 @@ int view(const ViewCommandOptions& options) {
   const std::vector<Robot> robots = options.robots.load_files();
   if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
   viewer.files = options.robots.files();
-  for (const RobotOptions::RandomRobots& request : options.robots.random())
-    viewer.generations.push_back(generation_of(request));
+  viewer.generations = options.robots.random();
   return window::run_viewer(std::move(viewer));
 }
 

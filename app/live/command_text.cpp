@@ -11,6 +11,7 @@
 #include <numbers>
 #include <type_traits>
 
+#include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 
 namespace mercury {
@@ -50,10 +51,6 @@ void add_parameters(Options& options, const Struct& values) {
       options.number(option_of(parameter.name), value, usual);
   });
 }
-
-std::string size_text(const std::array<int, 3>& size) { return fmt::format("{}x{}x{}", size[0], size[1], size[2]); }
-
-constexpr const char* mirror_names[] = {"none", "x", "y", "z"};
 
 std::string shown_text(const Shown& shown) {
   const std::pair<const char*, bool> items[] = {{"skin", shown.skin},
@@ -100,7 +97,7 @@ void append(std::string& line, const OptionValues& options) {
 
 // Robots of one generation that stand for `--random KIND:COUNT:SEED:FIRST`.
 struct Run {
-  std::shared_ptr<const Generation> generation;
+  std::shared_ptr<const RandomRobots> generation;
   std::uint64_t first, count;
 };
 
@@ -115,10 +112,6 @@ std::vector<Run> runs_of(const SceneDocument& document) {
       runs.push_back({generation, index, 1});
   }
   return runs;
-}
-
-OptionValues options_of(const Generation& generation) {
-  return generation.kind == Generation::Kind::voxel ? options_of(generation.voxel) : options_of(generation.network);
 }
 
 // Numbers as they are, everything else as text in quotes.
@@ -179,33 +172,6 @@ OptionValues options_of(const ViewSettings& settings) {
   return options.take();
 }
 
-OptionValues options_of(const RandomVoxelOptions& voxel) {
-  Options options;
-  const RandomVoxelOptions usual;
-  if (voxel.smallest != usual.smallest || voxel.largest != usual.largest)
-    options.text("--voxels", size_text(voxel.smallest) + ".." + size_text(voxel.largest), "");
-  options.number("--edge", voxel.edge, usual.edge);
-  options.number("--air", voxel.air, usual.air);
-  options.text("--symmetry", mirror_names[static_cast<std::size_t>(voxel.mirror)],
-               mirror_names[static_cast<std::size_t>(usual.mirror)]);
-  options.number("--patch", voxel.patch, usual.patch);
-  options.number("--muscle", voxel.muscle, usual.muscle);
-  options.number("--tissue", voxel.tissue, usual.tissue);
-  options.number("--bone", voxel.bone, usual.bone);
-  options.number("--frequencies", voxel.frequencies, usual.frequencies);
-  return options.take();
-}
-
-OptionValues options_of(const NnOptions& network) {
-  Options options;
-  const NnOptions usual;
-  options.number("--points", network.points, usual.points);
-  if (network.hidden != usual.hidden) options.text("--hidden", fmt::format("{}", fmt::join(network.hidden, ",")), "");
-  options.number("--alpha", network.alpha, usual.alpha);
-  options.number("--mirrored", network.mirrored, usual.mirrored);
-  return options.take();
-}
-
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand) {
   CommandText command{.text = fmt::format("mercury {}", subcommand)};
   for (const DocumentRobot& robot : document.robots) {
@@ -219,13 +185,12 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
     command.text.append(" ").append(shell_quoted(file.starts_with('-') ? fmt::format("./{}", file) : file));
   }
   OptionValues options;
-  std::map<Generation::Kind, OptionValues> shapes;
+  std::map<std::string, OptionValues> shapes;
   for (const Run& run : runs_of(document)) {
-    const Generation& generation = *run.generation;
-    const bool voxel = generation.kind == Generation::Kind::voxel;
-    command.text += fmt::format(" --random {}:{}:{}", voxel ? "voxel" : "nn", run.count, generation.seed);
+    const RandomRobots& generation = *run.generation;
+    command.text += fmt::format(" --random {}:{}:{}", generation.kind, run.count, generation.seed);
     if (run.first > 0) command.text += fmt::format(":{}", run.first);
-    const OptionValues shape = options_of(generation);
+    const OptionValues shape = options_of(generator_named(generation.kind), generation.values);
     const auto [first, is_new] = shapes.emplace(generation.kind, shape);
     if (is_new)
       options.insert(options.end(), shape.begin(), shape.end());

@@ -21,8 +21,6 @@ using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt
 // The options that differ from the defaults.
 OptionValues options_of(const Configuration& configuration);
 OptionValues options_of(const ViewSettings& settings);
-OptionValues options_of(const RandomVoxelOptions& options);
-OptionValues options_of(const NnOptions& options);
 
 // `subcommand` "view" or "render"; the latter writes scene.mp4.
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand);

@@ -84,11 +84,11 @@ class LiveScene {
   void add(std::vector<Robot> robots, bool unsaved = true);  // `unsaved`: they are kept nowhere else
   void open(const std::vector<std::filesystem::path>&
                 paths);  // files and folders, recordings for their robots, or one repro; in the background
-  void generate(const Generation& generation, bool replace = false);  // in the background; replace = instead of all
+  void generate(const RandomRobots& generation, bool replace = false);  // in the background; replace = instead of all
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);
   // A child of each, beside it or in its place. Robots that are neither voxel nor network ones cannot.
-  void mutate(const std::vector<RobotId>& robots, const Mutation& mutation, bool replace = false);
+  void mutate(const std::vector<RobotId>& robots, const MutationRequest& mutation, bool replace = false);
   void clear();
   void rename(RobotId robot, const std::string& name);
   bool can_mutate(RobotId robot) const;

@@ -11,7 +11,6 @@
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
-#include "mercury/origin.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
 
@@ -112,12 +111,12 @@ struct GrownRobot {
   Robot robot;
 };
 
-std::vector<GrownRobot> grow_robots(const Generation& generation, WorkControl& control, Messages& messages) {
+std::vector<GrownRobot> grow_robots(const RandomRobots& generation, WorkControl& control, Messages& messages) {
+  const Generator& generator = generator_named(generation.kind);
+  generator.validate(generation.values);
   const MakeRobot make = [&](std::uint64_t seed, std::uint64_t index) {
-    return generation.kind == Generation::Kind::voxel ? random_voxel_robot(generation.voxel, seed, index)
-                                                      : random_nn_robot(generation.network, seed, index);
+    return generator.make(generation.values, generation.environment, seed, index);
   };
-  generation.kind == Generation::Kind::voxel ? validate(generation.voxel) : validate(generation.network);
   constexpr std::size_t portion = 8;
   std::vector<GrownRobot> grown;
   for (std::size_t done = 0; done < generation.count && !control.cancelled();) {
@@ -133,37 +132,6 @@ std::vector<GrownRobot> grow_robots(const Generation& generation, WorkControl& c
     control.progress(static_cast<std::int64_t>(done));
   }
   return grown;
-}
-
-// The axis along which a grid's halves mirror each other, y first, as in random robots.
-Mirror mirror_of(const VoxelGrid& grid) {
-  const auto mirrored = [&](Mirror mirror) {
-    for (int z = 0; z < grid.nz; ++z)
-      for (int y = 0; y < grid.ny; ++y)
-        for (int x = 0; x < grid.nx; ++x) {
-          const MaterialId other = mirror == Mirror::x   ? grid.at(grid.nx - 1 - x, y, z)
-                                   : mirror == Mirror::y ? grid.at(x, grid.ny - 1 - y, z)
-                                                         : grid.at(x, y, grid.nz - 1 - z);
-          if (grid.at(x, y, z) != other) return false;
-        }
-    return true;
-  };
-  for (const Mirror mirror : {Mirror::y, Mirror::x, Mirror::z})
-    if (mirrored(mirror)) return mirror;
-  return Mirror::none;
-}
-
-Robot child_of(const Robot& parent, const Mutation& mutation, std::uint64_t seed) {
-  const std::string kind = kind_of(parent);
-  const std::string name = parent.name + "-child";
-  if (kind == "voxel") {
-    VoxelMutation voxel = mutation.voxel;
-    if (voxel.mirror == Mirror::none) voxel.mirror = mirror_of(voxel_grid_of(parent).value());
-    return mutate_voxel_robot(parent, voxel, seed, name);
-  }
-  if (const auto genome = kind == "nn" ? nn_genome_of(parent) : std::nullopt)
-    return grow(mutate(*genome, mutation.network_rate, mutation.network_size, seed), name);
-  throw InputError(parent.name, "cannot be mutated; only voxel and network robots know what they were made of");
 }
 
 }  // namespace
@@ -229,10 +197,10 @@ void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const f
     say(Severity::warning, fmt::format("it was seen on {}; here it may go another way", repro->device_name));
 }
 
-void LiveScene::generate(const Generation& generation, bool replace) {
+void LiveScene::generate(const RandomRobots& generation, bool replace) {
   if (generation.count == 0) return;
   Parts& parts = *parts_;
-  const auto order = std::make_shared<const Generation>(generation);
+  const auto order = std::make_shared<const RandomRobots>(generation);
   parts.background.begin("making " + robots_counted(generation.count), static_cast<std::int64_t>(generation.count),
                          [&parts, order, replace](WorkControl& control) -> Background::Finish {
                            auto grown =
@@ -251,11 +219,10 @@ void LiveScene::generate(const Generation& generation, bool replace) {
 bool LiveScene::can_mutate(RobotId robot) const {
   const DocumentRobot* found = parts_->document.find(robot);
   if (!found) return false;
-  const std::string kind = kind_of(*found->body.robot);
-  return kind == "voxel" || kind == "nn";
+  return generator_of(*found->body.robot) != nullptr;
 }
 
-void LiveScene::mutate(const std::vector<RobotId>& robots, const Mutation& mutation, bool replace) {
+void LiveScene::mutate(const std::vector<RobotId>& robots, const MutationRequest& mutation, bool replace) {
   Parts& parts = *parts_;
   auto parents = std::make_shared<std::vector<DocumentRobot>>();
   for (const RobotId id : robots)
@@ -267,9 +234,10 @@ void LiveScene::mutate(const std::vector<RobotId>& robots, const Mutation& mutat
                            auto children = std::make_shared<std::vector<std::pair<RobotId, Robot>>>();
                            for (std::size_t i = 0; i < parents->size() && !control.cancelled(); ++i) {
                              try {
-                               const std::uint64_t seed = seed_of(mutation.seed, i);
+                               const Robot parent = whole_robot((*parents)[i]);
+                               const MutationRequest own{mutation.strength, seed_of(mutation.seed, i)};
                                children->emplace_back((*parents)[i].body.id,
-                                                      child_of(whole_robot((*parents)[i]), mutation, seed));
+                                                      mutate_robot(parent, own, parent.name + "-child"));
                              } catch (const InputError& error) {
                                parts.messages.add(Severity::warning, error.what());
                              }

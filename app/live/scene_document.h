@@ -9,29 +9,9 @@
 #include <vector>
 
 #include "app/live/snapshot.h"
-#include "mercury/nn_robot.h"
-#include "mercury/random_voxel.h"
-#include "mercury/voxel_evolution.h"
+#include "mercury/generator.h"
 
 namespace mercury {
-
-// Random robots to be made: `count` robots of `seed`, from index `first` on.
-struct Generation {
-  enum class Kind { voxel, network } kind = Kind::voxel;
-  std::size_t count = 1;
-  std::uint64_t seed = 1;
-  std::uint64_t first = 0;
-  RandomVoxelOptions voxel;  // if voxel
-  NnOptions network;         // if network
-};
-
-// How children differ from their parents.
-struct Mutation {
-  std::uint64_t seed = 1;
-  VoxelMutation voxel;        // without a mirror, the parent's own symmetry is kept
-  double network_rate = 0.1;  // share of the weights that change
-  double network_size = 0.3;  // how much [1]
-};
 
 // Factors on a robot's own materials; the phase is added [rad].
 struct MaterialScale {
@@ -42,7 +22,7 @@ struct MaterialScale {
 // Where a robot came from.
 struct RobotSource {
   std::string file;                              // read from there; or empty
-  std::shared_ptr<const Generation> generation;  // made at random so; or nothing
+  std::shared_ptr<const RandomRobots> generation;  // one of these random robots; or nothing
   std::uint64_t index = 0;                       // of the generation
 };
 

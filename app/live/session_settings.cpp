@@ -12,10 +12,9 @@
 #include "app/live/command_text.h"
 #include "app/live/robot_saving.h"
 #include "app/options/config_file.h"
-#include "app/options/nn_options.h"
+#include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/view_options.h"
-#include "app/options/voxel_options.h"
 
 namespace mercury {
 namespace {
@@ -28,11 +27,10 @@ class RememberedOptions {
   RememberedOptions() {
     CLI::App& scene = *program_.add_subcommand("scene");
     view_.add_to(scene);
-    voxel_.add_to(scene);
-    network_.add_to(scene);
-    add_choice(scene, "--kind", kind_, {"voxel", "nn"}, "");
-    add_number(scene, "--count", count_, "", "N");
-    add_number(scene, "--seed", seed_, "", "N");
+    generators_.add_to(scene);
+    add_text(scene, "--kind", generation_.kind, "", "KIND");
+    add_number(scene, "--count", generation_.count, "", "N");
+    add_number(scene, "--seed", generation_.seed, "", "N");
     scene.add_flag("--pause-on-explosion", pause_);
     add_text(scene, "--folder", folder_, "", "PATH");
   }
@@ -43,21 +41,20 @@ class RememberedOptions {
     arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
     program_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     SessionSettings settings{.view = view_.settings(), .pause_on_explosion = pause_, .folder = folder_};
-    settings.generation.kind = kind_ == "nn" ? Generation::Kind::network : Generation::Kind::voxel;
-    settings.generation.count = std::clamp<std::uint64_t>(count_, 1, 100'000);
-    settings.generation.seed = seed_;
-    settings.generation.voxel = voxel_.chosen();
-    settings.generation.network = network_.chosen();
+    generation_.count = std::clamp<std::size_t>(generation_.count, 1, 100'000);
+    generation_.values = generators_.values();
+    generator_named(generation_.kind);
+    for (const Generator& generator : generators()) generator.validate(generation_.values);
+    settings.generation = generation_;
     return settings;
   }
 
  private:
   CLI::App program_{"", "mercury"};
   ViewOptions view_;
-  VoxelOptions voxel_;
-  NnRobotOptions network_;
-  std::string kind_ = "voxel", folder_;
-  std::uint64_t count_ = Generation{}.count, seed_ = Generation{}.seed;
+  GeneratorOptions generators_;
+  RandomRobots generation_;
+  std::string folder_;
   bool pause_ = false;
 };
 
@@ -87,10 +84,12 @@ SessionSettings load_session_settings(const fs::path& path, Messages& messages) 
 void save_session_settings(const fs::path& path, const SessionSettings& settings, Messages& messages) {
   if (path.empty()) return;
   OptionValues options = options_of(settings.view);
-  for (const auto& more : {options_of(settings.generation.voxel), options_of(settings.generation.network)})
+  const RandomRobots& generation = settings.generation;
+  for (const Generator& generator : generators()) {
+    const OptionValues more = options_of(generator, generation.values);
     options.insert(options.end(), more.begin(), more.end());
-  const Generation& generation = settings.generation;
-  options.emplace_back("--kind", generation.kind == Generation::Kind::voxel ? "voxel" : "nn");
+  }
+  options.emplace_back("--kind", generation.kind);
   options.emplace_back("--count", fmt::to_string(generation.count));
   options.emplace_back("--seed", fmt::to_string(generation.seed));
   if (settings.pause_on_explosion) options.emplace_back("--pause-on-explosion", "");

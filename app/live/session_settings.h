@@ -13,7 +13,7 @@ namespace mercury {
 
 struct SessionSettings {
   ViewSettings view;
-  Generation generation;  // of the panel that makes random robots
+  RandomRobots generation;  // of the panel that makes random robots
   bool pause_on_explosion = false;
   std::string folder;  // the last one opened
 };

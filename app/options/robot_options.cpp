@@ -17,14 +17,12 @@ namespace {
 
 constexpr std::size_t most_robots = 1'000'000;
 
-std::vector<Robot> random_robots(const RobotOptions::RandomRobots& request) {
-  if (request.kind == RobotOptions::RandomRobots::Kind::voxel)
-    return random_voxel_robots(request.voxel, request.seed, request.count, request.first);
+std::vector<Robot> random_robots(const RandomRobots& request) {
   std::vector<FailedRobot> failed;
-  std::vector<Robot> robots = random_nn_robots(request.network, request.seed, request.count, request.first, &failed);
+  std::vector<Robot> robots = make_random_robots(request, &failed);
   if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
   for (const FailedRobot& robot : failed)
-    fmt::print(stderr, "mercury: nn-{}-{} was left out: {}\n", request.seed, robot.index, robot.reason);
+    fmt::print(stderr, "mercury: {}-{}-{} was left out: {}\n", request.kind, request.seed, robot.index, robot.reason);
   return robots;
 }
 
@@ -33,15 +31,15 @@ std::vector<Robot> random_robots(const RobotOptions::RandomRobots& request) {
 void RobotOptions::add_to(CLI::App& command) {
   command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
   command
-      .add_option(
-          "--random", random_,
-          "So many random robots, of --seed or one of their own, from the first or another; may be given several times")
+      .add_option("--random", random_,
+                  fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
+                              "given several times",
+                              generator_kinds()))
       ->allow_extra_args(false)
-      ->type_name("voxel:N[:SEED[:FIRST]]|nn:...")
+      ->type_name("KIND:N[:SEED[:FIRST]]")
       ->group("Robots");
   add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
-  voxel_.add_to(command);
-  nn_.add_to(command);
+  generators_.add_to(command);
 }
 
 // A file of a kind that is given without others.
@@ -62,7 +60,7 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
 }
 
 std::vector<Robot> RobotOptions::load() const {
-  if (empty()) throw InputError("no robots given; name files or folders, or use --random voxel:12 or nn:12");
+  if (empty()) throw InputError("no robots given; name files or folders, or use --random " + generator_kinds(":12"));
   std::vector<Robot> robots = load_files();
   for (const RandomRobots& request : random()) {
     std::vector<Robot> more = random_robots(request);
@@ -80,31 +78,32 @@ std::vector<Robot> RobotOptions::load_files() const {
   return load_robots(files());
 }
 
-std::vector<RobotOptions::RandomRobots> RobotOptions::random() const {
+std::vector<RandomRobots> RobotOptions::random() const {
   std::vector<RandomRobots> requests;
   for (const std::string& request : random_) requests.push_back(random_from(request));
   return requests;
 }
 
-RobotOptions::RandomRobots RobotOptions::random_from(const std::string& request) const {
+RandomRobots RobotOptions::random_from(const std::string& request) const {
   const std::vector<std::string_view> parts = split(request, ':');
-  const std::string_view kind = parts.front();
-  const auto number = [&](std::size_t place, std::uint64_t otherwise) {
-    return place < parts.size() ? number_from<std::uint64_t>("--random", parts[place]) : otherwise;
+  const auto number = [&](std::size_t part, std::uint64_t otherwise) {
+    return part < parts.size() ? number_from<std::uint64_t>("--random", parts[part]) : otherwise;
   };
-  RandomRobots robots{.count = number(1, 1), .seed = number(2, seed_), .first = number(3, 0)};
+  RandomRobots robots{.kind = std::string(parts.front()),
+                      .count = number(1, 1),
+                      .seed = number(2, seed_),
+                      .first = number(3, 0),
+                      .values = generators_.values()};
   if (robots.count < 1 || robots.count > most_robots)
     throw InputError("--random", fmt::format("\"{}\" is not accepted; give 1 to {} robots", request, most_robots));
-  if (kind != "voxel" && kind != "nn")
-    throw InputError("--random", fmt::format("\"{}\" is not a kind of robot; give voxel:N or nn:N", kind));
+  const Generator* generator = find_generator(robots.kind);
+  if (!generator)
+    throw InputError("--random",
+                     fmt::format("\"{}\" is not a kind of robot; give {}", robots.kind, generator_kinds(":N")));
   if (parts.size() > 4)
     throw InputError("--random",
                      fmt::format("\"{}\" is not accepted; give KIND:N, KIND:N:SEED or KIND:N:SEED:FIRST", request));
-  if (kind == "voxel")
-    robots.voxel = voxel_.chosen();
-  else
-    robots.network = nn_.chosen();
-  robots.kind = kind == "voxel" ? RandomRobots::Kind::voxel : RandomRobots::Kind::network;
+  generator->validate(robots.values);
   return robots;
 }
 

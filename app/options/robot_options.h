@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robots a command works on: files, folders, and robots made at random.
+// The robots that a command works on: files, folders, and random robots.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/options/nn_options.h"
-#include "app/options/voxel_options.h"
+#include "app/options/generator_options.h"
 #include "mercury/robot.h"
 
 namespace mercury {
@@ -25,27 +24,20 @@ class RobotOptions {
   // used.
   std::vector<Robot> load() const;
 
-  // The trajectory file, if that is what was given. Throws InputError if robots were given with it.
+  // The trajectory file, if one was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> recording() const;
 
-  // The *.repro file, if that is what was given. Throws InputError if robots were given with it.
+  // The *.repro file, if one was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> repro() const;
 
-  // The same in parts: robots of the files alone, the files' names, and what is to be made at random.
+  // The same in parts: the robots of the files, the files' names, and the random robots to make.
   std::vector<Robot> load_files() const;
   std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
-  struct RandomRobots {
-    enum class Kind { voxel, network } kind = Kind::voxel;
-    std::size_t count = 1;
-    std::uint64_t seed = 1, first = 0;
-    RandomVoxelOptions voxel;  // if voxel
-    NnOptions network;         // if network
-  };
   std::vector<RandomRobots> random() const;
 
   bool empty() const { return paths_.empty() && random_.empty(); }
 
-  // Of the random robots; nothing when there are none.
+  // The seed of the random robots; none if there are no random robots.
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
 
  private:
@@ -53,10 +45,9 @@ class RobotOptions {
   RandomRobots random_from(const std::string& request) const;
 
   std::vector<std::string> paths_;   // files and folders
-  std::vector<std::string> random_;  // "voxel:12", "nn:4"
+  std::vector<std::string> random_;  // "voxel:12"
   std::uint64_t seed_ = 1;
-  VoxelOptions voxel_;
-  NnRobotOptions nn_;
+  GeneratorOptions generators_;
 };
 
 }  // namespace mercury

@@ -4,7 +4,7 @@
 #include "app/scene/appearance.h"
 #include "app/scene/eigen_vec3.h"
 #include "app/scene/group_layout.h"
-#include "mercury/origin.h"
+#include "mercury/generator.h"
 
 namespace mercury {
 
@@ -15,7 +15,8 @@ std::shared_ptr<const RobotShape> shape_of(const Robot& robot) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
   shape->middle = (sum / static_cast<double>(robot.masses.size())).cast<float>();
-  shape->grown = kind_of(robot) == "nn";
+  const Generator* generator = generator_of(robot);
+  shape->grown = generator && generator->smooth;
   for (const Spring& spring : robot.springs) shape->materials[spring.material] = true;
   return shape;
 }

@@ -139,7 +139,7 @@ void Viewer::remember() {
 void Viewer::fill_scene() {
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
-  for (const Generation& generation : options_.generations) scene_.generate(generation);
+  for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
   for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
   if (options_.playing) scene_.play();
 }

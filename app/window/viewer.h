@@ -18,7 +18,7 @@ namespace mercury::window {
 struct ViewerOptions {
   std::vector<Robot> robots;                 // that come from no file
   std::vector<std::filesystem::path> files;  // read when the window is open
-  std::vector<Generation> generations;       // made when the window is open
+  std::vector<RandomRobots> generations;       // made when the window is open
   Configuration configuration;
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;

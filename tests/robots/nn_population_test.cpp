@@ -65,13 +65,12 @@ TEST(NnPopulation, OptionsOutOfRangeAreNamed) {
     }
     return "";
   };
-  EXPECT_EQ(message({.hidden = {64, 3}}), "--hidden: 3 is not accepted; give 6 to 4096 neurons a layer");
-  EXPECT_EQ(message({.hidden = std::vector<int>(16, 8)}), "--hidden: 16 is not accepted; give at most 15 layers");
-  EXPECT_EQ(message({.points = 63}), "--points: 63 is not accepted; give 64 to 65535");
-  EXPECT_EQ(message({.points = 65536}), "--points: 65536 is not accepted; give 64 to 65535");
-  EXPECT_EQ(message({.alpha = -0.5f}),
-            "--alpha: -0.5 is not accepted; give a radius > 0 m, or 0 for the smallest that holds all points");
-  EXPECT_EQ(message({.mirrored = 2}), "--mirrored: 2 is not accepted; give a share from 0 to 1");
+  EXPECT_EQ(message({.hidden = {64, 3}}), "hidden: 3 is not accepted; give 6 to 4096");
+  EXPECT_EQ(message({.hidden = std::vector<int>(16, 8)}), "hidden: 16 numbers are not accepted; give at most 15");
+  EXPECT_EQ(message({.points = 63}), "points: 63 is not accepted; give 64 to 65535");
+  EXPECT_EQ(message({.points = 65536}), "points: 65536 is not accepted; give 64 to 65535");
+  EXPECT_EQ(message({.alpha = -0.5f}), "alpha: -0.5 is not accepted; give 0 m or more");
+  EXPECT_EQ(message({.mirrored = 2}), "mirrored: 2 is not accepted; give 0 to 1");
 }
 
 TEST(NnPopulation, APopulationDiffersInShapeAndMaterials) {

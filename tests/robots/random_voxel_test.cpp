@@ -153,12 +153,15 @@ TEST(RandomVoxels, RefusesOptionsThatCannotBeUsed) {
     }
     return std::string();
   };
-  EXPECT_EQ(message({.smallest = {0, 1, 1}}), "--size: voxels 0 to 7 are not accepted; give at least 1");
-  EXPECT_EQ(message({.air = 1}), "--air: give a share of at least 0 and below 1");
-  EXPECT_EQ(message({.patch = 0}), "--patch: give at least 1 voxel");
+  EXPECT_EQ(message({.smallest = {0, 1, 1}}), "voxels: 0 is not accepted; give 1 voxels or more");
+  EXPECT_EQ(message({.smallest = {3, 3, 3}, .largest = {2, 3, 3}}),
+            "voxels: 3 to 2 is not accepted; the first size must not be above the second");
+  EXPECT_EQ(message({.air = 1}), "air: 1 is not accepted; give at least 0 and below 1");
+  EXPECT_EQ(message({.patch = 0}), "patch: 0 is not accepted; give 1 voxels or more");
+  EXPECT_EQ(message({.edge = 0}), "edge: 0 is not accepted; give 0.001 m or more");
   EXPECT_EQ(message({.muscle = 0, .tissue = 0, .bone = 0}),
-            "--muscle, --tissue, --bone: give shares of at least 0, one of them above");
-  EXPECT_EQ(message({.frequencies = 6}), "--frequencies: give 1 to 5");
+            "muscle, tissue, bone: all are 0; give at least one share above 0");
+  EXPECT_EQ(message({.frequencies = 6}), "frequencies: 6 is not accepted; give 1 to 5");
   RandomVoxelOptions huge = cube(50);
   EXPECT_THAT(message(huge), testing::HasSubstr("masses, at most 65535 are accepted"));
 }

@@ -162,9 +162,9 @@ TEST(VoxelEvolution, RefusesWhatItCannotUse) {
   const auto mutation = [&](const VoxelMutation& options) {
     return message([&] { mutate(parent_of(1), options, 1); });
   };
-  EXPECT_EQ(mutation({.flip = 1.5}), "--flip: give a chance between 0 and 1");
-  EXPECT_EQ(mutation({.patch = 0}), "--patch: give at least 1 voxel");
-  EXPECT_EQ(mutation({.materials = {0}}), "--materials: 0 is not a base material; give 1 to 22");
+  EXPECT_EQ(mutation({.flip = 1.5}), "flip: give a chance between 0 and 1");
+  EXPECT_EQ(mutation({.patch = 0}), "patch: give at least 1 voxel");
+  EXPECT_EQ(mutation({.materials = {0}}), "materials: 0 is not a base material; give 1 to 22");
   EXPECT_EQ(message([] {
               mutate_voxel_robot(Robot{.name = "blob", .masses = {{0, 0, 0}}}, {}, 1, "x");
             }),

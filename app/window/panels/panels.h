@@ -36,7 +36,7 @@ class Panels {
   void show(const std::string& panel);
 
   bool take_screenshot_request() { return std::exchange(screenshot_requested_, false); }
-  Generation& generation() { return robots_.random.generation; }
+  RandomRobots& generation() { return robots_.random.generation; }
   VideoPanel& film() { return film_; }
   const VideoPanel& film() const { return film_; }
 

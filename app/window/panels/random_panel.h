@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random robots: how they are made, and the button that makes them.
+// Random robots: the settings of a generator, and the button that makes robots.
 #pragma once
 
 #include "app/window/panels/panel_context.h"
@@ -9,18 +9,15 @@ namespace mercury::window {
 class RandomPanel {
  public:
   void draw(PanelContext& context);
-  // New random robots, as the panel is set.
+  // Makes random robots with the panel's settings.
   void generate(PanelContext& context);
-  // Of its rows [pixels].
+  // Height of its rows [pixels].
   float height() const;
 
-  Generation generation{.count = 6};
+  RandomRobots generation{.count = 6};
 
  private:
-  void draw_voxel_options(PanelContext& context);
-  void draw_network_options(PanelContext& context);
-
-  bool replace_ = true;
+  bool replace_ = true, advanced_ = false;
 };
 
 }  // namespace mercury::window

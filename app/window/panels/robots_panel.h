@@ -22,7 +22,7 @@ class RobotsPanel {
   void choose(PanelContext& context, const RobotEntry& entry);
   void draw_changes(PanelContext& context);
 
-  Mutation mutation_;
+  MutationRequest mutation_;
   RobotId anchor_ = 0;  // where a range of selected rows begins
 };
 

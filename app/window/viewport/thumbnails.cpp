@@ -5,7 +5,7 @@
 
 #include "app/scene/appearance.h"
 #include "app/scene/group_layout.h"
-#include "mercury/origin.h"
+#include "mercury/generator.h"
 
 namespace mercury::window {
 
@@ -25,7 +25,8 @@ void Thumbnails::draw(const std::string& name, const Robot& robot, render::Theme
   std::vector<render::Look> looks;
   for (const render::Color color : material_colors(materials_of(robot), robot.materials.empty()))
     looks.push_back({.color = color});
-  const render::Placement placement{.smooth = kind_of(robot) == "nn"};
+  const Generator* generator = generator_of(robot);
+  const render::Placement placement{.smooth = generator && generator->smooth};
   render::Scene scene{.placements = std::span(&placement, 1),
                       .looks = looks,
                       .surroundings = render::Surroundings::none,

@@ -183,8 +183,8 @@ TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
   options.view.camera.azimuth = 1.25f;
   LiveScene scene(options);
   scene.open({path("it's $HOME.json")});
-  Generation generation{.count = 3, .seed = 8, .first = 2};
-  generation.voxel = {.smallest = {3, 2, 2}, .largest = {3, 2, 2}, .air = 0.125, .mirror = Mirror::none};
+  RandomRobots generation{.count = 3, .seed = 8, .first = 2};
+  generation.values = {{"voxels", SizeRange{{3, 2, 2}, {3, 2, 2}}}, {"air", 0.125}, {"symmetry", "none"}};
   scene.generate(generation);
   scene.wait_until_done();
   scene.remove({test::ids_of(scene)[2]});
@@ -246,15 +246,15 @@ TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
 TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   Messages messages;
   const auto file = folder_ / "mercury" / "scene.toml";
-  EXPECT_EQ(load_session_settings(file, messages).generation.count, Generation{}.count);
+  EXPECT_EQ(load_session_settings(file, messages).generation.count, RandomRobots{}.count);
   SessionSettings settings{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
   settings.view.color = &color_quantity("force");
   settings.view.shown = {.skin = false, .springs = true, .scale_bar = true};
   settings.view.theme = render::Theme::light;
   settings.view.layout = Layout::race;
-  settings.generation = {.kind = Generation::Kind::network, .count = 7, .seed = 1234567890123456789u};
-  settings.generation.network.points = 100;
-  settings.generation.voxel.air = 0.001;
+  settings.generation = {.kind = "nn", .count = 7, .seed = 1234567890123456789u};
+  settings.generation.values = {
+      {"points", std::int64_t{100}}, {"air", 0.001}, {"edge", 0.3f}, {"hidden", std::vector{8}}};
   save_session_settings(file, settings, messages);
   const SessionSettings back = load_session_settings(file, messages);
   EXPECT_THAT(messages.take(), IsEmpty());
@@ -265,11 +265,10 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   EXPECT_EQ(back.view.layout, Layout::race);
   EXPECT_TRUE(back.pause_on_explosion);
   EXPECT_EQ(back.folder, settings.folder);
-  EXPECT_EQ(back.generation.kind, Generation::Kind::network);
+  EXPECT_EQ(back.generation.kind, "nn");
   EXPECT_EQ(back.generation.count, 7u);
   EXPECT_EQ(back.generation.seed, settings.generation.seed);
-  EXPECT_EQ(back.generation.network.points, 100u);
-  EXPECT_EQ(back.generation.voxel.air, 0.001);
+  EXPECT_EQ(back.generation.values, settings.generation.values);
   write("mercury/scene.toml", "color = \"tartan\"\n");
   EXPECT_EQ(load_session_settings(file, messages).view.color, &material_color());
   EXPECT_THAT(messages.take(), SizeIs(1));

@@ -73,8 +73,7 @@ TEST(LiveScene, ADuplicateStartsAtRestWithANameOfItsOwn) {
 TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
   LiveScene scene(on_cpu());
   make_robots(scene, 1);
-  Mutation mutation{.seed = 3};
-  mutation.voxel.flip = 0.2;
+  const MutationRequest mutation{.strength = 10, .seed = 3};
   scene.mutate(ids_of(scene), mutation);
   scene.wait_until_done();
   ASSERT_THAT(scene.entries(), SizeIs(2));

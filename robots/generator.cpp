@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/generator.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "robots/make_all.h"
+
+namespace mercury {
+
+// All generators. Each is described beside its robots.
+Generator voxel_generator();
+Generator nn_generator();
+
+const std::vector<Generator>& generators() {
+  static const std::vector<Generator> all{voxel_generator(), nn_generator()};
+  return all;
+}
+
+namespace {
+
+// The shortest text that gives the number again.
+template <class Value>
+std::string text_of(Value value) {
+  char room[32];
+  return {room, std::to_chars(room, room + sizeof room, value).ptr};
+}
+
+// "a, b or c"
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
+
+// Refuses values out of a parameter's range.
+class Check {
+ public:
+  explicit Check(const GeneratorParameter& parameter) : parameter_(parameter) {}
+
+  void operator()(const std::string& word) const {
+    if (std::ranges::find(parameter_.words, word) == parameter_.words.end()) refuse("\"" + word + "\"");
+  }
+  void operator()(const std::vector<int>& numbers) const {
+    if (numbers.size() > parameter_.most_numbers)
+      throw ParameterError(parameter_.name, std::to_string(numbers.size()) +
+                                                " numbers are not accepted; give at most " +
+                                                std::to_string(parameter_.most_numbers));
+    for (const int number : numbers) (*this)(number);
+  }
+  void operator()(const SizeRange& sizes) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      (*this)(sizes.smallest[axis]);
+      (*this)(sizes.largest[axis]);
+      if (sizes.smallest[axis] > sizes.largest[axis])
+        throw ParameterError(parameter_.name, std::to_string(sizes.smallest[axis]) + " to " +
+                                                  std::to_string(sizes.largest[axis]) +
+                                                  " is not accepted; the first size must not be above the second");
+    }
+  }
+  template <class Value>
+  requires std::is_arithmetic_v<Value>
+  void operator()(Value value) const {
+    const auto number = static_cast<double>(value);
+    // Options keep whole numbers as int.
+    const double highest = parameter_.highest.value_or(std::is_integral_v<Value> ? std::numeric_limits<int>::max()
+                                                                                 : std::numeric_limits<double>::max());
+    const bool too_large = parameter_.below_highest ? number >= highest : number > highest;
+    if (!std::isfinite(number) || number < parameter_.lowest || too_large) refuse(text_of(value));
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& given) const {
+    throw ParameterError(parameter_.name, given + " is not accepted; give " + accepted_values(parameter_));
+  }
+  const GeneratorParameter& parameter_;
+};
+
+}  // namespace
+
+void check(const GeneratorParameter& parameter, const ParameterValue& value) {
+  if (value.index() != parameter.initial.index())
+    throw ParameterError(parameter.name, "another kind of value is expected; give " + accepted_values(parameter));
+  std::visit(Check(parameter), value);
+}
+
+std::string accepted_values(const GeneratorParameter& parameter) {
+  if (!parameter.words.empty()) return listed(parameter.words);
+  const std::string lowest = text_of(parameter.lowest), unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  if (!parameter.highest) return lowest + unit + " or more";
+  const std::string highest = text_of(*parameter.highest);
+  return parameter.below_highest ? "at least " + lowest + " and below " + highest + unit
+                                 : lowest + " to " + highest + unit;
+}
+
+const Generator* find_generator(std::string_view kind) {
+  const auto found = std::ranges::find(generators(), kind, &Generator::kind);
+  return found == generators().end() ? nullptr : &*found;
+}
+
+const Generator* generator_of(const Robot& robot) { return find_generator(kind_of(robot)); }
+
+const Generator& generator_named(std::string_view kind) {
+  if (const Generator* generator = find_generator(kind)) return *generator;
+  throw ParameterError("kind", "\"" + std::string(kind) + "\" is not a kind of robot; give " + generator_kinds());
+}
+
+std::string generator_kinds(std::string_view behind) {
+  std::vector<std::string> kinds;
+  for (const Generator& generator : generators()) kinds.push_back(generator.kind + std::string(behind));
+  return listed(kinds);
+}
+
+const ParameterValue& value_of(const ParameterValues& values, const GeneratorParameter& parameter) {
+  const auto found = values.find(parameter.name);
+  return found == values.end() ? parameter.initial : found->second;
+}
+
+std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed) {
+  const Generator& generator = generator_named(request.kind);
+  generator.validate(request.values);
+  return make_all(
+      request.kind, request.seed, request.count, request.first,
+      [&](std::uint64_t index) { return generator.make(request.values, request.environment, request.seed, index); },
+      failed);
+}
+
+Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
+  const Generator* generator = generator_of(parent);
+  if (!generator)
+    throw InputError(parent.name, "cannot be mutated; only " + generator_kinds() + " robots know how they were made");
+  return generator->mutate(parent, request, name);
+}
+
+}  // namespace mercury

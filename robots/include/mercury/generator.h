@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The registry of robot generators: ways to make random robots, each described once, as data.
+//
+// Programs derive from the descriptions whatever they offer: options of the command line, keys of a TOML file, help,
+// controls of a window, checks of what the user gave. They name no generator. To add a generator:
+//
+//   robots/include/mercury/NAME.h  its plain struct of options, and functions for C++ users
+//   robots/NAME.cpp                the robots, and `Generator NAME_generator()`, its description
+//   robots/generator.cpp           one line in the list of all generators
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// Sizes along x, y and z, drawn for each robot between the two, both included.
+struct SizeRange {
+  std::array<int, 3> smallest{}, largest{};
+  friend bool operator==(const SizeRange&, const SizeRange&) = default;
+};
+
+// A whole number; a number (in single precision where the robot keeps it so); one of several words; a list of whole
+// numbers; sizes.
+using ParameterValue = std::variant<std::int64_t, float, double, std::string, std::vector<int>, SizeRange>;
+
+// Values by the name of their parameter, possibly of several generators. A parameter that is missing has its default.
+using ParameterValues = std::map<std::string, ParameterValue, std::less<>>;
+
+// What can be set of a generator.
+struct GeneratorParameter {
+  std::string name;                  // in lower case with underscores, different from those of all other generators
+  std::string help;                  // what it is, in some words without a full stop
+  std::string unit = {};             // "m", "voxels"; empty for a number without a unit
+  double lowest = 0;                 // of what is accepted; for a list or sizes, of each number
+  std::optional<double> highest{};   // none = any finite number
+  bool below_highest = false;        // `highest` itself is not accepted
+  std::size_t most_numbers = 0;      // of a list
+  std::vector<std::string> words{};  // of a word
+  std::optional<double> usual_highest{};  // end of a slider, where that is below `highest`
+  bool advanced = false;                  // a window shows it on demand only
+  ParameterValue initial{};               // the default; also says which kind of value it is
+};
+
+// Throws ParameterError(name, "7 is not accepted; give 1 to 5") unless the value is of the parameter's kind and in its
+// range.
+void check(const GeneratorParameter& parameter, const ParameterValue& value);
+
+// What to accept, for messages: "1 to 5", "0 m or more", "at least 0 and below 1", "none, x, y or z".
+std::string accepted_values(const GeneratorParameter& parameter);
+
+// How a mutant differs from its parent: 1 = a little, as in a search; 0 = not at all.
+struct MutationRequest {
+  double strength = 1;
+  std::uint64_t seed = 1;
+};
+
+struct Generator {
+  std::string kind;         // "voxel": names the generator in programs, and in the "kind" of its robots' origins
+  std::string title;        // "Voxel robots", the heading above its parameters
+  std::string noun;         // "a voxel robot"
+  std::string help;         // "Random voxel robots", in some words
+  std::string note;         // further sentences for help texts; may be empty
+  std::string environment;  // where its robots belong: "ocean", "ocean-simple", "land"; empty = anywhere
+  bool smooth = false;      // the skin stands for a curved surface, to be shaded smoothly
+  std::vector<GeneratorParameter> parameters;
+  // A robot worth trying, for help texts: its name, seed, and values as a user writes them.
+  struct Example {
+    std::string name;
+    std::uint64_t seed = 1;
+    std::vector<std::pair<std::string, std::string>> values;
+  } example;
+
+  // Throws ParameterError for values of its parameters that cannot be used, alone or together. Ignores other names.
+  std::function<void(const ParameterValues& values)> validate;
+  // The index-th robot of a seed, named "KIND-SEED-INDEX". It depends on the arguments alone, bit for bit on every
+  // machine. Its origin has its kind, the environment (the generator's own if that is empty), and what regrow() and
+  // mutate() need. Throws InputError if the values cannot be used, or if there is no such robot.
+  std::function<Robot(const ParameterValues& values, const std::string& environment, std::uint64_t seed,
+                      std::uint64_t index)>
+      make;
+  // A robot of this generator once more from its origin alone, bit for bit. Throws InputError("/origin/...") if the
+  // origin does not hold one.
+  std::function<Robot(const Robot& robot)> regrow;
+  // A changed copy, named `name`. Depends on the arguments alone. Throws InputError as regrow and make.
+  std::function<Robot(const Robot& parent, const MutationRequest& request, const std::string& name)> mutate;
+};
+
+// All generators; the first one is the default.
+const std::vector<Generator>& generators();
+
+// The generator of that kind; nullptr if there is none.
+const Generator* find_generator(std::string_view kind);
+// The generator that made the robot, by its origin; nullptr if none of these did.
+const Generator* generator_of(const Robot& robot);
+// Throws ParameterError("kind", "\"fish\" is not a kind of robot; give voxel or nn").
+const Generator& generator_named(std::string_view kind);
+
+// "voxel, nn or shell": all kinds, with something behind each, as in "voxel:N or nn:N".
+std::string generator_kinds(std::string_view behind = {});
+
+// The parameter's value, its default if it is missing.
+const ParameterValue& value_of(const ParameterValues& values, const GeneratorParameter& parameter);
+
+// Random robots to be made: robots first .. first + count - 1 of a seed.
+struct RandomRobots {
+  std::string kind = "voxel";  // of a generator
+  std::size_t count = 1;
+  std::uint64_t seed = 1, first = 0;
+  ParameterValues values{};
+  std::string environment{};  // for their origins; empty = none is named
+};
+
+// A robot that could not be made, and why.
+struct FailedRobot {
+  std::uint64_t index = 0;
+  std::string reason;
+};
+
+// The robots, in order, made on all cores. A robot that cannot be made is left out and listed in `failed`; without
+// `failed`, the first such error is thrown. Throws ParameterError for an unknown kind or values that cannot be used.
+std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed = nullptr);
+
+// A changed copy of a robot that one of the generators made, named `name`. Throws InputError if none did.
+Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name);
+
+}  // namespace mercury

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Network robots as an entry of the registry.
+#include <algorithm>
+
+#include "mercury/error.h"
+#include "mercury/nn_robot.h"
+#include "robots/parameter_table.h"
+
+namespace mercury {
+namespace {
+
+const ParameterTable<NnOptions>& table() {
+  using Options = NnOptions;
+  static const ParameterTable<Options> rows{
+      parameter(&Options::points, {.name = "points",
+                                   .help = "Points of the cloud",
+                                   .lowest = min_cloud_points,
+                                   .highest = max_masses,
+                                   .usual_highest = 8192}),
+      parameter(&Options::hidden, {.name = "hidden",
+                                   .help = "Neurons of the hidden layers",
+                                   .lowest = min_hidden_width,
+                                   .highest = max_network_width,
+                                   .most_numbers = max_network_layers - 1,
+                                   .advanced = true}),
+      parameter(&Options::alpha,
+                {.name = "alpha",
+                 .help = "Radius of the alpha shape; 0 takes the smallest that gives one body holding all points",
+                 .unit = "m",
+                 .usual_highest = 1,
+                 .advanced = true}),
+      parameter(&Options::mirrored,
+                {.name = "mirrored", .help = "Share of the robots that have a left and a right", .highest = 1})};
+  return rows;
+}
+
+NnGenome genome_in(const Robot& robot) {
+  std::optional<NnGenome> genome = nn_genome_of(robot);
+  if (!genome) throw InputError("/origin", "holds no network");
+  return *std::move(genome);
+}
+
+Robot regrow(const Robot& robot) { return grow(genome_in(robot), robot.name); }
+
+Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
+  const double rate = 0.1, size = 0.3 * request.strength;
+  return grow(mutate(genome_in(parent), rate, size, request.seed), name);
+}
+
+}  // namespace
+
+void validate(const NnOptions& options) { check_each(table(), options); }
+
+Generator nn_generator() {
+  Generator nn{.kind = "nn",
+               .title = "Network robots",
+               .noun = "an nn robot",
+               .help = "Robots grown by random neural networks",
+               .note = "A file keeps the network, so that the robot can be changed and grown again.",
+               .smooth = true,
+               .example = {.name = "blob", .seed = 4, .values = {{"points", "1000"}}},
+               .regrow = regrow,
+               .mutate = mutant};
+  return with_parameters(std::move(nn), table(), random_nn_robot);
+}
+
+}  // namespace mercury

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// What holds for every generator of the registry, whatever robots it makes.
+#include "mercury/generator.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+#include "mercury/configuration.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+
+namespace mercury {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// Without CGAL, network robots cannot be grown.
+std::vector<Generator> working_generators() {
+  std::vector<Generator> working = generators();
+  if (!MERCURY_NN) std::erase_if(working, [](const Generator& generator) { return generator.kind == "nn"; });
+  return working;
+}
+
+class EveryGenerator : public testing::TestWithParam<Generator> {};
+
+// A robot from fewer masses than usual, so that the tests are fast.
+ParameterValues small(const Generator& generator) {
+  if (generator.kind == "nn") return {{"points", std::int64_t{100}}};
+  return {};
+}
+
+Robot made(const Generator& generator, std::uint64_t seed, std::uint64_t index = 0) {
+  return generator.make(small(generator), "land", seed, index);
+}
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_P(EveryGenerator, MakesValidRobotsThatNameTheirKindAndEnvironment) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Robot robot = made(GetParam(), seed, 2);
+    EXPECT_NO_THROW(validate(robot));
+    EXPECT_EQ(robot.name, GetParam().kind + "-" + std::to_string(seed) + "-2");
+    EXPECT_EQ(kind_of(robot), GetParam().kind);
+    EXPECT_EQ(environment_of(robot), "land");
+    EXPECT_EQ(generator_of(robot)->kind, GetParam().kind);
+  }
+  EXPECT_EQ(environment_of(GetParam().make(small(GetParam()), "", 1, 0)), GetParam().environment);
+  if (!GetParam().environment.empty()) {
+    EXPECT_NO_THROW(environment_named(GetParam().environment));
+  }
+}
+
+TEST_P(EveryGenerator, MakesTheSameRobotFromTheSameSeedAndAnotherFromAnother) {
+  EXPECT_EQ(made(GetParam(), 7, 3), made(GetParam(), 7, 3));
+  EXPECT_NE(made(GetParam(), 7, 3).masses, made(GetParam(), 7, 4).masses);
+  EXPECT_NE(made(GetParam(), 7, 3).masses, made(GetParam(), 8, 3).masses);
+}
+
+TEST_P(EveryGenerator, MakesTheSameRobotsWhateverTheirNumber) {
+  RandomRobots request{.kind = GetParam().kind, .count = 4, .seed = 3, .first = 2, .values = small(GetParam())};
+  const std::vector<Robot> robots = make_random_robots(request);
+  ASSERT_THAT(robots, SizeIs(4));
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(robots[i], GetParam().make(request.values, "", 3, 2 + i)) << robots[i].name;
+}
+
+TEST_P(EveryGenerator, RegrowsARobotFromItsOrigin) {
+  const Robot robot = made(GetParam(), 4, 1);
+  Robot origin_alone{.name = robot.name};
+  origin_alone.origin = robot.origin;
+  EXPECT_EQ(GetParam().regrow(origin_alone), robot);
+  EXPECT_THAT(refusal([] { GetParam().regrow({.name = "empty"}); }), HasSubstr("/origin"));
+}
+
+TEST_P(EveryGenerator, MutatesARobotIntoAnotherOfItsKind) {
+  const Robot parent = made(GetParam(), 4, 1);
+  const Robot child = GetParam().mutate(parent, {.strength = 5, .seed = 9}, "child");
+  EXPECT_EQ(child.name, "child");
+  EXPECT_NO_THROW(validate(child));
+  EXPECT_EQ(kind_of(child), GetParam().kind);
+  EXPECT_EQ(environment_of(child), "land");
+  EXPECT_NE(child.springs, parent.springs);
+  EXPECT_EQ(child, GetParam().mutate(parent, {.strength = 5, .seed = 9}, "child"));
+  EXPECT_EQ(child, mutate_robot(parent, {.strength = 5, .seed = 9}, "child"));
+}
+
+TEST_P(EveryGenerator, AcceptsItsDefaultsAndRefusesWhatIsOutOfRange) {
+  EXPECT_NO_THROW(GetParam().validate({}));
+  for (const GeneratorParameter& parameter : GetParam().parameters) {
+    EXPECT_NO_THROW(check(parameter, parameter.initial)) << parameter.name;
+    const auto refuses = [&](const ParameterValue& value) {
+      const std::string message = refusal([&] { GetParam().validate({{parameter.name, value}}); });
+      EXPECT_THAT(message, testing::StartsWith(parameter.name + ": "));
+      EXPECT_THAT(message, HasSubstr("give " + accepted_values(parameter)));
+    };
+    if (std::holds_alternative<std::int64_t>(parameter.initial)) refuses(std::int64_t(parameter.lowest) - 1);
+    if (std::holds_alternative<double>(parameter.initial)) refuses(parameter.lowest - 1);
+    if (std::holds_alternative<double>(parameter.initial)) refuses(std::nan(""));
+    if (std::holds_alternative<double>(parameter.initial)) refuses(HUGE_VAL);
+    if (std::holds_alternative<float>(parameter.initial)) refuses(static_cast<float>(parameter.lowest) - 1);
+    if (std::holds_alternative<std::string>(parameter.initial)) refuses("tartan");
+    if (std::holds_alternative<SizeRange>(parameter.initial)) refuses(SizeRange{});
+    // A value of another kind.
+    refuses(std::holds_alternative<std::string>(parameter.initial) ? ParameterValue(1.0) : ParameterValue("one"));
+  }
+}
+
+TEST_P(EveryGenerator, IsDescribedInFull) {
+  const Generator& generator = GetParam();
+  EXPECT_THAT((std::vector{generator.title, generator.noun, generator.help, generator.example.name}),
+              testing::Each(testing::Not(IsEmpty())));
+  for (const GeneratorParameter& parameter : generator.parameters) {
+    EXPECT_EQ(parameter.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_"), std::string::npos) << parameter.name;
+    EXPECT_THAT(parameter.help, testing::Not(IsEmpty()));
+    EXPECT_FALSE(parameter.help.ends_with('.'));
+    // A window's slider needs an end.
+    EXPECT_TRUE(std::holds_alternative<std::string>(parameter.initial) || parameter.highest || parameter.usual_highest)
+        << parameter.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryGenerator, testing::ValuesIn(working_generators()),
+                         [](const auto& parameter) { return parameter.param.kind; });
+
+TEST(Generators, HaveNamesOfTheirOwnForThemselvesAndTheirParameters) {
+  std::set<std::string> kinds, parameters;
+  for (const Generator& generator : generators()) {
+    EXPECT_TRUE(kinds.insert(generator.kind).second) << generator.kind;
+    for (const GeneratorParameter& parameter : generator.parameters)
+      EXPECT_TRUE(parameters.insert(parameter.name).second) << parameter.name;
+  }
+  EXPECT_EQ(find_generator("fish"), nullptr);
+  EXPECT_EQ(generator_of({.name = "eel"}), nullptr);
+  EXPECT_EQ(refusal([] { generator_named("fish"); }),
+            "kind: \"fish\" is not a kind of robot; give " + generator_kinds());
+  EXPECT_THAT(generator_kinds(":N"), HasSubstr(":N or "));
+  EXPECT_THAT(refusal([] { mutate_robot({.name = "eel"}, {}, "child"); }), HasSubstr("eel: cannot be mutated"));
+}
+
+TEST(Generators, LeaveOutRobotsThatCannotBeMadeWhereTheCallerAsksForThem) {
+  if (!MERCURY_NN) GTEST_SKIP() << "this build grows no network robots";
+  const RandomRobots request{.kind = "nn", .count = 2, .values = {{"points", std::int64_t{64}}, {"alpha", 1e-6f}}};
+  std::vector<FailedRobot> failed;
+  EXPECT_THAT(make_random_robots(request, &failed), IsEmpty());
+  ASSERT_THAT(failed, SizeIs(2));
+  EXPECT_EQ(failed[1].index, 1u);
+  EXPECT_THAT(refusal([&] { make_random_robots(request); }), testing::StartsWith("nn-1-0: alpha: "));
+}
+
+}  // namespace
+}  // namespace mercury
