@@ -9,7 +9,7 @@
 namespace mercury {
 namespace {
 
-// A spring that has become many times as long as its robot is looked at where the robot was.
+// A spring may have become many times as long as its robot. Then shows the place where the robot was at rest.
 render::Bounds surroundings_of(const CulpritSpring& spring, const Robot& robot, const Eigen::Vector3f& offset) {
   constexpr float most = 12;  // of the robot's size
   const render::Bounds rest = rest_bounds(robot).moved(offset);
@@ -23,22 +23,23 @@ render::Bounds surroundings_of(const CulpritSpring& spring, const Robot& robot, 
   return box;
 }
 
-std::optional<CulpritSpring> bad_spring_of(const Snapshot& snapshot, std::size_t index, const Eigen::Vector3f& offset) {
+std::optional<CulpritSpring> culprit_spring_of(const Snapshot& snapshot, std::size_t index,
+                                               const Eigen::Vector3f& offset) {
   const Robot& robot = *snapshot.robots->robots[index].robot;
-  const std::uint32_t place = snapshot.telemetry[index].culprit_spring;
-  if (place >= robot.springs.size()) return std::nullopt;
-  const Spring& spring = robot.springs[place];
+  const std::uint32_t spring_index = snapshot.telemetry[index].culprit_spring;
+  if (spring_index >= robot.springs.size()) return std::nullopt;
+  const Spring& spring = robot.springs[spring_index];
   const auto positions = snapshot.positions_of(index);
-  CulpritSpring bad{.index = place,
-                    .a = spring.a,
-                    .b = spring.b,
-                    .at_a = eigen(positions[spring.a]) + offset,
-                    .at_b = eigen(positions[spring.b]) + offset,
-                    .figures = spring_details(snapshot, index, place),
-                    .surroundings = {}};
-  if (!bad.at_a.allFinite() || !bad.at_b.allFinite()) return std::nullopt;
-  bad.surroundings = surroundings_of(bad, robot, offset);
-  return bad;
+  CulpritSpring found{.index = spring_index,
+                      .a = spring.a,
+                      .b = spring.b,
+                      .at_a = eigen(positions[spring.a]) + offset,
+                      .at_b = eigen(positions[spring.b]) + offset,
+                      .figures = spring_details(snapshot, index, spring_index),
+                      .surroundings = {}};
+  if (!found.at_a.allFinite() || !found.at_b.allFinite()) return std::nullopt;
+  found.surroundings = surroundings_of(found, robot, offset);
+  return found;
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<c
     const Telemetry& telemetry = snapshot.telemetry[i];
     if (!telemetry.exploded) continue;
     const LiveRobot& robot = snapshot.robots->robots[i];
-    exploded.push_back({robot.id, i, robot.name, telemetry.exploded_at, bad_spring_of(snapshot, i, offsets[i])});
+    exploded.push_back({robot.id, i, robot.name, telemetry.exploded_at, culprit_spring_of(snapshot, i, offsets[i])});
   }
   std::ranges::stable_sort(exploded, {}, &ExplodedRobot::time);
   return exploded;

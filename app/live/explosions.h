@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that have exploded, and where the spring stands in the picture that went first.
+// Exploded robots, and where the spring that caused it is in the picture.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,24 +15,25 @@
 
 namespace mercury {
 
+// The first spring that became invalid in a robot.
 struct CulpritSpring {
   std::uint32_t index = 0;       // in Robot::springs
   std::uint16_t a = 0, b = 0;    // its masses
-  Eigen::Vector3f at_a, at_b;    // they in the picture, where the robot is frozen [m]
-  HitDetails::OfSpring figures;  // when it exploded
-  render::Bounds surroundings;   // to be looked at: the spring, and as much around it as shows where it is
+  Eigen::Vector3f at_a, at_b;    // their positions in the picture; the robot is frozen there [m]
+  HitDetails::OfSpring figures;  // at the explosion
+  render::Bounds surroundings;   // the part of the picture that shows the spring and enough of its robot
 };
 
 struct ExplodedRobot {
   RobotId robot = 0;
-  std::size_t index = 0;  // at that snapshot
+  std::size_t index = 0;  // in the snapshot
   std::string name;
   double time = 0;                      // of the explosion [s]
-  std::optional<CulpritSpring> spring;  // nothing where no spring is to blame
+  std::optional<CulpritSpring> spring;  // nothing if the cause is no spring
 };
 
-// All of a snapshot, in the order in which they exploded. `offsets`: one a robot, added to its coordinates in the
-// picture.
+// The exploded robots of a snapshot in the order of their explosions. `offsets`: per robot, added to its coordinates in
+// the picture [m].
 std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets);
 
 }  // namespace mercury

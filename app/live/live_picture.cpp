@@ -12,7 +12,7 @@
 namespace mercury {
 namespace {
 
-static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are handed on as plain floats");
+static_assert(sizeof(Vec3) == 3 * sizeof(float), "the renderer reads positions as plain floats");
 
 bool same_layout(const ViewSettings& a, const ViewSettings& b) {
   const auto grid = [](const ViewSettings& s) {
@@ -22,7 +22,7 @@ bool same_layout(const ViewSettings& a, const ViewSettings& b) {
          (a.camera.mode == CameraMode::top) == (b.camera.mode == CameraMode::top);
 }
 
-// The settings as the snapshot's details go with them.
+// The settings that match the details of the snapshot.
 ViewSettings fitting(const ViewSettings& settings, const Snapshot& snapshot) {
   ViewSettings fitted = settings;
   fitted.color = snapshot.color;
@@ -55,7 +55,7 @@ std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSett
                         .aspect = aspect,
                         .view = direction_of(settings.camera, land),
                         .on_ground = land || settings.camera.mode == CameraMode::top};
-  // A grid that has become too small gives way.
+  // Ignore a grid that has become too small.
   if (options.grid &&
       static_cast<std::size_t>(options.grid->columns) * static_cast<std::size_t>(options.grid->rows) < bounds.size())
     options.grid.reset();
@@ -66,7 +66,7 @@ std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSett
 
 struct LivePicture::Parts {
   std::shared_ptr<const Snapshot> snapshot;
-  ViewSettings settings;  // as given
+  ViewSettings settings;  // of the last update()
   std::optional<GroupScene> scene;
   std::vector<Eigen::Vector3f> offsets;
   std::uint64_t revision = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest snapshot as a scene to draw: where the robots stand, what they look like.
+// The scene that the window draws, made from the newest snapshot: layout, colours, arrows, labels.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,29 +14,29 @@
 
 namespace mercury {
 
-// Knows no OpenGL but for handing bodies to a renderer.
+// Uses no OpenGL, except through the renderer in set_bodies().
 class LivePicture {
  public:
   LivePicture();
   ~LivePicture();
 
-  // Brings the scene to a snapshot, which is kept until the next one; in slow motion, to what is to be seen at that
-  // wall time (slow_motion.h).
+  // Updates the scene from a snapshot and keeps the snapshot until the next call. In slow motion the scene shows the
+  // robots between two snapshots (slow_motion.h); `wall` is the present wall time [s].
   void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
               const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall);
-  // Robots stand anew in rows that suit the picture and the settings' camera angles.
+  // Arranges the robots again in rows that suit the picture's aspect ratio and the camera angles of the settings.
   void lay_out(float aspect);
 
-  // Grows when the renderer must be given the bodies anew: call set_bodies() before drawing then.
+  // Changes when the bodies change. Then call set_bodies() before drawing.
   std::uint64_t bodies_revision() const;
   void set_bodies(render::Renderer& renderer) const;
-  // Positions included. The caller may change caption, clock, labels and the like until the next update.
+  // The scene with positions. The caller may change texts such as caption, clock and labels until the next update.
   render::Scene& scene();
-  // One a robot of the snapshot, in the picture; those of exploded robots are empty, unless all have exploded.
+  // Bounds per robot of the snapshot, with offsets. Those of exploded robots are empty unless all robots have exploded.
   std::span<const render::Bounds> bounds() const;
-  // Where a robot's masses are shown, in its own coordinates.
+  // The positions of a robot's masses as drawn, without its offset [m].
   std::span<const Vec3> positions_of(std::size_t robot) const;
-  // Added to the robots' own coordinates [m].
+  // What is added to each robot's own coordinates in the picture [m].
   std::span<const Eigen::Vector3f> offsets() const;
 
  private:

@@ -8,7 +8,7 @@
 namespace mercury {
 namespace {
 
-constexpr double sample_period = 0.02;  // to begin with [s]
+constexpr double sample_period = 0.02;  // the first interval [s]
 
 constexpr std::array<QuantityName, 5> names{{
     {Quantity::speed, "speed", "m/s"},
@@ -129,7 +129,7 @@ void Measurements::observe(double time, std::int64_t step, std::span<const Telem
 void Measurements::thin_out() {
   const std::lock_guard lock(mutex_);
   if (interval_ >= 1024 * first_interval_) return;
-  // The next one stays in step with those that are kept.
+  // The next sample continues the rhythm of those that are kept.
   const bool even = times_.size() % 2 == 0;
   thin();
   if (!even) next_ += interval_ / 2;
@@ -138,7 +138,7 @@ void Measurements::thin_out() {
 void Measurements::thin() {
   keep_every_second(times_, 0);
   for (auto& [id, track] : tracks_) {
-    // Samples at even places stay; the track's first one stands at the place `missing`.
+    // Samples with even indices stay. The first sample of the track has the index `missing`.
     keep_every_second(track.samples, track.missing % 2);
     track.missing = (track.missing + 1) / 2;
   }

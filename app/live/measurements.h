@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of each robot over time, in memory that does not grow with the run.
+// Time series and a ranking of the robots, in memory that does not grow with the length of the run.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 namespace mercury {
 
+// What the measure panel plots.
 enum class Quantity { speed, distance, kinetic_energy, elastic_energy, strain };
 
 struct QuantityName {
@@ -24,14 +25,14 @@ std::span<const QuantityName> quantities();
 
 struct Sample {
   float speed = 0;           // of the centre of mass [m/s]
-  float distance = 0;        // of the centre of mass from where it started [m]
+  float distance = 0;        // of the centre of mass from its start [m]
   float kinetic_energy = 0;  // [J]
   float elastic_energy = 0;  // [J]
   float strain = 0;          // largest of any spring [1]
   float of(Quantity quantity) const;
 };
 
-// One robot's samples; those of before it came are missing.
+// The samples of one robot, from the time it was added.
 struct Series {
   std::vector<double> times;    // [s], ascending
   std::vector<Sample> samples;  // as many
@@ -40,8 +41,8 @@ struct Series {
 // One robot in the ranking.
 struct RankingRow {
   RobotId robot = 0;
-  double distance = 0;                            // of the centre of mass from where it started [m]
-  double mean_speed = 0;                          // distance over the time since it started [m/s]
+  double distance = 0;                            // of the centre of mass from its start [m]
+  double mean_speed = 0;                          // distance divided by the time since the start [m/s]
   double speed = 0;                               // now [m/s]
   double kinetic_energy = 0, elastic_energy = 0;  // now [J]
   double largest_strain = 0;                      // so far [1]
@@ -49,29 +50,35 @@ struct RankingRow {
   double exploded_at = 0;  // [s]
 };
 
-// Takes a sample of all robots every so many steps. Where the buffers are full, every second sample is dropped and the
-// interval doubled. The physics thread writes, the window reads.
+// Takes a sample of all robots at a fixed interval of steps. When the buffers are full, drops every second sample and
+// doubles the interval:
+//
+//   steps    0   1   2   3   4   5   6   7   8        capacity 8
+//   before   *   *   *   *   *   *   *   *            full
+//   after    *       *       *       *       *        every second one, and the next one in the same rhythm
+//
+// Thread-safe: the physics thread writes and the window reads.
 class Measurements {
  public:
-  // At least 4 samples fit.
+  // `capacity`: samples per robot, at least 4.
   explicit Measurements(std::size_t capacity = 1024);
 
-  // Forgets everything: time begins anew.
+  // Forgets everything: time starts again, at `time` and `step`. dt [s] is the time step; one telemetry per robot.
   void restart(const LiveRobots& robots, double time, std::int64_t step, double dt,
                std::span<const Telemetry> telemetry);
-  // Robots came or went; the series of those that stay go on.
+  // Call it after robots were added or removed. The series of the others continue.
   void set_robots(const LiveRobots& robots, double time, std::span<const Telemetry> telemetry);
   // The step at which the next sample is due.
   std::int64_t next_step() const;
-  // Takes a sample if one is due at this step, and notes extremes.
+  // Takes a sample if one is due at this step, and updates the ranking.
   void observe(double time, std::int64_t step, std::span<const Telemetry> telemetry);
 
-  // Every second sample goes, and from now on so many fewer are taken; not beyond a thousandth of what it was at first.
+  // Drops every second sample and doubles the interval, up to 1024 times the first interval.
   void thin_out();
 
-  // Of one robot; empty if there is none.
+  // The series of one robot; empty if it is unknown.
   Series series(RobotId robot) const;
-  // In the order of the robots, at the last observe().
+  // One row per robot, in the order of the robots, from the last observe().
   std::vector<RankingRow> ranking() const;
 
  private:
@@ -79,7 +86,7 @@ class Measurements {
     Vec3 start;             // centre of mass [m]
     double start_time = 0;  // [s]
     double largest_strain = 0;
-    std::size_t missing = 0;  // samples of before it came
+    std::size_t missing = 0;  // samples taken before the robot was added
     std::vector<Sample> samples;
     RankingRow row;
   };
@@ -87,7 +94,7 @@ class Measurements {
   void thin();
 
   mutable std::mutex mutex_;
-  const std::size_t capacity_;  // even, so that the samples that stay are evenly spaced
+  const std::size_t capacity_;  // even, so that the remaining samples are evenly spaced
   std::vector<RobotId> order_;
   std::map<RobotId, Track> tracks_;
   std::vector<double> times_;

@@ -33,7 +33,7 @@ double Pace::next_due() const { return start_ + static_cast<double>(done_ + 1) /
 void SpeedGauge::mark(double wall, double time) {
   constexpr double span = 1;  // [s]
   marks_.push_back({wall, time});
-  // One mark older than the span stays, so that slow motion, with a step now and then, is measured too.
+  // Keep one mark older than the span, so that slow motion with few steps is measured, too.
   while (marks_.size() > 2 && marks_[1].wall < wall - span) marks_.pop_front();
 }
 

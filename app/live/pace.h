@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many steps are due: simulated time against the clock on the wall.
+// How many steps are due: keeps simulated time at a given speed relative to wall time.
 #pragma once
 
 #include <cstdint>
@@ -7,31 +7,32 @@
 
 namespace mercury {
 
-// Wall time [s], from some beginning on.
+// Wall time [s] from an arbitrary origin; never goes back.
 double wall_now();
 
-// Keeps simulated time at `speed` times real time. Where physics is too slow it falls behind for good rather than
-// piling up work: what is more than a tenth of a second late is forgotten.
+// If physics is too slow, it falls behind for good: delays of more than a tenth of a second are forgotten, so that no
+// backlog of steps builds up.
 class Pace {
  public:
-  // From here on, at this wall time [s]. `speed` > 0, infinity = as fast as it goes; dt [s].
+  // Starts at this wall time [s]. `speed` > 0 in simulated seconds per second, infinity = as fast as possible; `dt` is
+  // the time step [s].
   void start(double wall, double speed, double dt);
 
-  // Steps that are due now and not done; a very large number as fast as it goes.
+  // Steps that are due at `wall` and not done. A very large number if the speed is infinite.
   std::int64_t due(double wall);
-  // When the next step is due [s of wall time].
+  // Wall time at which the next step is due [s].
   double next_due() const;
-  // When the last step done was due.
+  // Wall time at which the last completed step was due [s].
   double done_at() const { return start_ + static_cast<double>(done_) / rate_; }
   void done(std::int64_t steps) { done_ += steps; }
 
  private:
   static constexpr double most_late = 0.1;  // [s]
-  double start_ = 0, rate_ = 1;             // wall time [s]; steps a second
+  double start_ = 0, rate_ = 1;             // wall time [s]; steps per second
   std::int64_t done_ = 0;
 };
 
-// Simulated seconds a second, over about the last second.
+// Measures simulated seconds per second over about the last second.
 class SpeedGauge {
  public:
   void clear() { marks_.clear(); }

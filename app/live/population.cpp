@@ -9,21 +9,21 @@
 namespace mercury {
 namespace {
 
-// Two entries are the same body.
+// Whether two entries need the same simulated robot. Names and materials may differ.
 bool same_body(const LiveRobot& a, const LiveRobot& b) { return a.id == b.id && a.robot == b.robot; }
 
 using Shapes = std::vector<std::shared_ptr<const RobotShape>>;
 
-// Those of before where there are some; the others are made on all cores.
+// Reuses the previous shapes. Makes the others on all cores.
 Shapes shapes_of(const std::vector<LiveRobot>& robots, const LiveRobots& before) {
   std::map<const Robot*, std::shared_ptr<const RobotShape>> known;
   for (std::size_t i = 0; i < before.shapes.size(); ++i) known[before.robots[i].robot.get()] = before.shapes[i];
-  std::vector<const Robot*> fresh;
+  std::vector<const Robot*> added;
   for (const LiveRobot& robot : robots)
-    if (known.emplace(robot.robot.get(), nullptr).second) fresh.push_back(robot.robot.get());
-  Shapes made(fresh.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) { made[i] = shape_of(*fresh[i]); });
-  for (std::size_t i = 0; i < fresh.size(); ++i) known[fresh[i]] = made[i];
+    if (known.emplace(robot.robot.get(), nullptr).second) added.push_back(robot.robot.get());
+  Shapes made(added.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t i) { made[i] = shape_of(*added[i]); });
+  for (std::size_t i = 0; i < added.size(); ++i) known[added[i]] = made[i];
   Shapes shapes;
   for (const LiveRobot& robot : robots) shapes.push_back(known[robot.robot.get()]);
   return shapes;
@@ -64,7 +64,7 @@ void Population::keep_states(const std::vector<LiveRobot>& wanted) {
     departed_[old.id] = {old.robot, simulation_.state(i)};
     departed_masses_ += old.robot->masses.size();
   }
-  // The oldest go first.
+  // Ids grow, so the oldest robots go first.
   while (departed_masses_ > most_departed) forget(departed_.begin()->first);
 }
 
@@ -85,32 +85,32 @@ void Population::start_over() {
   robots_ = listed({}, *robots_, true);
 }
 
-// Those that stay in their order of before, then the new ones, then all in the order wanted.
+// Keeps the robots that stay, adds the new ones behind them, then sorts all into the wanted order.
 void Population::arrange(const std::vector<LiveRobot>& wanted) {
-  std::vector<std::size_t> staying, places(wanted.size()), fresh;
+  std::vector<std::size_t> staying, indices(wanted.size()), added;
   std::vector<Robot> robots;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const auto old =
         std::ranges::find_if(robots_->robots, [&](const LiveRobot& robot) { return same_body(robot, wanted[i]); });
     if (old != robots_->robots.end()) {
-      places[i] = staying.size();
+      indices[i] = staying.size();
       staying.push_back(static_cast<std::size_t>(old - robots_->robots.begin()));
     } else {
-      fresh.push_back(i);
+      added.push_back(i);
       robots.push_back(*wanted[i].robot);
     }
   }
   simulation_.keep(staying);
-  if (fresh.empty()) return;
+  if (added.empty()) return;
   const std::size_t first = simulation_.add(robots);
-  for (std::size_t k = 0; k < fresh.size(); ++k) {
-    places[fresh[k]] = first + k;
-    const auto before = departed_.find(wanted[fresh[k]].id);
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    indices[added[k]] = first + k;
+    const auto before = departed_.find(wanted[added[k]].id);
     if (before == departed_.end()) continue;
-    if (before->second.robot == wanted[fresh[k]].robot) simulation_.set_state(first + k, before->second.state);
-    forget(wanted[fresh[k]].id);
+    if (before->second.robot == wanted[added[k]].robot) simulation_.set_state(first + k, before->second.state);
+    forget(wanted[added[k]].id);
   }
-  if (!std::ranges::is_sorted(places)) simulation_.keep(places);
+  if (!std::ranges::is_sorted(indices)) simulation_.keep(indices);
 }
 
 void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arranged) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robots of the window inside a simulation.
+// Keeps the robots of a simulation equal to the window's list of robots.
 #pragma once
 
 #include <map>
@@ -11,28 +11,30 @@
 
 namespace mercury {
 
-// Makes a simulation follow a list of robots. Whoever stays keeps its state; whoever comes back goes on from where it
-// left, unless too many others left since.
+// A robot that stays keeps its state. A robot that was removed and comes back continues from its last state, unless too
+// many others were removed since. Not thread-safe; the physics thread owns it.
 class Population {
  public:
   explicit Population(Simulation& simulation) : simulation_(simulation) {}
 
-  // Whether robots came, went, changed places or were replaced; materials are followed as well.
+  // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials. Returns whether the
+  // list changed; materials alone do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
-  // Robots that left are forgotten: time begins anew.
+  // Forgets the states of removed robots: time starts again at 0.
   void forget_departed();
-  // The simulation is another one, without robots.
+  // Call it after the simulation was replaced by an empty one.
   void start_over();
   const std::shared_ptr<const LiveRobots>& robots() const { return robots_; }
-  // Of robots and masses that are there.
+  // Translates perturbations for the simulation. Leaves out those on missing robots and masses.
   std::vector<Perturbation> perturbations_of(std::span<const LivePerturbation> perturbations) const;
 
  private:
+  // A removed robot.
   struct Departed {
     std::shared_ptr<const Robot> robot;
     State state;
   };
-  static constexpr std::size_t most_departed = 5'000'000;  // masses whose state is kept
+  static constexpr std::size_t most_departed = 5'000'000;  // masses of removed robots whose state is kept
   void keep_states(const std::vector<LiveRobot>& wanted);
   void forget(RobotId id);
   void arrange(const std::vector<LiveRobot>& wanted);

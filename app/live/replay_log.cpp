@@ -32,7 +32,7 @@ void ReplayLog::restart() {
   since_ = 0;
 }
 
-// As a slider or a hand makes them, many changes of one kind come between two steps: the last one counts.
+// A slider or the mouse makes many changes of one kind between two steps. Only the last one counts.
 void ReplayLog::add(Event event) {
   copied_.reset();
   if (!events_.empty() && first_event_ + events_.size() > sealed_) {

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happened to each robot of late, so that its explosion can be made to happen again.
+// What happened to each robot recently, so that its explosion can be repeated.
+//
+//   older state        newer state             explosion
+//   ----|------------------|-----------------------X---->  time spent in steps
+//       | 5 s              | up to 5 s             |
+//       '--- events: parameters, materials, perturbations, each with its step ---'
+//
+// A repro is the older state and the events after it. Two states are kept per robot, so that a repro always covers
+// between 5 and 10 seconds of stepping, or everything since the robot was added. A newer state replaces the older one
+// every 5 s, and events before all older states are dropped.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +25,21 @@
 
 namespace mercury {
 
-// Keeps two states a robot from which it can be started again, the older one some seconds of stepping ago, and all that
-// was changed since. Nothing is ever left out: where states would take too much memory, the robot's first one stays.
+// Events are never dropped while a state needs them. If new states would take too much memory, each robot keeps its
+// first one. Not thread-safe; the physics thread owns it.
 class ReplayLog {
  public:
-  // Time began anew.
+  // Forgets everything: time starts again at 0.
   void restart();
-  // After parameters, robots, their materials or pulls may have changed, and before the next step.
+  // Records what changed. Call it after parameters, robots, materials or perturbations may have changed, before the
+  // next step.
   void follow(const Simulation& simulation, const LiveRobots& robots,
               const std::vector<LivePerturbation>& perturbations);
-  // So long was stepped since the last call [s of wall time]; no robot has exploded without repro() being asked.
+  // Call it after steps that took `seconds` of wall time, and after repro() for each robot that exploded in them.
   void stepped(double seconds, const Simulation& simulation, const LiveRobots& robots);
-  // Of a robot that has just exploded, at that place of both; nothing if it is not known. To be put together later, on
-  // whatever thread: a thousand may explode at once, and few are ever asked for.
+  // Returns a function that makes the repro of a robot that has just exploded; empty if the robot is unknown. `index`
+  // is its index in `simulation` and `robots`. The function may be called later and on any thread: thousands of robots
+  // may explode at once, and few of their repros are ever needed.
   std::function<Repro()> repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
                                const Telemetry& telemetry);
 
@@ -53,15 +64,15 @@ class ReplayLog {
     std::optional<std::pair<RobotId, Materials>> materials;
     std::optional<std::vector<LivePerturbation>> perturbations;
   };
-  static constexpr double period = 5;                    // of stepping between two states [s]
-  static constexpr std::size_t most_masses = 2'000'000;  // of all robots, for new states to be kept
+  static constexpr double period = 5;                    // wall time of steps between two states [s]
+  static constexpr std::size_t most_masses = 2'000'000;  // of all robots; above it no new states are kept
 
-  // What became of a robot, by itself.
+  // All that the repro of one robot needs, independent of the log.
   struct Record {
     LiveRobot robot;
     std::shared_ptr<const Start> start;
     std::shared_ptr<const std::vector<Event>> events;
-    std::size_t first_event;  // of those, after the start
+    std::size_t first_event;  // after the start
     Telemetry telemetry;
     std::int64_t last_step;
     std::string device_name;
@@ -74,11 +85,11 @@ class ReplayLog {
   std::map<RobotId, Track> tracks_;
   std::vector<Event> events_;
   std::uint64_t first_event_ = 0;  // number of events_[0]
-  std::uint64_t sealed_ = 0;       // events before this number may not change: a start lies after them
+  std::uint64_t sealed_ = 0;       // events before this number must not change: a start follows them
   Configuration configuration_;
   std::vector<LivePerturbation> perturbations_;
-  std::shared_ptr<const std::vector<Event>> copied_;  // of all events, as long as they stay as they are
-  double since_ = 0;                                  // of stepping since the last states [s]
+  std::shared_ptr<const std::vector<Event>> copied_;  // a copy of events_, until they change
+  double since_ = 0;                                  // wall time of steps since the last states [s]
 };
 
 }  // namespace mercury

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t most_snapshots = 5;
 
-Vec3 between(Vec3 a, Vec3 b, float share) { return a + share * (b - a); }
+Vec3 between(Vec3 a, Vec3 b, float t) { return a + t * (b - a); }
 
-// Steps a second of wall time; 0 = none or no one knows.
+// Steps per second of wall time; 0 = paused or unlimited.
 double rate_of(const Snapshot& snapshot) {
   return snapshot.playing && std::isfinite(snapshot.speed) ? snapshot.speed / snapshot.configuration.dt : 0;
 }
