@@ -8,10 +8,11 @@
 import sys
 from pathlib import Path
 
+import includes
 import physics
 import program
 
-DRAWINGS = {**physics.DRAWINGS, **program.DRAWINGS}
+DRAWINGS = {**includes.DRAWINGS, **physics.DRAWINGS, **program.DRAWINGS}
 
 
 def main():

@@ -1,23 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the rules of who may include whom. Prints one line a violation; exit status 1 if there is one.
+"""Checks who includes whom. Prints one line per violation; exit status 1 if there is one.
 
     include_rules.py [ROOT]
+
+docs/drawings/includes.py draws the arrows that this script finds.
 """
 
 import re
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
-# The folders of ours that each folder may include, besides itself. "sim/api" and "robots/api" are the public headers,
-# which users include as <mercury/...>. A folder that is not listed goes with the nearest listed folder above it.
+# The public headers. Everyone includes them as "mercury/x.h", users as <mercury/x.h>.
 API = {"sim/api": "sim/include", "robots/api": "robots/include"}
+
+# Which folders the files of a folder may include, besides their own. A folder that is not listed belongs to the nearest
+# listed folder above it. "*" = all.
 ALLOWED = {
     "sim/api": "",
     "sim/physics": "sim/api",
+    "sim/cpu": "sim/api sim/physics",
+    "sim/cuda": "sim/api sim/physics",
     "sim": "sim/api sim/physics",
-    "sim/cpu": "sim/api sim/physics sim",
-    "sim/cuda": "sim/api sim/physics sim",
     "robots/api": "sim/api",
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",
@@ -29,9 +34,9 @@ ALLOWED = {
     "app/options": "sim/api robots/api render app/base app/recording app/scene app/video",
     "app/live": "sim/api robots/api robots render app/base app/recording app/scene app/video app/options",
     "app/window/toolkit": "sim/api robots/api render",
-    "app/window/dialogs": "app/window/toolkit",
+    "app/window/dialogs": "sim/api robots/api app/window/toolkit",
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
-    "app/window/panels": "sim/api robots/api render app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
+    "app/window/panels": "sim/api robots/api app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
     "app/commands": "sim/api robots/api robots render app/base app/recording app/video app/options app/window/toolkit app/window",
     "bench": "*",
@@ -39,10 +44,14 @@ ALLOWED = {
     "examples": "sim/api robots/api",
 }
 
-# What robots/ may know of sim/: plain data, no stepping. These headers include only one another.
-PLAIN_DATA = {f"sim/{name}.h" for name in ("error", "host_device", "material", "robot", "vec3")}
+# The plain data of sim. It includes only itself, and robots/ includes nothing else of sim: it makes robots and does not
+# step them.
+PLAIN_DATA = {f"sim/include/mercury/{name}.h" for name in ("error", "host_device", "material", "robot", "vec3")}
 
-# Subjects of others' libraries, known by their headers, and the folders that may know each.
+# Headers that the build makes.
+GENERATED = {"app/base/version.h"}
+
+# Libraries of others, known by their headers, and the top folders that may use each.
 SUBJECTS = {
     "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app", "bench"}),
     "CUDA-OpenGL interop": (r"cuda_gl_interop|cuda_egl_interop|cudaGL|cudaEGL", {"app"}),
@@ -50,14 +59,23 @@ SUBJECTS = {
     "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "render", "app", "bench"}),
     "CGAL": (r"CGAL/", {"robots"}),
 }
-FREE = {"tests", "examples"}  # folders that may include any library
+FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbours without their folder
 
-# Who may ask whether nvcc is compiling.
-CUDACC_HOME = "mercury/host_device.h"
+# The only file that may ask whether nvcc is compiling.
+CUDACC_HOME = "sim/include/mercury/host_device.h"
 
 SOURCES = {".h", ".hpp", ".cuh", ".inl", ".cpp", ".cc", ".cu"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Include:
+    path: str  # of the file, relative to the root
+    line: int
+    quote: str  # < or "
+    header: str  # as written
+    target: str  # the file of ours that it names, relative to the root, or ""
 
 
 def without_comments(text):
@@ -65,51 +83,138 @@ def without_comments(text):
     return COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
 
 
-def violations_of_include(path, folder, quote, header, root):
-    """What is wrong with `path` (relative to root) including `header`; quote is < or "."""
-    top = header.split("/")[0]
-    if "/" in header and top in OURS:
-        if top not in OURS[folder]:
-            yield f"{folder}/ may not include {top}/ ({header})"
-        elif folder == "robots" and top == "sim" and header not in PLAIN_DATA:
+def folder_of(path):
+    """The folder of ALLOWED that a file belongs to."""
+    for name, place in API.items():
+        if path.startswith(place + "/"):
+            return name
+    parts = path.split("/")
+    for count in range(len(parts) - 1, 0, -1):
+        if "/".join(parts[:count]) in ALLOWED:
+            return "/".join(parts[:count])
+    raise ValueError(f"{path} belongs to no folder")
+
+
+def resolve(root, path, header):
+    """The file of ours that an include names, or ""."""
+    if header.startswith("mercury/"):
+        for place in API.values():
+            if (root / place / header).is_file():
+                return f"{place}/{header}"
+        return ""
+    return header if "/" in header and (root / header).is_file() else ""
+
+
+class Tree:
+    """The sources below a root and their includes."""
+
+    def __init__(self, root):
+        self.root = root
+        tops = sorted({name.split("/")[0] for name in ALLOWED})
+        files = [file for top in tops for file in (root / top).rglob("*") if file.suffix in SOURCES]
+        self.texts = {file.relative_to(root).as_posix(): without_comments(file.read_text(encoding="utf-8"))
+                      for file in sorted(files)}
+        self.includes = [
+            Include(path, number, match.group(1), match.group(2), resolve(root, path, match.group(2)))
+            for path, text in self.texts.items()
+            for number, line in enumerate(text.splitlines(), start=1)
+            if (match := INCLUDE.match(line))
+        ]
+
+    def arrows(self):
+        """{(folder, folder): number of includes} between different folders."""
+        found = {}
+        for include in self.includes:
+            if include.target:
+                arrow = folder_of(include.path), folder_of(include.target)
+                if arrow[0] != arrow[1]:
+                    found[arrow] = found.get(arrow, 0) + 1
+        return found
+
+    def problems(self):
+        """(path, line, what is wrong)."""
+        for include in self.includes:
+            for problem in problems_of(self.root, include):
+                yield include.path, include.line, problem
+        for path, text in self.texts.items():
+            for number, line in enumerate(text.splitlines(), start=1):
+                if "__CUDACC__" in line and path != CUDACC_HOME:
+                    yield path, number, f"only {CUDACC_HOME} asks for __CUDACC__"
+        graph = {}
+        for include in self.includes:
+            graph.setdefault(include.path, []).append(include.target)
+        cycle = cycle_in(graph)
+        if cycle:
+            yield cycle[0], 1, "includes itself: " + " -> ".join(cycle)
+
+
+def problems_of(root, include):
+    """What is wrong with one include."""
+    path, header, target = include.path, include.header, include.target
+    folder, top = folder_of(path), path.split("/")[0]
+    if target:
+        other = folder_of(target)
+        if other != folder and other not in ALLOWED[folder].split() and ALLOWED[folder] != "*":
+            yield f"{folder}/ may not include {other}/ ({header})"
+        elif top == "robots" and other == "sim/api" and target not in PLAIN_DATA:
             yield f"robots/ may include only the plain data of sim/, not {header}"
-        elif path in PLAIN_DATA and header not in PLAIN_DATA:
+        elif path in PLAIN_DATA and target not in PLAIN_DATA:
             yield f"plain data may include only plain data, not {header}"
         return
-    if folder in FREE:
+    if header in GENERATED:
         return
-    if header.startswith("..") or quote == '"' and ((root / path).parent / header).exists():
+    if header.split("/")[0] in {"mercury", *(name.split("/")[0] for name in ALLOWED)}:
+        yield f"there is no {header}"
+        return
+    if top in FREE:
+        return
+    if header.startswith("..") or include.quote == '"' and ((root / path).parent / header).exists():
         yield f"name the header from the root: {header}"
         return
-    for subject, (pattern, allowed) in SUBJECTS.items():
+    for subject, (pattern, users) in SUBJECTS.items():
         if re.match(pattern, header):
-            if folder not in allowed:
-                yield f"{folder}/ may not know {subject} ({header})"
+            if top not in users:
+                yield f"{top}/ may not use {subject} ({header})"
             return
 
 
-def violations_of_file(root, path):
-    """(line, what is wrong) of one source file."""
-    folder = path.split("/")[0]
-    text = without_comments((root / path).read_text(encoding="utf-8"))
-    for number, line in enumerate(text.splitlines(), start=1):
-        include = INCLUDE.match(line)
-        if include:
-            for problem in violations_of_include(path, folder, *include.groups(), root):
-                yield number, problem
-        if "__CUDACC__" in line and path != CUDACC_HOME:
-            yield number, f"only {CUDACC_HOME} asks for __CUDACC__"
+def cycle_in(graph):
+    """A cycle of {node: [node]}, its first node repeated at the end, or None."""
+    state = {}  # absent = not seen, False = on the present path, True = done
+
+    def visit(node, path):
+        if state.get(node) is False:
+            return path[path.index(node):] + [node]
+        if node in state:
+            return None
+        state[node] = False
+        for other in graph.get(node, []):
+            cycle = visit(other, path + [node])
+            if cycle:
+                return cycle
+        state[node] = True
+        return None
+
+    return next((cycle for node in list(graph) if (cycle := visit(node, []))), None)
+
+
+def check_table(allowed):
+    """What is wrong with a table of allowed arrows."""
+    graph = {folder: [] if others == "*" else others.split() for folder, others in allowed.items()}
+    for folder, others in graph.items():
+        for other in others:
+            if other not in allowed:
+                yield f"{folder}/ may include {other}/, which is not listed"
+    cycle = cycle_in(graph)
+    if cycle:
+        yield "the allowed arrows have a cycle: " + " -> ".join(cycle)
 
 
 def check(root):
-    """(number of files read, one line a violation)."""
-    files = sorted(
-        file.relative_to(root).as_posix()
-        for folder in OURS
-        for file in (root / folder).rglob("*")
-        if file.suffix in SOURCES
-    )
-    return len(files), [f"{path}:{line}: {what}" for path in files for line, what in violations_of_file(root, path)]
+    """(number of files read, one line per violation)."""
+    tree = Tree(root)
+    problems = [f"{path}:{line}: {what}" for path, line, what in tree.problems()]
+    return len(tree.texts), list(check_table(ALLOWED)) + problems
 
 
 def main():
