@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time, selection, hands and measures of the window's scene.
+// Frames, time, the list of robots, selection and measures of the window's scene.
 #include "app/live/live_scene.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -11,28 +9,15 @@
 
 #include "app/live/live_scene_parts.h"
 #include "app/live/pace.h"
-#include "app/recording/report.h"
-#include "app/scene/eigen_vec3.h"
 
 namespace mercury {
 namespace {
 
+// Speeds in simulated seconds per second.
 constexpr double slowest = 1e-3, fastest = 100;
 
 constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02,  0.05,           0.1, 0.2, 0.5, 1.0, 2.0,
                             5.0,   10.0,  20.0,  50.0, 100.0, unlimited_speed};
-
-// So stiff that the robot follows the hand, and not so stiff that the mass is torn out or the step too long for it.
-float suitable_stiffness(const LiveRobot& robot, const Configuration& configuration) {
-  float stiffest = 1;
-  for (const Spring& spring : robot.robot->springs)
-    stiffest = std::max(stiffest, materials_of(robot)[spring.material].stiffness);
-  const float per_mass = length(gravity_of(configuration.environment)) > 0 ? 60.0f : 4.0f;
-  const float of_body = per_mass * static_cast<float>(robot.robot->masses.size());
-  const float of_springs = 6 * stiffest * stiffness_scale_of(configuration.environment);
-  const auto of_step = static_cast<float>(0.05 / (configuration.dt * configuration.dt));
-  return std::max(1e-3f, std::min({of_body, of_springs, of_step}));
-}
 
 }  // namespace
 
@@ -185,74 +170,6 @@ void LiveScene::wait_until_done() {
   wait_for_work();
   parts_->physics.wait_until_done();
   frame(parts_->aspect);
-}
-
-std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
-  const Shown& shown = parts_->view.shown;
-  const Snapshot& snapshot = *parts_->snapshot;
-  const auto hidden = std::make_unique<bool[]>(snapshot.robots->size());
-  for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
-    hidden[i] = parts_->hidden.contains(snapshot.robots->robots[i].id);
-  return mercury::pick(snapshot, parts_->picture.offsets(), ray,
-                       {.skin = shown.skin,
-                        .springs = shown.springs,
-                        .masses = shown.masses,
-                        .cut = parts_->view.cut,
-                        .hidden = {hidden.get(), snapshot.robots->size()}});
-}
-
-HitDetails LiveScene::describe(const Hit& hit) const {
-  parts_->described = 30;
-  parts_->physics.watch_velocities(true);
-  return mercury::describe(*parts_->snapshot, hit);
-}
-
-void LiveScene::begin_perturbation(const Hit& hit, float stiffness) {
-  const auto index = parts_->snapshot->robots->index_of(hit.robot);
-  if (!index || hit.mass >= parts_->snapshot->positions_of(*index).size()) return;
-  const LiveRobot& robot = parts_->snapshot->robots->robots[*index];
-  const float suitable = suitable_stiffness(robot, parts_->document.configuration);
-  const bool usable = std::isfinite(stiffness) && stiffness > 0;
-  parts_->perturbation = LivePerturbation{.robot = hit.robot,
-                                          .mass = hit.mass,
-                                          .target = parts_->snapshot->positions_of(*index)[hit.mass],
-                                          .stiffness = usable ? stiffness : suitable};
-  parts_->send_perturbation();
-}
-
-void LiveScene::move_perturbation(const Eigen::Vector3f& target) {
-  if (!parts_->perturbation || !target.allFinite()) return;
-  const auto index = parts_->snapshot->robots->index_of(parts_->perturbation->robot);
-  if (!index || *index >= parts_->picture.offsets().size()) return;
-  const Eigen::Vector3f own = target - parts_->picture.offsets()[*index];
-  parts_->perturbation->target = {own.x(), own.y(), own.z()};
-  parts_->send_perturbation();
-}
-
-void LiveScene::set_perturbation_stiffness(float stiffness) {
-  if (!parts_->perturbation || !std::isfinite(stiffness) || !(stiffness > 0)) return;
-  parts_->perturbation->stiffness = stiffness;
-  parts_->send_perturbation();
-}
-
-void LiveScene::end_perturbation() {
-  parts_->perturbation.reset();
-  parts_->send_perturbation();
-}
-
-std::optional<PerturbationDetails> LiveScene::perturbation() const {
-  if (!parts_->perturbation) return std::nullopt;
-  const LivePerturbation& pull = *parts_->perturbation;
-  const auto index = parts_->snapshot->robots->index_of(pull.robot);
-  if (!index || *index >= parts_->picture.offsets().size()) return std::nullopt;
-  const Eigen::Vector3f offset = parts_->picture.offsets()[*index];
-  const Vec3 mass = parts_->picture.positions_of(*index)[pull.mass];
-  return PerturbationDetails{.robot = pull.robot,
-                             .mass = pull.mass,
-                             .at = eigen(mass) + offset,
-                             .target = eigen(pull.target) + offset,
-                             .stiffness = pull.stiffness,
-                             .force = pull.stiffness * length(pull.target - mass)};
 }
 
 Series LiveScene::series(RobotId robot) const { return parts_->physics.measurements().series(robot); }

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene of the interactive window: everything it does that is neither window nor OpenGL.
+// The scene of the interactive window: everything that the window does except windows and OpenGL.
+//
+//   SceneDocument (robots, parameters; edits, undo) --> Physics --> Snapshot --> LivePicture --> the window draws
+//
+// An edit changes the document on the window's thread and sends it to the physics thread; frame() fetches the newest
+// snapshot. Reading files and making robots are background tasks; their results enter the document in frame().
 #pragma once
 
 #include <cstdint>
@@ -28,11 +33,11 @@ struct LiveSceneOptions {
   ViewSettings view;
 };
 
-// A pull by the hand, for the eye; places in the picture.
+// A perturbation by the mouse as the window draws it. Positions are those in the picture.
 struct PerturbationDetails {
   RobotId robot = 0;
   std::uint16_t mass = 0;
-  Eigen::Vector3f at, target;  // the mass, the hand [m]
+  Eigen::Vector3f at, target;  // of the mass and of the mouse [m]
   float stiffness = 0;         // [N/m]
   float force = 0;             // [N]
 };
@@ -42,62 +47,64 @@ struct RobotEntry {
   RobotId id = 0;
   std::string name;
   std::size_t masses = 0, springs = 0, faces = 0;
-  std::string file;                                      // it was read from or saved to; empty = none
-  bool unsaved = false;                                  // differs from that file
-  bool selected = false, hidden = false, tuned = false;  // tuned: has materials of its own now
+  std::string file;                                      // read from or saved to it; empty = none
+  bool unsaved = false;                                  // differs from its file
+  bool selected = false, hidden = false, tuned = false;  // tuned: its materials were changed
   bool exploded = false;
-  double exploded_at = 0;  // [s]
-  std::uint32_t culprit_spring = no_spring;
+  double exploded_at = 0;                    // [s]
+  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
 };
 
-// For one thread. Nothing waits for physics or for files; what cannot be done is told by take_messages(), and nothing
-// but the constructor throws for what a user gives.
+// All members are called from one thread. None waits for physics or for files, except those named wait_*. Errors are
+// reported by take_messages(); only the constructor throws.
 class LiveScene {
  public:
-  // Throws InputError and DeviceError as Simulation.
+  // Throws InputError for an invalid configuration and DeviceError for a missing device.
   explicit LiveScene(const LiveSceneOptions& options = {});
   ~LiveScene();
 
-  // Once a frame, first of all: takes the newest snapshot and what was made in the background, and brings picture() up
-  // to date. `aspect` of the picture; counts when robots are laid out anew.
+  // Call it first in every frame: fetches the newest snapshot and the results of background tasks, and updates
+  // picture(). `aspect` is the picture's width divided by its height; the layout of the robots depends on it.
   void frame(float aspect = 16.0f / 9);
-  const Snapshot& snapshot() const;  // newest, as of the last frame(); stays until the next one
+  const Snapshot& snapshot() const;  // of the last frame(); valid until the next one
   std::shared_ptr<const Snapshot> hold_snapshot() const;
-  LivePicture& picture();  // scene, bounds, offsets, bodies' revision
+  LivePicture& picture();
   std::vector<Message> take_messages();
   std::string device_name() const;
 
-  // Time.
+  // Time. Speeds are simulated seconds per second.
   void play();
   void pause();
   void toggle();
-  bool playing() const;               // as asked for; snapshot().playing tells what physics does
+  bool playing() const;               // as requested; snapshot().playing is what physics does
   void step(std::int64_t count = 1);  // pauses first
   void reset();
   void set_speed(double speed);  // clamped to 1/1000 .. 100, or unlimited_speed
   double speed() const;
-  void change_speed(int notches);  // + faster: through 1, 2, 5 times powers of ten
+  void change_speed(int notches);  // faster if > 0: 0.1, 0.2, 0.5, 1, 2, 5, ...
 
   // Robots.
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
-  void add(std::vector<Robot> robots, bool unsaved = true);  // `unsaved`: they are kept nowhere else
-  void open(const std::vector<std::filesystem::path>&
-                paths);  // files and folders, recordings for their robots, or one repro; in the background
-  void generate(const RandomRobots& generation, bool replace = false);  // in the background; replace = instead of all
+  void add(std::vector<Robot> robots, bool unsaved = true);  // `unsaved`: they are in no file
+  // Opens robot files, folders of them, the robots of recordings, or one repro, in the background.
+  void open(const std::vector<std::filesystem::path>& paths);
+  // Makes random robots in the background. `replace`: they replace all robots.
+  void generate(const RandomRobots& generation, bool replace = false);
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);
-  // A child of each, beside it or in its place. Robots that are neither voxel nor network ones cannot.
+  // Makes a child of each robot in the background, beside its parent or in its place. Only robots with a known
+  // generator can have children.
   void mutate(const std::vector<RobotId>& robots, const MutationRequest& mutation, bool replace = false);
   void clear();
   void rename(RobotId robot, const std::string& name);
   bool can_mutate(RobotId robot) const;
-  std::vector<Work> work() const;  // what goes on in the background: for progress bars
+  std::vector<Work> work() const;  // running and waiting background tasks, for progress bars
   void cancel_work(std::uint64_t work);
-  void wait_for_work();    // until nothing goes on in the background, and it is in the scene
-  void wait_until_done();  // the same, and physics has done all it was asked for, and frame() was called
+  void wait_for_work();    // until all background tasks have ended and their results are in the scene
+  void wait_until_done();  // also until physics has carried out all commands; calls frame()
 
-  // Selection. The current one is the last that was selected.
+  // Selection. The current robot is the one selected last.
   void select(RobotId robot, bool alone = true);
   void toggle_selected(RobotId robot);
   void select_all();
@@ -107,60 +114,62 @@ class LiveScene {
   std::optional<RobotId> current() const;
   void set_hidden(RobotId robot, bool hidden);
 
-  // Edits that can be taken back. Changes of one kind that follow each other, as a slider makes them, are one edit
-  // until end_edit().
+  // Undo and redo. Successive changes of one kind, such as those of a slider, are one edit until end_edit().
   bool can_undo() const;
   bool can_redo() const;
-  std::string undo_name() const;  // "remove 2 robots"; empty = nothing
+  std::string undo_name() const;  // "remove 2 robots"; empty = nothing to undo
   std::string redo_name() const;
   void undo();
   void redo();
   void end_edit();
 
-  // Parameters. What cannot be used is told and changes nothing; false then.
+  // Parameters. An invalid value changes nothing: it is reported and the result is false.
   const Configuration& configuration() const;
-  bool set_configuration(const Configuration& configuration);  // the device stays what it is
-  void reset_configuration();                                  // defaults of the present environment; device stays
-  std::span<const Material> materials(RobotId robot) const;    // as they are now; empty = no such robot
+  bool set_configuration(const Configuration& configuration);  // keeps the device
+  void reset_configuration();                                  // to the defaults of the environment; keeps the device
+  std::span<const Material> materials(RobotId robot) const;    // in use; empty if the robot is unknown
   bool set_material(const std::vector<RobotId>& robots, MaterialId id, const Material& material);
-  // For all materials but air: stiffness, amplitude, frequency multiplied, phase added to those of the robot's file.
+  // Changes all materials but air: multiplies stiffness, amplitude and frequency of the robot's file, adds to the
+  // phase.
   bool scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale);
   void reset_materials(const std::vector<RobotId>& robots);  // to those of the robot's file
   const ViewSettings& view() const;
-  void set_view(const ViewSettings& settings);  // what the environment has not is left out while it lasts
+  void set_view(const ViewSettings& settings);  // details that the environment lacks are ignored
 
-  // Hands. Rays and places in the picture.
+  // Mouse. Rays and positions are those in the picture.
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitDetails describe(const Hit& hit) const;
-  void begin_perturbation(const Hit& hit, float stiffness = 0);  // 0 = what suits the robot
+  void begin_perturbation(const Hit& hit, float stiffness = 0);  // [N/m]; 0 = suits the robot
   void move_perturbation(const Eigen::Vector3f& target);
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
   std::optional<PerturbationDetails> perturbation() const;
 
-  // Files. None replaces a file that exists unless told to.
+  // Files. An existing file is replaced only with `overwrite`.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
   SaveResult save_all(const std::vector<RobotId>& robots, const std::filesystem::path& folder, RobotFormat format,
                       bool overwrite = false);
-  // `mercury view ...` or `mercury render ... -o scene.mp4` that makes this scene, and what it cannot say.
+  // The command line `mercury view ...` or `mercury render ... -o scene.mp4` that makes this scene, and what it cannot
+  // express.
   CommandText command(const std::string& subcommand = "view") const;
 
   // Measures.
   Series series(RobotId robot) const;
   std::vector<RankingRow> ranking() const;
-  std::string csv(const std::vector<RobotId>& robots) const;  // time series, one column a robot and quantity
+  std::string csv(const std::vector<RobotId>& robots) const;  // time series, one column per robot and quantity
   std::string ranking_csv() const;
   SaveResult save_text(const std::filesystem::path& path, const std::string& text, bool overwrite = false);
 
-  // A film of the robots that are not hidden, from time 0, in the background.
+  // Starts a video of the visible robots from time 0, in the background.
   std::unique_ptr<GroupVideo> export_video(const GroupVideoOptions& options) const;
 
   // Explosions.
-  std::vector<ExplodedRobot> exploded() const;  // at the snapshot, those that are hidden left out
+  std::vector<ExplodedRobot> exploded() const;  // in the snapshot, without hidden robots
   std::vector<Explosion> take_explosions();     // since the last call
   void pause_on_explosion(bool pause);
-  // NAME.repro in a folder: robot, configuration, a state of some seconds ago, and pulls and changes since. mercury run
-  // and mercury view make it explode again, at the same step and bit for bit on the same kind of device.
+  // Writes NAME.repro: the robot, its configuration, a state some seconds before the explosion, and the changes and
+  // perturbations since. `mercury run` and `mercury view` repeat the explosion at the same step, on the same kind of
+  // device bit for bit.
   SaveResult save_repro(RobotId robot, const std::filesystem::path& folder, bool overwrite = false);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of the window's scene: robots, parameters, materials, and taking them back.
+// Edits of the window's scene: robots, parameters, materials, undo and redo.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,18 +29,46 @@ bool LiveScene::Parts::change_materials(const std::vector<RobotId>& robots, cons
   if (!any) return true;
   edit(name, key);
   document = std::move(after);
-  told();
+  apply_document();
   return true;
 }
 
+RobotId LiveScene::Parts::append(Robot robot, RobotSource source) {
+  const RobotId id = ++last_id;
+  LiveRobot body{.id = id, .name = robot.name.empty() ? "robot" : robot.name};
+  body.robot = std::make_shared<const Robot>(std::move(robot));
+  if (!source.file.empty()) saved[id] = {source.file, body};
+  document.robots.push_back({std::move(body), std::move(source)});
+  return id;
+}
+
+void LiveScene::add(std::vector<Robot> robots, bool unsaved) {
+  std::erase_if(robots, [&](const Robot& robot) {
+    try {
+      validate(robot);
+      return false;
+    } catch (const InputError& error) {
+      parts_->report(Severity::error, (robot.name.empty() ? "robot" : robot.name) + ": " + error.what());
+      return true;
+    }
+  });
+  if (robots.empty()) return;
+  parts_->edit("add " + robot_count_text(robots.size()));
+  for (Robot& robot : robots) {
+    const RobotId id = parts_->append(std::move(robot), {});
+    if (!unsaved) parts_->saved[id] = {"", parts_->document.robots.back().body};
+  }
+  parts_->apply_document();
+}
+
 void LiveScene::remove(const std::vector<RobotId>& robots) {
-  const std::set<RobotId> going(robots.begin(), robots.end());
-  const auto goes = [&](const DocumentRobot& robot) { return going.contains(robot.body.id); };
+  const std::set<RobotId> removed(robots.begin(), robots.end());
+  const auto goes = [&](const DocumentRobot& robot) { return removed.contains(robot.body.id); };
   const auto count = std::ranges::count_if(parts_->document.robots, goes);
   if (count == 0) return;
-  parts_->edit("remove " + robots_counted(static_cast<std::size_t>(count)));
+  parts_->edit("remove " + robot_count_text(static_cast<std::size_t>(count)));
   std::erase_if(parts_->document.robots, goes);
-  parts_->told();
+  parts_->apply_document();
 }
 
 void LiveScene::clear() {
@@ -54,13 +82,13 @@ void LiveScene::duplicate(const std::vector<RobotId>& robots) {
   for (const RobotId id : robots)
     if (const DocumentRobot* robot = parts_->document.find(id)) originals.push_back(*robot);
   if (originals.empty()) return;
-  parts_->edit("duplicate " + robots_counted(originals.size()));
+  parts_->edit("duplicate " + robot_count_text(originals.size()));
   for (DocumentRobot& copy : originals) {
     copy.body.id = ++parts_->last_id;
     copy.body.name = parts_->free_name(copy.body.name);
     parts_->document.robots.push_back(std::move(copy));
   }
-  parts_->told();
+  parts_->apply_document();
 }
 
 void LiveScene::rename(RobotId robot, const std::string& name) {
@@ -68,7 +96,7 @@ void LiveScene::rename(RobotId robot, const std::string& name) {
   if (!found || name.empty() || found->body.name == name) return;
   parts_->edit("rename " + found->body.name);
   found->body.name = name;
-  parts_->told();
+  parts_->apply_document();
 }
 
 bool LiveScene::can_undo() const { return parts_->history.can_undo(); }
@@ -80,12 +108,12 @@ void LiveScene::end_edit() { parts_->history.end_edit(); }
 void LiveScene::undo() {
   if (!can_undo()) return;
   parts_->history.undo(parts_->document);
-  parts_->told();
+  parts_->apply_document();
 }
 void LiveScene::redo() {
   if (!can_redo()) return;
   parts_->history.redo(parts_->document);
-  parts_->told();
+  parts_->apply_document();
 }
 
 const Configuration& LiveScene::configuration() const { return parts_->document.configuration; }
@@ -97,20 +125,20 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   try {
     validate(wanted);
   } catch (const InputError& error) {
-    parts_->say(Severity::warning, error.what());
+    parts_->report(Severity::warning, error.what());
     return false;
   }
   parts_->edit("change parameters", "parameters");
   parts_->document.configuration = wanted;
-  parts_->told();
+  parts_->apply_document();
   return true;
 }
 
 void LiveScene::reset_configuration() {
   end_edit();
-  Configuration usual;
-  usual.environment = environment_named(name_of(configuration().environment));
-  set_configuration(usual);
+  Configuration defaults;
+  defaults.environment = environment_named(name_of(configuration().environment));
+  set_configuration(defaults);
   end_edit();
 }
 
@@ -123,7 +151,7 @@ bool LiveScene::set_material(const std::vector<RobotId>& robots, MaterialId id, 
   try {
     validate(material, "material " + std::to_string(id));
   } catch (const InputError& error) {
-    parts_->say(Severity::warning, error.what());
+    parts_->report(Severity::warning, error.what());
     return false;
   }
   return parts_->change_materials(robots, "change a material", fmt::format("material {}", id),
@@ -140,7 +168,7 @@ bool LiveScene::set_material(const std::vector<RobotId>& robots, MaterialId id, 
 bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale) {
   if (!std::isfinite(scale.stiffness) || scale.stiffness < 0 || !std::isfinite(scale.amplitude) ||
       !std::isfinite(scale.frequency) || !std::isfinite(scale.phase)) {
-    parts_->say(Severity::warning, "materials: give finite factors, that of the stiffness at least 0");
+    parts_->report(Severity::warning, "materials: give finite factors, and at least 0 for the stiffness");
     return false;
   }
   return parts_->change_materials(robots, "tune materials", "materials", [&](DocumentRobot& robot) {
@@ -171,13 +199,13 @@ void LiveScene::reset_materials(const std::vector<RobotId>& robots) {
 
 const ViewSettings& LiveScene::view() const { return parts_->view; }
 void LiveScene::set_view(const ViewSettings& settings) {
-  const bool other_details = settings.color != parts_->view.color ||
-                             settings.shown.arrows.drag != parts_->view.shown.arrows.drag ||
-                             settings.shown.arrows.lift != parts_->view.shown.arrows.lift ||
-                             settings.shown.arrows.velocity != parts_->view.shown.arrows.velocity ||
-                             settings.shown.arrows.gravity != parts_->view.shown.arrows.gravity;
+  const bool details_changed = settings.color != parts_->view.color ||
+                               settings.shown.arrows.drag != parts_->view.shown.arrows.drag ||
+                               settings.shown.arrows.lift != parts_->view.shown.arrows.lift ||
+                               settings.shown.arrows.velocity != parts_->view.shown.arrows.velocity ||
+                               settings.shown.arrows.gravity != parts_->view.shown.arrows.gravity;
   parts_->view = settings;
-  if (other_details) parts_->physics.set_view(settings);
+  if (details_changed) parts_->physics.set_view(settings);
 }
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What LiveScene holds.
+// The private state of LiveScene, and small functions that its source files share.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace mercury {
 
-// What a file holds of a robot, as long as both are the same.
+// A robot as its file holds it. The robot in the scene is saved if both are equal.
 struct SavedRobot {
   std::string file;
   LiveRobot body;
@@ -39,20 +39,21 @@ struct LiveScene::Parts {
   std::uint64_t stops = 0;
   double speed = 1;
   std::optional<LivePerturbation> perturbation;
-  mutable int described = 0;  // frames until velocities are no longer read for figures
+  mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
-  Background background;  // last: its pieces end before the rest does
+  Background background;  // last: its tasks end before the members that they use
 
-  void told() {
+  // Sends the document to the physics thread.
+  void apply_document() {
     std::vector<LiveRobot> bodies;
     for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
     physics.set_scene(std::move(bodies), document.configuration);
   }
-  // Names what is to change, before it does.
+  // Call it before the document changes: records the edit, to be undone later.
   void edit(std::string name, std::string key = {}) {
     history.before_change(document, std::move(name), std::move(key));
   }
-  void say(Severity severity, std::string text) { messages.add(severity, std::move(text)); }
+  void report(Severity severity, std::string text) { messages.add(severity, std::move(text)); }
   DocumentRobot* find(RobotId id) {
     for (DocumentRobot& robot : document.robots)
       if (robot.body.id == id) return &robot;
@@ -67,12 +68,12 @@ struct LiveScene::Parts {
     const auto found = saved.find(id);
     return found == saved.end() ? "" : found->second.file;
   }
-  // `change` says whether it changed anything.
+  // Applies `change` to robots as one edit. `change` returns whether it changed its robot.
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                         const std::function<bool(DocumentRobot&)>& change);
   RobotId append(Robot robot, RobotSource source);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
-  void put_child(RobotId parent, Robot child, bool replace);
+  void place_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
   void send_perturbation() {
     physics.set_perturbations(perturbation ? std::vector<LivePerturbation>{*perturbation}
@@ -81,7 +82,7 @@ struct LiveScene::Parts {
 };
 
 // "1 robot", "2 robots".
-inline std::string robots_counted(std::size_t count) {
+inline std::string robot_count_text(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " robot" : " robots");
 }
 

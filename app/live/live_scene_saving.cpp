@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window's scene writes: robots, commands, tables, what is needed to see an explosion again.
+// What the window's scene writes: robot files, commands, tables, videos and repros of explosions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ SaveResult LiveScene::save(RobotId robot, const fs::path& path, bool overwrite) 
 SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::path& folder, RobotFormat format,
                                bool overwrite) {
   std::vector<FileToSave> files;
-  std::vector<const DocumentRobot*> savers;
+  std::vector<const DocumentRobot*> saved_robots;
   std::set<std::string> taken;
   try {
     for (const RobotId id : robots) {
@@ -49,29 +49,29 @@ SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::pat
       for (int count = 2; !taken.insert(name).second; ++count) name = fmt::format("{}-{}", base, count);
       const fs::path path = folder / (name + (format == RobotFormat::json ? ".json" : ".cbor"));
       files.push_back({path, serialize_robot(whole_robot(*robot), format)});
-      savers.push_back(robot);
+      saved_robots.push_back(robot);
     }
   } catch (const std::exception& error) {
     return failed(error.what());
   }
   if (files.empty()) return failed("there is no robot to save");
   const SaveResult result = save_files(files, overwrite);
-  for (std::size_t i = 0; i < savers.size() && result.ok(); ++i)
-    parts_->saved[savers[i]->body.id] = {files[i].path.string(), savers[i]->body};
+  for (std::size_t i = 0; i < saved_robots.size() && result.ok(); ++i)
+    parts_->saved[saved_robots[i]->body.id] = {files[i].path.string(), saved_robots[i]->body};
   return result;
 }
 
 CommandText LiveScene::command(const std::string& subcommand) const {
-  SceneDocument told = parts_->document;
-  for (DocumentRobot& robot : told.robots) {
+  SceneDocument document = parts_->document;
+  for (DocumentRobot& robot : document.robots) {
     const auto saved = parts_->saved.find(robot.body.id);
     if (saved == parts_->saved.end()) continue;
     robot.source.file = saved->second.file;
-    // What its file holds need not be told.
+    // Materials that are equal to those of the file need no note.
     if (saved->second.body.robot == robot.body.robot && saved->second.body.materials == robot.body.materials)
       robot.body.materials.reset();
   }
-  return command_text(told, parts_->view, subcommand);
+  return command_text(document, parts_->view, subcommand);
 }
 
 std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
@@ -91,16 +91,16 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
     row = lines.size();
     lines.push_back(number(time));
   }
-  for (const Series& one : all) {
-    std::vector<bool> told(lines.size());
-    for (std::size_t i = 0; i < one.times.size(); ++i) {
-      const std::size_t row = rows.at(one.times[i]);
-      told[row] = true;
+  for (const Series& series : all) {
+    std::vector<bool> filled(lines.size());
+    for (std::size_t i = 0; i < series.times.size(); ++i) {
+      const std::size_t row = rows.at(series.times[i]);
+      filled[row] = true;
       for (const QuantityName& quantity : quantities())
-        lines[row] += fmt::format(",{}", one.samples[i].of(quantity.quantity));
+        lines[row] += fmt::format(",{}", series.samples[i].of(quantity.quantity));
     }
     for (std::size_t row = 0; row < lines.size(); ++row)
-      if (!told[row]) lines[row].append(quantities().size(), ',');
+      if (!filled[row]) lines[row].append(quantities().size(), ',');
   }
   std::string text = header + "\n";
   for (const std::string& line : lines) text += line + "\n";
@@ -139,7 +139,7 @@ SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool ove
   if (!found) return failed("the robot is no longer there");
   try {
     const std::optional<Repro> repro = parts_->physics.repro(robot);
-    if (!repro) return failed(found->body.name + " has not exploded since time began");
+    if (!repro) return failed(found->body.name + " has not exploded since the last reset");
     return save_files({{folder / (file_name_of(found->body.name) + ".repro"), serialize_repro(*repro)}}, overwrite);
   } catch (const std::exception& error) {
     return failed(error.what());

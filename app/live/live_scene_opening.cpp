@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens files in the window's scene: robots, recordings and repros, read in the background.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "app/live/live_scene_parts.h"
+#include "app/recording/trajectory_layout.h"
+#include "app/recording/trajectory_reader.h"
+#include "mercury/error.h"
+#include "mercury/robot_file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OpenedRobot {
+  std::string file;  // empty: from a recording
+  Robot robot;
+};
+
+// What a task has read.
+struct Opened {
+  std::vector<OpenedRobot> robots;
+  std::shared_ptr<const Repro> repro;  // replaces the whole scene
+  fs::path repro_file;
+};
+
+// Lists files, and the robot files of folders sorted by name. Reading them reports other kinds of files.
+std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& messages) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<fs::path> inside;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+      const fs::path extension = entry->path().extension();
+      std::error_code ignored;
+      if ((extension == ".json" || extension == ".cbor") && !entry->is_directory(ignored))
+        inside.push_back(entry->path());
+    }
+    if (error)
+      messages.add(Severity::error, path.string() + ": " + error.message());
+    else if (inside.empty())
+      messages.add(Severity::warning, path.string() + ": the folder holds no robot, neither *.json nor *.cbor");
+    std::ranges::sort(inside);
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  return files;
+}
+
+// Opens the robots of a recording, at rest.
+void read_recording(const fs::path& file, Opened& opened, Messages& messages) {
+  const TrajectoryReader recording(file);
+  for (const RecordedRobot& recorded : recording.robots()) opened.robots.push_back({"", recorded.robot});
+  messages.add(Severity::note, fmt::format("{}: the recording's {}, at rest; mercury render plays it", file.string(),
+                                           robot_count_text(recording.robots().size())));
+}
+
+void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
+  if (is_repro_name(file)) {
+    if (!alone) throw InputError(file.string(), "is a repro, which has its own time; open it alone");
+    opened.repro = std::make_shared<const Repro>(load_repro(file));
+    opened.repro_file = file;
+    return;
+  }
+  if (is_trajectory_name(file.string())) {
+    read_recording(file, opened, messages);
+    return;
+  }
+  if (file.extension() == ".toml")
+    throw InputError(file.string(), "holds options, not robots; give it to mercury view --config");
+  opened.robots.push_back({file.string(), load_robot(file)});
+}
+
+// Reports each file that cannot be used in one line; of many files, only the first ones.
+void report_failures(const std::vector<std::string>& failures, Messages& messages) {
+  constexpr std::size_t most = 4;
+  const std::size_t listed = failures.size() > most ? most - 1 : failures.size();
+  for (std::size_t i = 0; i < listed; ++i) messages.add(Severity::error, failures[i]);
+  if (listed < failures.size())
+    messages.add(Severity::error, fmt::format("and {} more files cannot be used", failures.size() - listed));
+}
+
+Opened read_robots(const std::vector<fs::path>& files, WorkControl& control, Messages& messages) {
+  Opened opened;
+  std::vector<std::string> failures;
+  std::int64_t done = 0;
+  for (const fs::path& file : files) {
+    if (control.cancelled()) break;
+    try {
+      read_file(file, files.size() == 1, opened, messages);
+    } catch (const InputError& error) {
+      failures.emplace_back(error.what());
+    }
+    control.progress(++done);
+  }
+  report_failures(failures, messages);
+  return opened;
+}
+
+}  // namespace
+
+void LiveScene::open(const std::vector<fs::path>& paths) {
+  if (paths.empty()) return;
+  Parts& parts = *parts_;
+  const std::string name = paths.size() == 1 ? "opening " + paths.front().filename().string()
+                                             : fmt::format("opening {} files", paths.size());
+  parts.background.begin(name, 0, [&parts, paths](WorkControl& control) -> Background::Finish {
+    auto opened = std::make_shared<Opened>(read_robots(files_of(paths, parts.messages), control, parts.messages));
+    return [&parts, opened] {
+      if (opened->repro) parts.replay(opened->repro, opened->repro_file);
+      if (opened->robots.empty()) return;
+      parts.edit("open " + robot_count_text(opened->robots.size()));
+      for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
+      parts.apply_document();
+    };
+  });
+}
+
+void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const fs::path& file) {
+  edit("open " + file.filename().string());
+  document.robots.clear();
+  const Device device = document.configuration.device;
+  document.configuration = repro->configuration;
+  document.configuration.device = device;
+  const RobotId id = append(repro->robot, {});
+  saved[id] = {"", document.robots.back().body};
+  physics.set_repro(document.robots.back().body, document.configuration, repro);
+  report(Severity::note,
+         fmt::format("{} explodes at {:.4g} s; it is {:.4g} s now. Changes that were made on the way are "
+                     "repeated until you change something.",
+                     document.robots.back().body.name, repro->exploded_at, time_of(repro->clock)));
+  if (repro->device_name != physics.device_name())
+    report(Severity::warning,
+           fmt::format("the explosion was seen on {}; this device may give another result", repro->device_name));
+}
+
+}  // namespace mercury
