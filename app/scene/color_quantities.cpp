@@ -56,6 +56,21 @@ float energy(const RobotState& state, const Spring& spring) {
 // Times the environment's scale [N/m].
 float stiffness(const RobotState& state, const Spring& spring) { return state.materials[spring.material].stiffness; }
 
+// Power of the muscle [W]: the rate at which it does work on the body by changing its rest length L.
+//
+//   elastic energy               E  = k (|d| - L)^2 / 2
+//   tension                      T  = k (|d| - L)              positive = the spring pulls its ends together
+//   change of the energy         E' = T |d|' - T L'
+//   power that the masses get    M  = -T |d|'
+//   power that the muscle gives  P  = E' + M = -T L'
+//
+// Positive = the muscle does work on the body: it shortens while it pulls, or lengthens while it pushes. Negative = the
+// body does work on the muscle. Without damping and environment, the powers of all springs add up to the change of
+// kinetic plus elastic energy.
+float power(const RobotState& state, const Spring& spring) {
+  return muscle_power(spring, state.materials[spring.material], stretch_of(state, spring));
+}
+
 constexpr std::array quantities{
     ColorQuantity{.key = "material",
                   .name = "Material",
@@ -110,6 +125,14 @@ constexpr std::array quantities{
                   .unit = "N/m",
                   .help = "stiffness of the springs",
                   .of_spring = stiffness},
+    ColorQuantity{.key = "power",
+                  .name = "Power",
+                  .unit = "W",
+                  .help = "power of the muscles: they do work on the body (red) or the body on them (blue)",
+                  .map = render::Colormap::diverging,
+                  .is_signed = true,
+                  .smallest_end = 0.001f,
+                  .of_spring = power},
 };
 
 }  // namespace

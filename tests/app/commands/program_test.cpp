@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownColor",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--color", "mood"},
                  "--color: \"mood\" is not accepted; give material, activation, strain, force, speed, pressure, "
-                 "energy, stiffness"},
+                 "energy, stiffness, power"},
         BadInput{"PressureOnLand",
                  {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--color", "pressure", "--environment",
                   "land"},

@@ -85,6 +85,74 @@ TEST(Coloring, SpeedIsThatOfTheMass) {
   EXPECT_EQ(values.mass, (std::vector<float>{5, 5}));
 }
 
+// A muscle of 50 N/m and 1 m whose rest length is L(t) = 1 + 0.1 sin(2 t), held at |d| = 1.25 m.
+TEST(Coloring, PowerOfAMuscleIsItsTensionTimesItsShortening) {
+  Robot robot = pair();
+  robot.materials[1] = {50, 0.1f, 2, 0};
+  const Simulation simulation(cpu, std::vector<Robot>{robot});
+  const Coloring coloring(simulation, color_quantity("power"));
+  const auto power_at = [&](double time) {
+    GroupState now = state({{0, 0, 0}, {1.25f, 0, 0}}, {});
+    now.time = time;
+    const ColorValues values = coloring.values(now);
+    EXPECT_EQ(values.mass, (std::vector<float>(2, values.spring[0])));  // the mean of its springs
+    return static_cast<double>(values.spring[0]);
+  };
+  for (const double time : {0.0, 0.3, 0.7, 1.9, 1e4}) {
+    const double rest_length = 1 + 0.1 * std::sin(2 * time), lengthening = 0.2 * std::cos(2 * time);
+    EXPECT_NEAR(power_at(time), -50 * (1.25 - rest_length) * lengthening, 1e-4);
+  }
+  EXPECT_LT(power_at(0), 0);         // it lengthens while it is stretched: it yields to the body
+  EXPECT_GT(power_at(M_PI / 2), 0);  // it shortens while it is stretched: it does work
+  // With fixed ends no work leaves the spring, so the mean over a period is 0.
+  double sum = 0;
+  constexpr int samples = 100;
+  for (int i = 0; i < samples; ++i) sum += power_at(M_PI * i / samples);
+  EXPECT_NEAR(sum / samples, 0, 1e-5);
+}
+
+// Kinetic and elastic energy of a group in double precision [J].
+double energy_of(const Simulation& simulation, const GroupState& now) {
+  double energy = 0;
+  for (const Vec3 v : now.velocities) energy += 0.5 * static_cast<double>(dot(v, v));  // masses of 1 kg
+  for (const float spring : Coloring(simulation, color_quantity("energy")).values(now).spring)
+    energy += 1e-3 * static_cast<double>(spring);
+  return energy;
+}
+
+// Three masses and two muscles that work against each other, in still water without drag and damping: the muscles are
+// the only source of energy.
+TEST(Coloring, PowerOfAllMusclesIsTheChangeOfEnergy) {
+  const Robot robot{.name = "triplet",
+                    .materials = {{}, {50, 0.14f, 5, 0}, {80, 0.1f, 3, 1}},
+                    .masses = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}},
+                    .springs = {{0, 1, 1, 1}, {1, 2, 2, 1}}};
+  double errors[2];
+  for (const int run : {0, 1}) {
+    const double dt = run == 0 ? 1e-3 : 5e-4;
+    Simulation simulation({.dt = dt,
+                           .damping = 0,
+                           .solver = Solver::force,
+                           .environment = OceanSimple{.point_drag = 0},
+                           .device = cpu.device},
+                          std::vector<Robot>{robot});
+    const Coloring coloring(simulation, color_quantity("power"));
+    double work = 0, largest_work = 0, error = 0;
+    const double begin = energy_of(simulation, read_state(simulation));
+    while (simulation.time() < 2) {
+      simulation.step(1);
+      const GroupState now = read_state(simulation);
+      for (const float power : coloring.values(now).spring) work += dt * static_cast<double>(power);
+      largest_work = std::max(largest_work, std::abs(work));
+      error = std::max(error, std::abs(energy_of(simulation, now) - begin - work));
+    }
+    EXPECT_GT(largest_work, 0.1);
+    EXPECT_LT(error, 0.02 * largest_work);
+    errors[run] = error;
+  }
+  EXPECT_NEAR(errors[1] / errors[0], 0.5, 0.15);  // the integrator is of first order
+}
+
 // Moved face on, all of equation 1 lies along the flow: F = rho A / 2 C_D v^2.
 TEST(Coloring, PressureOfAFaceMovedHeadOn) {
   const Simulation simulation(cpu, std::vector<Robot>{plate()});
