@@ -36,7 +36,7 @@ ALLOWED = {
     "app/window/toolkit": "sim/api robots/api render",
     "app/window/dialogs": "sim/api robots/api app/window/toolkit",
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
-    "app/window/panels": "sim/api robots/api app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
+    "app/window/panels": "sim/api robots/api app/options app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
     "app/commands": "sim/api robots/api robots render app/base app/recording app/video app/options app/window/toolkit app/window",
     "bench": "*",

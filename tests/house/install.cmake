@@ -3,14 +3,14 @@
 file(REMOVE_RECURSE ${PREFIX})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-foreach(file IN ITEMS include/mercury/sim/simulation.h include/mercury/robots/voxel.h)
+foreach(file IN ITEMS include/mercury/simulation.h include/mercury/voxel.h)
   if(NOT EXISTS ${PREFIX}/${file})
     message(SEND_ERROR "${file} was not installed")
   endif()
 endforeach()
 file(GLOB_RECURSE sources ${PREFIX}/*.cpp ${PREFIX}/*.cu ${PREFIX}/*_test*)
 if(sources)
-  message(SEND_ERROR "these do not belong into an installation: ${sources}")
+  message(SEND_ERROR "these do not belong in an installation: ${sources}")
 endif()
 
 if(PROGRAM)
