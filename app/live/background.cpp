@@ -13,11 +13,11 @@
 namespace mercury {
 
 struct Background::Parts {
-  struct Task {
+  struct Entry {
     std::uint64_t id;
     std::string name;
     std::int64_t total;
-    Piece piece;
+    Task task;
     std::shared_ptr<WorkControl> control = std::make_shared<WorkControl>();
   };
 
@@ -26,8 +26,8 @@ struct Background::Parts {
   Messages& messages;
   std::mutex mutex;
   std::condition_variable begun, ended;
-  std::deque<Task> waiting;
-  std::optional<Task> present;
+  std::deque<Entry> waiting;
+  std::optional<Entry> running;
   std::vector<Finish> finished;
   std::uint64_t last_id = 0;
   bool quit = false;
@@ -38,22 +38,22 @@ struct Background::Parts {
     for (;;) {
       begun.wait(lock, [&] { return quit || !waiting.empty(); });
       if (quit) return;
-      present = std::move(waiting.front());
+      running = std::move(waiting.front());
       waiting.pop_front();
       lock.unlock();
-      Finish finish = done(*present);
+      Finish finish = run(*running);
       lock.lock();
-      if (finish && !present->control->cancelled()) finished.push_back(std::move(finish));
-      present.reset();
+      if (finish && !running->control->cancelled()) finished.push_back(std::move(finish));
+      running.reset();
       ended.notify_all();
     }
   }
 
-  Finish done(Task& task) {
+  Finish run(Entry& entry) {
     try {
-      if (!task.control->cancelled()) return task.piece(*task.control);
+      if (!entry.control->cancelled()) return entry.task(*entry.control);
     } catch (const std::bad_alloc&) {
-      messages.add(Severity::error, task.name + ": not enough memory");
+      messages.add(Severity::error, entry.name + ": not enough memory");
     } catch (const std::exception& error) {
       messages.add(Severity::error, error.what());
     }
@@ -69,34 +69,34 @@ Background::~Background() {
   {
     const std::lock_guard lock(parts_->mutex);
     parts_->quit = true;
-    if (parts_->present) parts_->present->control->cancel();
+    if (parts_->running) parts_->running->control->cancel();
     parts_->begun.notify_all();
   }
   parts_->thread.join();
 }
 
-std::uint64_t Background::begin(std::string name, std::int64_t total, Piece piece) {
+std::uint64_t Background::begin(std::string name, std::int64_t total, Task task) {
   const std::lock_guard lock(parts_->mutex);
-  parts_->waiting.push_back({++parts_->last_id, std::move(name), total, std::move(piece)});
+  parts_->waiting.push_back({++parts_->last_id, std::move(name), total, std::move(task)});
   parts_->begun.notify_all();
   return parts_->last_id;
 }
 
 void Background::cancel(std::uint64_t id) {
   const std::lock_guard lock(parts_->mutex);
-  if (parts_->present && parts_->present->id == id) parts_->present->control->cancel();
-  std::erase_if(parts_->waiting, [&](const Parts::Task& task) { return task.id == id; });
+  if (parts_->running && parts_->running->id == id) parts_->running->control->cancel();
+  std::erase_if(parts_->waiting, [&](const Parts::Entry& entry) { return entry.id == id; });
   parts_->ended.notify_all();
 }
 
 std::vector<Work> Background::work() const {
   const std::lock_guard lock(parts_->mutex);
   std::vector<Work> all;
-  const auto add = [&](const Parts::Task& task) {
-    all.push_back({task.id, task.name, task.control->done(), task.total});
+  const auto add = [&](const Parts::Entry& entry) {
+    all.push_back({entry.id, entry.name, entry.control->done(), entry.total});
   };
-  if (parts_->present) add(*parts_->present);
-  for (const Parts::Task& task : parts_->waiting) add(task);
+  if (parts_->running) add(*parts_->running);
+  for (const Parts::Entry& entry : parts_->waiting) add(entry);
   return all;
 }
 
@@ -112,7 +112,7 @@ bool Background::finish_done() {
 
 void Background::wait() {
   std::unique_lock lock(parts_->mutex);
-  parts_->ended.wait(lock, [&] { return !parts_->present && parts_->waiting.empty(); });
+  parts_->ended.wait(lock, [&] { return !parts_->running && parts_->waiting.empty(); });
 }
 
 }  // namespace mercury

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work beside the window: reading files, growing robots.
+// Background tasks of the window: reading files, making robots.
+//
+// A task has two parts. The first runs on the background thread, one task after the other, and must not touch the
+// scene. It returns the second, `Finish`, which runs on the window's thread in finish_done() and may change the scene.
 #pragma once
 
 #include <atomic>
@@ -13,14 +16,14 @@
 
 namespace mercury {
 
-// One piece of work as it is told to the user.
+// The progress of a task, as the window shows it.
 struct Work {
   std::uint64_t id = 0;
-  std::string name;  // "growing 24 robots"
+  std::string name;  // "making 24 robots"
   std::int64_t done = 0, total = 0;
 };
 
-// Told to the work while it goes on.
+// Connects a running task with the window: the task reports progress, the window cancels. Thread-safe.
 class WorkControl {
  public:
   bool cancelled() const { return cancelled_; }
@@ -33,21 +36,20 @@ class WorkControl {
   std::atomic<std::int64_t> done_ = 0;
 };
 
-// Does one piece after the other on a thread of its own. Its end, `finish`, runs on the thread that calls
-// finish_done(). What a piece throws is told.
+// Exceptions thrown by a task are reported to `messages`.
 class Background {
  public:
   using Finish = std::function<void()>;
-  using Piece = std::function<Finish(WorkControl&)>;
+  using Task = std::function<Finish(WorkControl&)>;
 
   explicit Background(Messages& messages);
-  ~Background();  // cancels all, and waits for the piece that goes on
+  ~Background();  // cancels all tasks and waits for the running one
 
-  std::uint64_t begin(std::string name, std::int64_t total, Piece piece);
+  std::uint64_t begin(std::string name, std::int64_t total, Task task);  // returns its id
   void cancel(std::uint64_t id);
-  std::vector<Work> work() const;  // what goes on and what waits
-  bool finish_done();              // whether anything was
-  void wait();                     // until all is done, not finished
+  std::vector<Work> work() const;  // the running task and those that wait
+  bool finish_done();              // calls the Finish functions of ended tasks; returns whether there was one
+  void wait();                     // until all tasks have ended; does not call Finish functions
 
  private:
   struct Parts;

@@ -21,14 +21,14 @@ namespace {
 class Options {
  public:
   template <class Value>
-  void number(const std::string& name, Value value, Value usual) {
-    if (value != usual) values_.emplace_back(name, fmt::format("{}", value));
+  void number(const std::string& name, Value value, Value defaults) {
+    if (value != defaults) values_.emplace_back(name, fmt::format("{}", value));
   }
-  void vector(const std::string& name, Vec3 value, Vec3 usual) {
-    if (value != usual) values_.emplace_back(name, fmt::format("{},{},{}", value.x, value.y, value.z));
+  void vector(const std::string& name, Vec3 value, Vec3 defaults) {
+    if (value != defaults) values_.emplace_back(name, fmt::format("{},{},{}", value.x, value.y, value.z));
   }
-  void text(const std::string& name, const std::string& value, std::string_view usual) {
-    if (value != usual) values_.emplace_back(name, value);
+  void text(const std::string& name, const std::string& value, std::string_view defaults) {
+    if (value != defaults) values_.emplace_back(name, value);
   }
   void flag(const std::string& name, bool given) {
     if (given) values_.emplace_back(name, "");
@@ -42,13 +42,13 @@ class Options {
 template <class Struct>
 void add_parameters(Options& options, const Struct& values) {
   for_each_parameter(values, [&]<class Value>(const auto& parameter, const Value& value) {
-    const Value usual = parameter.default_value();
+    const Value defaults = parameter.default_value();
     if constexpr (std::is_same_v<Value, bool>)
-      options.flag(switch_of(parameter.name, usual), value != usual);
+      options.flag(switch_of(parameter.name, defaults), value != defaults);
     else if constexpr (std::is_same_v<Value, Vec3>)
-      options.vector(option_of(parameter.name), value, usual);
+      options.vector(option_of(parameter.name), value, defaults);
     else
-      options.number(option_of(parameter.name), value, usual);
+      options.number(option_of(parameter.name), value, defaults);
   });
 }
 
@@ -78,7 +78,7 @@ std::string cut_text(const render::CutPlane& cut) {
   return "x";
 }
 
-// Degrees that give these radians again.
+// The parser turns these degrees into the same radians again.
 float degrees(float radians) { return radians * 180 / std::numbers::pi_v<float>; }
 
 std::string camera_text(const CameraPlan& camera) {
@@ -90,12 +90,12 @@ std::string camera_text(const CameraPlan& camera) {
 void append(std::string& line, const OptionValues& options) {
   for (const auto& [name, value] : options) {
     line.append(" ").append(name);
-    // Joined, so that a value with a dash in front is not taken for an option.
+    // With '=', so that a value that begins with a dash is not read as an option.
     if (!value.empty()) line.append("=").append(shell_quoted(value));
   }
 }
 
-// Robots of one generation that stand for `--random KIND:COUNT:SEED:FIRST`.
+// Consecutive random robots, written as `--random KIND:COUNT:SEED:FIRST`.
 struct Run {
   std::shared_ptr<const RandomRobots> generation;
   std::uint64_t first, count;
@@ -114,7 +114,7 @@ std::vector<Run> runs_of(const SceneDocument& document) {
   return runs;
 }
 
-// Numbers as they are, everything else as text in quotes.
+// Numbers as they are, other values as quoted text.
 std::string toml_value(const std::string& text) {
   const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
   const bool decimal = text.find_first_not_of("0123456789.-") == std::string::npos && text.find('.') > 0 &&
@@ -137,12 +137,12 @@ std::string toml_value(const std::string& text) {
 
 OptionValues options_of(const Configuration& configuration) {
   Options options;
-  const Configuration usual;
+  const Configuration defaults;
   options.text("--device", name_of(configuration.device), "auto");
   add_parameters(options, configuration.device);
-  // Always given: without it the robots would choose.
+  // Always given: without it the robots' own environment would apply.
   options.text("--environment", std::string(name_of(configuration.environment)), "");
-  options.text("--solver", std::string(name_of(configuration.solver)), name_of(usual.solver));
+  options.text("--solver", std::string(name_of(configuration.solver)), name_of(defaults.solver));
   add_parameters(options, configuration);
   add_parameters(options, configuration.environment);
   return options.take();
@@ -150,7 +150,7 @@ OptionValues options_of(const Configuration& configuration) {
 
 OptionValues options_of(const ViewSettings& settings) {
   Options options;
-  const ViewSettings usual;
+  const ViewSettings defaults;
   const bool race = settings.layout == Layout::race;
   options.text("--color", std::string(settings.color->key), std::string(material_color().key));
   if (settings.scale) options.text("--scale", fmt::format("{},{}", settings.scale->first, settings.scale->second), "");
@@ -172,18 +172,10 @@ OptionValues options_of(const ViewSettings& settings) {
   return options.take();
 }
 
-CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand) {
-  CommandText command{.text = fmt::format("mercury {}", subcommand)};
-  for (const DocumentRobot& robot : document.robots) {
-    const std::string& name = robot.body.name;
-    if (robot.source.file.empty() && !robot.source.generation)
-      command.notes.push_back(name + " is in no file; save it first");
-    else if (robot.body.materials)
-      command.notes.push_back(name + ": the changed materials are not in the command; save it first");
-    if (robot.source.file.empty()) continue;
-    const std::string& file = robot.source.file;
-    command.text.append(" ").append(shell_quoted(file.starts_with('-') ? fmt::format("./{}", file) : file));
-  }
+namespace {
+
+// Adds the random robots and returns the options of their generators.
+OptionValues append_random_robots(const SceneDocument& document, CommandText& command) {
   OptionValues options;
   std::map<std::string, OptionValues> shapes;
   for (const Run& run : runs_of(document)) {
@@ -198,6 +190,24 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
       command.notes.push_back(
           "random robots of one kind share the first one's options in the command; save the others");
   }
+  return options;
+}
+
+}  // namespace
+
+CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand) {
+  CommandText command{.text = fmt::format("mercury {}", subcommand)};
+  for (const DocumentRobot& robot : document.robots) {
+    const std::string& name = robot.body.name;
+    if (robot.source.file.empty() && !robot.source.generation)
+      command.notes.push_back(name + " is in no file; save it first");
+    else if (robot.body.materials)
+      command.notes.push_back(name + ": the changed materials are not in the command; save it first");
+    if (robot.source.file.empty()) continue;
+    const std::string& file = robot.source.file;
+    command.text.append(" ").append(shell_quoted(file.starts_with('-') ? fmt::format("./{}", file) : file));
+  }
+  const OptionValues options = append_random_robots(document, command);
   append(command.text, options);
   append(command.text, options_of(document.configuration));
   append(command.text, options_of(settings));

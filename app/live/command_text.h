@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as a line for the shell.
+// The command line that makes a scene again ("Copy as command").
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace mercury {
 
 struct CommandText {
   std::string text;                // "mercury view eel.json --random voxel:12 --seed 4"
-  std::vector<std::string> notes;  // what the line cannot say, as unsaved robots
+  std::vector<std::string> notes;  // what the line cannot express, such as unsaved robots
 };
 
 using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt", "0.002"; a switch has no value
@@ -22,13 +22,13 @@ using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt
 OptionValues options_of(const Configuration& configuration);
 OptionValues options_of(const ViewSettings& settings);
 
-// `subcommand` "view" or "render"; the latter writes scene.mp4.
+// `subcommand`: "view", or "render", which writes scene.mp4.
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand);
 
-// A word as the shell takes it, in quotes where it needs them.
+// A word for the shell, in quotes if it needs them.
 std::string shell_quoted(const std::string& word);
 
-// Options as a file for --config.
+// Options as the text of a file for --config, with a comment at its head.
 std::string toml_of(const OptionValues& options, const std::string& comment);
 
 }  // namespace mercury

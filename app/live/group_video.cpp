@@ -49,21 +49,21 @@ struct GroupVideo::Parts {
   GroupVideoOptions options;
   FilmControl control;
   mutable std::mutex mutex;
-  VideoStatus told;
+  VideoStatus status;
   std::thread thread;
 
-  void tell(VideoStatus::State state, const std::string& error = {}) {
+  void set_state(VideoStatus::State state, const std::string& error = {}) {
     const std::lock_guard lock(mutex);
-    told.state = state;
-    told.error = error;
+    status.state = state;
+    status.error = error;
   }
 
-  // The unfinished file of a film that was cancelled is gone when that is told.
+  // The unfinished file of a film that was cancelled is gone when that is status.
   void make() {
     try {
-      tell(write() ? VideoStatus::State::done : VideoStatus::State::cancelled);
+      set_state(write() ? VideoStatus::State::done : VideoStatus::State::cancelled);
     } catch (const std::exception& error) {
-      tell(VideoStatus::State::failed, error.what());
+      set_state(VideoStatus::State::failed, error.what());
     }
   }
 
@@ -73,9 +73,9 @@ struct GroupVideo::Parts {
     const FilmTiming timing = timing_of(options);
     {
       const std::lock_guard lock(mutex);
-      told.total = timing.frames;
+      status.total = timing.frames;
     }
-    if (robots.empty()) throw InputError("there is no robot to film");
+    if (robots.empty()) throw InputError("there is no robot to show");
     const auto writer = open_frame_writer(
         options.output,
         {.size = size, .frames_per_second = options.frames_per_second, .expected_frames = timing.frames});
@@ -85,7 +85,7 @@ struct GroupVideo::Parts {
     Studio studio(stage, std::move(simulation), view);
     const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
     if (control.stop || result.interrupted) return false;
-    tell(VideoStatus::State::finishing);
+    set_state(VideoStatus::State::finishing);
     writer->finish();
     return true;
   }
@@ -98,7 +98,7 @@ GroupVideo::GroupVideo(std::vector<LiveRobot> robots, const Configuration& confi
   parts_->configuration = configuration;
   parts_->view = view;
   parts_->options = options;
-  parts_->told.file = options.output;
+  parts_->status.file = options.output;
   parts_->thread = std::thread([parts = parts_.get()] { parts->make(); });
 }
 
@@ -109,7 +109,7 @@ GroupVideo::~GroupVideo() {
 
 VideoStatus GroupVideo::status() const {
   const std::lock_guard lock(parts_->mutex);
-  VideoStatus status = parts_->told;
+  VideoStatus status = parts_->status;
   status.frames = parts_->control.frames;
   return status;
 }

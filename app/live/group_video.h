@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A film of the scene's robots from time 0, made beside the window.
+// A video of the scene's robots from time 0, made in the background; other threads can watch and cancel it.
 #pragma once
 
 #include <memory>
@@ -16,26 +16,26 @@
 namespace mercury {
 
 struct GroupVideoOptions {
-  std::string output;            // .mp4, .webm, .gif, or a folder for PNG pictures; replaced if it exists
-  PictureSize size{1920, 1080};  // made even where the format needs it
+  std::string output;            // .mp4, .webm, .gif, or a folder for PNG pictures; an existing file is replaced
+  PictureSize size{1920, 1080};  // rounded to even numbers where the format needs it
   double frames_per_second = 30;
   double seconds = 10;  // simulated
-  double speed = 1;     // simulated seconds a second of video
+  double speed = 1;     // simulated seconds per second of video
   render::Quality quality = render::Quality::automatic;
   render::ContextKind context = render::ContextKind::automatic;
 };
 
-// Simulates, draws in an OpenGL context of its own, and encodes, all on threads of its own. Nothing throws; what fails
-// is in the status.
+// Simulates its own copy of the robots, draws in its own OpenGL context and encodes, all on its own threads. No member
+// throws; status() reports errors.
 class GroupVideo {
  public:
   GroupVideo(std::vector<LiveRobot> robots, const Configuration& configuration, const ViewSettings& view,
              const GroupVideoOptions& options);
-  ~GroupVideo();  // cancels, and waits until it has
+  ~GroupVideo();  // cancels and waits
 
   VideoStatus status() const;
-  void cancel();  // nothing is left behind
-  void wait();    // until it is over
+  void cancel();  // removes the unfinished file
+  void wait();    // until it is done, cancelled or failed
 
  private:
   struct Parts;

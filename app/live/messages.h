@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines for the user, from whatever part of the window.
+// Messages for the user, from any part of the window.
 #pragma once
 
 #include <mutex>
@@ -16,7 +16,7 @@ struct Message {
   std::string text;  // one line
 };
 
-// Any thread may add; the window takes.
+// Thread-safe: any thread adds messages, the window takes them.
 class Messages {
  public:
   void add(Severity severity, std::string text) {
@@ -31,7 +31,8 @@ class Messages {
   }
 
  private:
-  static constexpr std::size_t most = 1000;  // a folder of unreadable files must not fill the memory
+  static constexpr std::size_t most =
+      1000;  // a folder of unreadable files must not fill the memory; later messages are dropped
   std::mutex mutex_;
   std::vector<Message> messages_;
 };

@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-// Where the ray meets a triangle, from either side; infinity if it does not (Moeller and Trumbore 1997).
+// Distance along the ray to a triangle, from either side; infinity if the ray misses it (Moeller and Trumbore 1997).
 float distance_to_triangle(const render::Ray& ray, const Vector3f& a, const Vector3f& b, const Vector3f& c) {
   const Vector3f ab = b - a, ac = c - a, across = ray.direction.cross(ac);
   const float determinant = ab.dot(across);
@@ -34,8 +34,8 @@ float distance_to_triangle(const render::Ray& ray, const Vector3f& a, const Vect
 }
 
 struct Nearest {
-  float along = far_away;  // the ray [m]
-  float apart = far_away;  // between ray and thing there [m]
+  float along = far_away;  // distance along the ray [m]
+  float apart = far_away;  // distance from the ray [m]
 };
 
 Nearest nearest_to_point(const render::Ray& ray, const Vector3f& point) {
@@ -44,12 +44,12 @@ Nearest nearest_to_point(const render::Ray& ray, const Vector3f& point) {
   return {along, (ray.origin + along * ray.direction - point).norm()};
 }
 
-// The ray and the line from a to b, where they come nearest.
+// The nearest points of the ray and the segment from a to b.
 Nearest nearest_to_segment(const render::Ray& ray, const Vector3f& a, const Vector3f& b) {
   const Vector3f d = b - a, w = a - ray.origin;
   const float dd = d.squaredNorm(), rd = ray.direction.dot(d), rw = ray.direction.dot(w), dw = d.dot(w);
   const float determinant = dd - rd * rd;
-  // Where the lines are parallel any place will do.
+  // If the lines are parallel, any point is nearest.
   const float s = determinant > 1e-12f * dd ? std::clamp((rd * rw - dw) / determinant, 0.0f, 1.0f) : 0.0f;
   return nearest_to_point(ray, a + s * d);
 }
@@ -69,18 +69,18 @@ bool misses(const render::Ray& ray, const render::Bounds& box) {
     enter = std::max(enter, a);
     leave = std::min(leave, b);
   }
-  // Flat boxes are met by rounding's grace.
+  // The tolerance lets a ray hit flat boxes despite rounding.
   return enter > leave + 1e-4f * (1 + std::abs(leave));
 }
 
-// One robot under the ray.
+// One robot that the ray may hit.
 class Target {
  public:
   Target(const Robot& robot, std::span<const Vec3> positions, const Vector3f& offset) : robot_(robot) {
-    places_.reserve(positions.size());
+    points_.reserve(positions.size());
     for (const Vec3 p : positions) {
-      places_.push_back(eigen(p) + offset);
-      if (places_.back().allFinite()) box_.extend(places_.back());
+      points_.push_back(eigen(p) + offset);
+      if (points_.back().allFinite()) box_.extend(points_.back());
     }
   }
 
@@ -101,7 +101,7 @@ class Target {
   void meet_skin(const render::Ray& ray, const PickOptions& options, Hit& best) const {
     for (std::uint32_t i = 0; i < robot_.faces.size(); ++i) {
       const Face& face = robot_.faces[i];
-      const float t = distance_to_triangle(ray, places_[face.a], places_[face.b], places_[face.c]);
+      const float t = distance_to_triangle(ray, points_[face.a], points_[face.b], points_[face.c]);
       if (!(t < best.distance) || cut_away(options.cut, ray.origin + t * ray.direction)) continue;
       best = {.face = i, .point = ray.origin + t * ray.direction, .distance = t};
       best.mass = nearest_of({face.a, face.b, face.c}, best.point);
@@ -110,7 +110,7 @@ class Target {
   void meet_springs(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
     for (std::uint32_t i = 0; i < robot_.springs.size(); ++i) {
       const Spring& spring = robot_.springs[i];
-      const Nearest near = nearest_to_segment(ray, places_[spring.a], places_[spring.b]);
+      const Nearest near = nearest_to_segment(ray, points_[spring.a], points_[spring.b]);
       if (!(near.apart <= room && near.along < best.distance)) continue;
       const Vector3f point = ray.origin + near.along * ray.direction;
       if (cut_away(options.cut, point)) continue;
@@ -119,14 +119,14 @@ class Target {
     }
   }
   void meet_masses(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const Nearest near = nearest_to_point(ray, places_[i]);
-      if (!(near.apart <= room && near.along < best.distance) || cut_away(options.cut, places_[i])) continue;
-      best = {.mass = static_cast<std::uint16_t>(i), .point = places_[i], .distance = near.along};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Nearest near = nearest_to_point(ray, points_[i]);
+      if (!(near.apart <= room && near.along < best.distance) || cut_away(options.cut, points_[i])) continue;
+      best = {.mass = static_cast<std::uint16_t>(i), .point = points_[i], .distance = near.along};
     }
   }
 
-  // The spring along the edge of a face that is nearest to a place on it.
+  // The spring along an edge of a face that is nearest to a point on the face.
   std::optional<std::uint32_t> spring_at(std::uint32_t face_index, const Vector3f& point) const {
     const Face& face = robot_.faces[face_index];
     std::optional<std::uint32_t> found;
@@ -135,7 +135,7 @@ class Target {
       const Spring& spring = robot_.springs[i];
       const auto on_face = [&](std::uint16_t mass) { return mass == face.a || mass == face.b || mass == face.c; };
       if (!on_face(spring.a) || !on_face(spring.b)) continue;
-      const float apart = distance_to_segment(point, places_[spring.a], places_[spring.b]);
+      const float apart = distance_to_segment(point, points_[spring.a], points_[spring.b]);
       if (apart >= nearest) continue;
       nearest = apart;
       found = i;
@@ -150,11 +150,11 @@ class Target {
     return (a + s * d - point).norm();
   }
   std::uint16_t nearest_of(std::initializer_list<std::uint16_t> masses, const Vector3f& point) const {
-    return std::ranges::min(masses, {}, [&](std::uint16_t mass) { return (places_[mass] - point).squaredNorm(); });
+    return std::ranges::min(masses, {}, [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
   }
 
   const Robot& robot_;
-  std::vector<Vector3f> places_;
+  std::vector<Vector3f> points_;
   render::Bounds box_;
 };
 
@@ -200,10 +200,10 @@ HitDetails describe(const Snapshot& snapshot, const Hit& hit) {
   return figures;
 }
 
-HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index, std::uint32_t place) {
+HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index, std::uint32_t spring_index) {
   const LiveRobot& live = snapshot.robots->robots[index];
   const Robot& robot = *live.robot;
-  const Spring& spring = robot.springs[place];
+  const Spring& spring = robot.springs[spring_index];
   const Material& material = materials_of(live)[spring.material];
   const auto positions = snapshot.positions_of(index);
   const double time = snapshot.telemetry[index].exploded ? snapshot.telemetry[index].exploded_at : snapshot.time;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a line of sight meets, and what can be told of it.
+// Finds what is under the mouse: the nearest face, spring or mass that a ray meets.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,47 +16,49 @@ namespace mercury {
 
 struct Hit {
   RobotId robot = 0;
-  std::size_t index = 0;                // of the robot, at that snapshot
-  std::uint16_t mass = 0;               // of the face's or spring's, the one nearest to the place
-  std::optional<std::uint32_t> face;    // index in Robot::faces, where the skin was met
-  std::optional<std::uint32_t> spring;  // index in Robot::springs: the one met, or the face's nearest edge that is one
+  std::size_t index = 0;                // of the robot in the snapshot
+  std::uint16_t mass = 0;               // the mass of the face or spring that is nearest to `point`
+  std::optional<std::uint32_t> face;    // index in Robot::faces, if the ray met the skin
+  std::optional<std::uint32_t> spring;  // index in Robot::springs: the one met, or the nearest edge of the face
   Eigen::Vector3f point{0, 0, 0};       // in the picture [m]
   float distance = 0;                   // from the ray's origin [m]
 };
 
 struct PickOptions {
-  bool skin = true, springs = false, masses = false;  // what is to be met, as what is shown
-  float radius = 0;                     // how near the ray must pass a spring or mass [m]; 0 = chosen from the lengths
-  std::optional<render::CutPlane> cut;  // what it cuts away is not met
+  bool skin = true, springs = false, masses = false;  // what the ray can meet: what is shown
+  float radius = 0;                     // how near the ray must pass a spring or mass [m]; 0 = from the lengths
+  std::optional<render::CutPlane> cut;  // the ray ignores what it cuts away
   std::span<const bool> hidden;         // robots left out; empty = none
 };
 
-// The nearest thing a ray meets. `offsets`: one a robot, added to its coordinates in the picture. Robots without faces
-// are met at their springs, those without springs at their masses.
+// Returns the nearest hit. `offsets`: per robot, added to its coordinates in the picture [m]. A robot without faces is
+// hit at its springs, a robot without springs at its masses.
 std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets, const render::Ray& ray,
                         const PickOptions& options = {});
 
+// The numbers that the window shows beside the mouse.
 struct HitDetails {
   struct OfMass {
     Vec3 position;               // [m]
-    std::optional<float> speed;  // [m/s]; nothing where the snapshot has no velocities
-    std::size_t springs = 0;     // that end at it
+    std::optional<float> speed;  // [m/s]; nothing if the snapshot has no velocities
+    std::size_t springs = 0;     // springs at the mass
   };
   struct OfSpring {
     MaterialId material = 0;
     std::string material_name;
     float rest_length = 0, length = 0;  // [m]
     float strain = 0;                   // (|d| - L0) / L0 [1]
-    float force = 0;                    // it pulls its ends together with [N]
+    float force = 0;                    // [N], > 0 pulls the ends together
   };
   std::string robot;  // name
   OfMass mass;
   std::optional<OfSpring> spring;
 };
-// The figures of a hit at another snapshot of the same robots, or of robots that still have it; nothing but the name
-// otherwise.
+// Describes a hit in a later snapshot. If the robot is gone the result is empty; if it has changed, only its name is
+// set.
 HitDetails describe(const Snapshot& snapshot, const Hit& hit);
-// Those of one spring of the robot at that place of the snapshot; of one that has exploded, as it did.
+// Describes a spring of the robot with index `robot` in the snapshot. If the robot has exploded: at the time of the
+// explosion.
 HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t robot, std::uint32_t spring);
 
 }  // namespace mercury

@@ -19,7 +19,7 @@ SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
   SaveResult result;
   try {
     for (const FileToSave& file : files) {
-      if (file.path.filename().empty()) return failed("give a file's name");
+      if (file.path.filename().empty()) return failed("give a file name");
       if (fs::is_directory(file.path)) return failed(file.path.string() + " is a folder");
       if (!overwrite && fs::exists(fs::symlink_status(file.path))) result.files.push_back(file.path);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene as a document: what can be edited, undone and told as a command.
+// The scene as a document: what the user edits, and the history of edits.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ struct MaterialScale {
   friend bool operator==(const MaterialScale&, const MaterialScale&) = default;
 };
 
-// Where a robot came from.
+// Where a robot comes from; names the robot in a command.
 struct RobotSource {
-  std::string file;                              // read from there; or empty
-  std::shared_ptr<const RandomRobots> generation;  // one of these random robots; or nothing
-  std::uint64_t index = 0;                       // of the generation
+  std::string file;                                // read from it; or empty
+  std::shared_ptr<const RandomRobots> generation;  // one of these random robots; or null
+  std::uint64_t index = 0;                         // of the generation
 };
 
 struct DocumentRobot {
@@ -35,20 +35,20 @@ struct SceneDocument {
   std::vector<DocumentRobot> robots;
   Configuration configuration;
 
-  const DocumentRobot* find(RobotId id) const;  // nullptr if it is not there
+  const DocumentRobot* find(RobotId id) const;  // null if it is unknown
 };
 
-// The robot with its present name and materials, as it is saved.
+// The robot with its name and materials in the window, as it is saved.
 Robot whole_robot(const LiveRobot& robot);
 inline Robot whole_robot(const DocumentRobot& robot) { return whole_robot(robot.body); }
 
-// What was before and after, and the names of the changes. The oldest are forgotten where robots that are no longer in
-// the scene would fill the memory.
+// Undo and redo: the document before each edit. Documents share their robots, so an edit costs little memory unless it
+// removes robots. The oldest edits are forgotten if removed robots would fill the memory.
 class EditHistory {
  public:
   explicit EditHistory(std::size_t most_springs = 30'000'000) : most_springs_(most_springs) {}
-  // Before `document` changes. An edit named and keyed as the one before goes on with it, until end_edit(); an empty
-  // key never does.
+  // Call it before `document` changes. An edit with the key of the previous one continues that edit, until end_edit().
+  // An empty key always begins a new edit.
   void before_change(const SceneDocument& document, std::string name, std::string key = {});
   void end_edit() { open_key_.clear(); }
   bool can_undo() const { return !past_.empty(); }
@@ -61,12 +61,12 @@ class EditHistory {
  private:
   struct Edit {
     std::string name;
-    SceneDocument document;  // before it, or after it in the future
+    SceneDocument document;  // before the edit; in future_, after it
   };
   void forget_oldest(const SceneDocument& document);
 
   static constexpr std::size_t most = 200;  // edits
-  std::size_t most_springs_;                // of robots kept for them
+  std::size_t most_springs_;                // of all robots that only edits hold
   std::vector<Edit> past_, future_;
   std::string open_key_;
 };

@@ -14,7 +14,7 @@ namespace mercury {
 namespace {
 
 constexpr std::size_t most_waiting = 8;  // frames
-constexpr double longest_stay = 10;      // of one frame [s]
+constexpr double longest_stay = 10;      // of one frame in the video [s]
 
 std::uint8_t byte_of(float value) { return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L)); }
 
@@ -60,7 +60,7 @@ struct ScreenRecording::Parts {
   };
 
   Parts(const std::string& output, PictureSize frame, double rate) : size(frame), frames_per_second(rate) {
-    told.file = output;
+    status.file = output;
   }
 
   const PictureSize size;
@@ -70,25 +70,25 @@ struct ScreenRecording::Parts {
   BoundedQueue<Waiting> queue{most_waiting};
   std::atomic<bool> cancelled = false;
   mutable std::mutex mutex;
-  VideoStatus told;
+  VideoStatus status;
   std::thread thread;
 
   std::int64_t number_at(double time) const {
     return last < 0 ? 0 : static_cast<std::int64_t>(std::floor((time - start) * frames_per_second + 1e-6));
   }
-  void tell(VideoStatus::State state, const std::string& error = {}) {
+  void set_state(VideoStatus::State state, const std::string& error = {}) {
     const std::lock_guard lock(mutex);
-    told.state = state;
-    told.error = error;
+    status.state = state;
+    status.error = error;
   }
 
-  // The unfinished file of a film that was cancelled is gone when that is told.
+  // The unfinished file of a film that was cancelled is gone when that is status.
   void encode(const std::string& output) {
     try {
-      tell(write(output) ? VideoStatus::State::done : VideoStatus::State::cancelled);
+      set_state(write(output) ? VideoStatus::State::done : VideoStatus::State::cancelled);
     } catch (const std::exception& error) {
       queue.abandon();
-      tell(VideoStatus::State::failed, error.what());
+      set_state(VideoStatus::State::failed, error.what());
     }
   }
 
@@ -103,7 +103,7 @@ struct ScreenRecording::Parts {
       for (std::int64_t i = 0; i < waiting->times && !cancelled; ++i) {
         writer->write(picture);
         const std::lock_guard lock(mutex);
-        told.frames = ++frames;
+        status.frames = ++frames;
       }
     }
     if (cancelled) return false;
@@ -136,7 +136,7 @@ bool ScreenRecording::offer(double time, render::Image frame) {
   Parts::Waiting waiting{std::move(frame), std::min(number - parts.last, most)};
   if (!parts.queue.try_push(waiting)) {
     const std::lock_guard lock(parts.mutex);
-    ++parts.told.dropped;
+    ++parts.status.dropped;
     return false;
   }
   if (first) parts.start = time;
@@ -147,7 +147,7 @@ bool ScreenRecording::offer(double time, render::Image frame) {
 void ScreenRecording::finish() {
   {
     const std::lock_guard lock(parts_->mutex);
-    if (parts_->told.state == VideoStatus::State::running) parts_->told.state = VideoStatus::State::finishing;
+    if (parts_->status.state == VideoStatus::State::running) parts_->status.state = VideoStatus::State::finishing;
   }
   parts_->queue.close();
 }
@@ -159,7 +159,7 @@ void ScreenRecording::cancel() {
 
 VideoStatus ScreenRecording::status() const {
   const std::lock_guard lock(parts_->mutex);
-  return parts_->told;
+  return parts_->status;
 }
 
 PictureSize ScreenRecording::size() const { return parts_->size; }

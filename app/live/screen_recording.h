@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films what is on the screen.
+// Records the window's picture as a video.
 #pragma once
 
 #include <memory>
@@ -11,25 +11,24 @@
 
 namespace mercury {
 
-// Encodes on a thread of its own; none of its members waits, but for the destructor. The video keeps real time: a frame
-// stays until the next one comes. Where the encoder cannot keep up, frames are dropped, never the window held up.
-// Nothing throws; what fails is in the status. A file that exists is replaced: unused_name() (robot_saving.h) finds
-// another.
+// Encodes on its own thread. The video runs in real time: a frame stays until the next one. If the encoder is too slow,
+// frames are dropped; only the destructor waits. No member throws; status() reports errors. An existing file is
+// replaced; unused_name() (robot_saving.h) finds a new name.
 class ScreenRecording {
  public:
-  // `output`: .mp4, .webm, .gif, or a folder for PNG pictures. `size` of the frames; an odd last row or column is left
-  // out where the encoder cannot have it.
+  // `output`: .mp4, .webm, .gif, or a folder for PNG pictures. `size`: of the frames in pixels; where the format needs
+  // even numbers, the last row or column is cut off.
   ScreenRecording(const std::string& output, PictureSize size, double frames_per_second = 30);
-  ~ScreenRecording();  // finishes, and waits for that
+  ~ScreenRecording();  // finishes and waits
 
-  // Whether a frame at this time [s, from any origin, never going back] would be shown: reading it back is not worth
-  // the while otherwise.
+  // Whether the video needs a frame at this time. Ask before reading the picture back. `time` is in seconds from an
+  // arbitrary origin and must not go back.
   bool wants(double time) const;
-  // A frame in rgb, upper row first, of the size given. False if it was not taken.
+  // Adds a frame: RGB, upper row first, of the size given to the constructor. Returns false if it was dropped.
   bool offer(double time, render::Image frame);
-  // The last frame is in.
+  // No more frames follow. Does not wait.
   void finish();
-  // Leaves nothing behind.
+  // Stops and removes the unfinished file.
   void cancel();
   VideoStatus status() const;
   PictureSize size() const;
@@ -39,7 +38,7 @@ class ScreenRecording {
   std::unique_ptr<Parts> parts_;
 };
 
-// Planes Y, U, V (BT.709, limited range) of a picture in rgb; the last row and column are left out where odd.
+// Converts an RGB picture to planes Y, U, V (BT.709, limited range). Cuts off an odd last row or column.
 render::Image yuv420_of(const render::Image& rgb);
 
 }  // namespace mercury

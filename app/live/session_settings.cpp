@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file's options, read as those of the command line are.
-class RememberedOptions {
+// Reads the file with the parser of the command line, so that both accept the same options.
+class SettingsParser {
  public:
-  RememberedOptions() {
+  SettingsParser() {
     CLI::App& scene = *program_.add_subcommand("scene");
     view_.add_to(scene);
     generators_.add_to(scene);
@@ -71,11 +71,11 @@ SessionSettings load_session_settings(const fs::path& path, Messages& messages) 
   std::error_code error;
   if (path.empty() || !fs::exists(path, error)) return {};
   try {
-    return RememberedOptions().read(path);
+    return SettingsParser().read(path);
   } catch (const std::exception& problem) {
     const fs::path aside = unused_name(path.string() + ".broken");
     fs::rename(path, aside, error);
-    messages.add(Severity::warning, fmt::format("the settings were not understood and are put aside as {}: {}",
+    messages.add(Severity::warning, fmt::format("the settings have an error and were renamed to {}: {}",
                                                 error ? path.string() : aside.string(), problem.what()));
     return {};
   }
@@ -94,7 +94,8 @@ void save_session_settings(const fs::path& path, const SessionSettings& settings
   options.emplace_back("--seed", fmt::to_string(generation.seed));
   if (settings.pause_on_explosion) options.emplace_back("--pause-on-explosion", "");
   if (!settings.folder.empty()) options.emplace_back("--folder", settings.folder);
-  const SaveResult result = save_files({{path, toml_of(options, "What mercury view remembers.")}}, true);
+  const SaveResult result =
+      save_files({{path, toml_of(options, "Settings of mercury view, written when its window closes.")}}, true);
   if (!result.ok()) messages.add(Severity::warning, "settings: " + result.message);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window remembers from one day to the next.
+// The settings that the window keeps between sessions, a TOML file.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,17 @@ namespace mercury {
 
 struct SessionSettings {
   ViewSettings view;
-  RandomRobots generation;  // of the panel that makes random robots
+  RandomRobots generation;  // of the panel of random robots
   bool pause_on_explosion = false;
-  std::string folder;  // the last one opened
+  std::string folder;  // opened last
 };
 
-// $XDG_CONFIG_HOME/mercury/scene.toml, else that in ~/.config; empty where neither is known.
+// $XDG_CONFIG_HOME/mercury/scene.toml or ~/.config/mercury/scene.toml; empty if neither folder is known.
 std::filesystem::path session_settings_path();
 
-// The defaults where there is no such file. One that cannot be used is told of, and put aside as scene.toml.broken.
+// Returns the defaults if the file does not exist. A file with errors is reported and renamed to scene.toml.broken.
 SessionSettings load_session_settings(const std::filesystem::path& path, Messages& messages);
-// Written whole or not at all; told of if it cannot be.
+// Writes the file whole or not at all. Reports a failure.
 void save_session_settings(const std::filesystem::path& path, const SessionSettings& settings, Messages& messages);
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a film in the background is.
+// The progress of a video that is made in the background.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace mercury {
 struct VideoStatus {
   enum class State { running, finishing, done, cancelled, failed } state = State::running;
   std::int64_t frames = 0;   // written
-  std::int64_t total = 0;    // to be written; 0 = open end
-  std::int64_t dropped = 0;  // that came too fast for the encoder
+  std::int64_t total = 0;    // to write; 0 = unknown
+  std::int64_t dropped = 0;  // because the encoder was too slow
   std::string file;
   std::string error;  // one line, if failed
   bool over() const { return state != State::running && state != State::finishing; }
