@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of every program that is built with the address sanitizer: what its search for lost memory must know of
-// libraries that are not ours.
+// Part of every program that is built with the address sanitizer. It informs the leak check about libraries of others.
 #include <dlfcn.h>
 
-// OSMesaDestroyContext keeps the picture that the context was made current with (Mesa 22.3).
+// OSMesaDestroyContext does not free the picture that the context was made current with (Mesa 22.3).
 extern "C" const char* __lsan_default_suppressions();
 extern "C" [[gnu::weak]] const char* __lsan_default_suppressions() { return "leak:libOSMesa"; }
-// What it passes over is not told, as stderr is ours.
+// Do not list suppressed leaks: tests compare stderr.
 extern "C" const char* __lsan_default_options();
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 
-// OpenGL drivers are unloaded with the last context, and what their variables pointed to would then seem lost. So
-// libraries stay loaded.
+// OpenGL drivers are unloaded with the last context. Memory that only their variables point to would then look leaked,
+// so libraries stay loaded.
 extern "C" int dlclose(void*) noexcept { return 0; }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steers eels to targets, in a closed loop.
 //
-// Five equal eels set out ahead, each with a target of its own, up to 60 degrees to either side. Muscles along the left
-// and right side of an eel pull in turn, in a wave that runs from head to tail and pushes it ahead. A side whose
-// muscles pull less lets the other side win: the eel turns away from its weaker side. So once a period of the wave,
-// each eel's controller
-//   - reads where the centre of mass is (telemetry: one call for the whole batch); the way since the last look, over
-//     which the wriggling averages out, is the course,
-//   - compares the course with the direction to the target, and
-//   - lowers the amplitudes on the side away from the target, the more the larger the error is (set_materials: one call
-//     for the whole batch).
-// Masses are neither read nor written. Ends with 0 if every eel comes within 0.4 m of its target, 4 m away, and none
-// would have got there without control.
+// Five equal eels start in the same direction, each with a target of its own, up to 60 degrees to either side. Muscles
+// along the left and right side of an eel contract in turn, in a wave that runs from head to tail and pushes the eel
+// forward. If the muscles of one side are weaker, the eel turns away from that side. So once per period of the wave,
+// the controller of each eel
+//   - reads the center of mass (telemetry(): one call for the whole batch). Its displacement in the last period is the
+//     course, because the undulation averages out;
+//   - compares the course with the direction to the target;
+//   - lowers the amplitudes on the side away from the target in proportion to the error (set_materials(): one call for
+//     the whole batch).
+// It neither reads nor writes masses. The exit status is 0 if every eel comes within 0.4 m of its target, 4 m away, and
+// none would have reached it without control.
 #include <algorithm>
 #include <array>
 #include <cmath>

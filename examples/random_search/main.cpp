@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns to swim by random search.
 //
-// An eel of 12 x 2 x 2 voxels has six muscles along its left side and their antagonists along its right side. All of
-// them work at the same rate; what is searched are the six phases, that is, the order in which the segments bend. It
-// starts with all in step: the body only curls and uncurls, and hardly gets on. In each generation, children get the
-// best phases so far plus a random change (a (1 + lambda) evolution strategy with a step that adapts), all of them swim
-// at the same time in one batch, and the one that comes farthest is kept. Soon the segments bend one after the other.
+// An eel of 12 x 2 x 2 voxels has six muscles along its left side and their antagonists along its right side. All have
+// the same frequency. The search varies their six phases, which decide in what order the segments bend. At first all
+// phases are equal: the body only curls and uncurls, and hardly moves forward. In each generation, every child gets the
+// best phases so far plus a random change (a (1 + lambda) evolution strategy with an adaptive step size). All children
+// swim at the same time in one batch, and the one that swims farthest is kept. Soon the segments bend one after the
+// other.
 //
-// The body is the same for all, so the batch is built once: set_materials gives every robot its child's muscles, reset
-// puts all back to the start, step simulates, telemetry tells how far each came. Ends with 0 if the best swims at least
-// five times as far as the first.
+// All have the same body, so the batch is built once: set_materials() gives each robot the muscles of its child,
+// reset() puts all back to the start, step() simulates, and telemetry() reports how far each swam. The exit status is 0
+// if the best swims at least five times as far as the first.
 #include <algorithm>
 #include <array>
 #include <cstdio>

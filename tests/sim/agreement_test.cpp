@@ -13,7 +13,7 @@ namespace {
 using reference::largest_deviation;
 using reference::Reference;
 
-// One second at dt = 1e-3 beside the reference, looked at every 50 ms. Returns the largest distance [m].
+// Runs one second at dt = 1e-3 s beside the reference and compares every 50 ms. Returns the largest distance [m].
 double deviation_over_a_second(const Configuration& configuration, const Robot& robot, const State* start = nullptr) {
   Simulation simulation(configuration, {&robot, 1});
   Reference expected(configuration, robot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every physics test runs on every backend; some on every pair of solver and environment too.
+// Fixtures that run a test on every backend, or on every backend with every pair of solver and environment.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,8 +12,7 @@
 
 namespace mercury {
 
-// A test of one backend. On a machine without a CUDA device the CUDA case is skipped. (Not named Backend: that is what
-// the simulator calls its own.)
+// A test of one backend. Without a CUDA device the CUDA case is skipped.
 class BackendTest : public testing::TestWithParam<DeviceKind> {
  protected:
   void SetUp() override { skip_without(GetParam()); }
@@ -28,7 +27,7 @@ class BackendTest : public testing::TestWithParam<DeviceKind> {
   }
 };
 
-// A test of one backend, solver and environment, six pairs of the latter two.
+// A test of one backend, solver and environment.
 using Pair = std::tuple<DeviceKind, Solver, std::string_view>;
 class EveryPair : public testing::TestWithParam<Pair> {
  protected:
@@ -52,7 +51,7 @@ inline const auto every_device = testing::Values(DeviceKind::cpu, DeviceKind::cu
 inline const auto every_pair = testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
                                                 testing::Values(Ocean::name, OceanSimple::name, Land::name));
 
-// Empty space: no water, no weight. Nothing acts but springs.
+// Empty space, without water or gravity. Only springs act.
 inline OceanSimple empty_space() { return {.point_drag = 0}; }
 
 }  // namespace mercury

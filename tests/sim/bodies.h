@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots made by the tests themselves, so that they depend on no builder.
+// Robots that the tests build themselves, so that they depend on no generator.
 #pragma once
 
 #include <array>
@@ -25,20 +25,21 @@ struct Grid {
   Vec3 corner;              // [m]
 };
 
-// Voxels of `grid`: 8 masses each, shared; all 28 pairs of a voxel's masses joined once; two triangles a side of the
-// outer skin, counter-clockwise seen from outside. All springs are of material 1 of a one-material table.
+// A box of voxels. Each has 8 masses, shared with its neighbours; springs join all 28 pairs of them, each pair once.
+// Each outer side of a voxel has two triangles, counter-clockwise seen from outside. All springs have material 1 of a
+// table with one material.
 Robot voxels(const Grid& grid, const Material& material);
-// The same with the default table and a material from 1..253 for each spring, drawn with `seed`.
+// The same with the default table and a random material from 1..253 per spring.
 Robot random_voxels(const Grid& grid, std::uint64_t seed);
 
-// Turns the rest pose by the rotation whose rows are given.
+// Rotates the rest pose. `rows` are the rows of the rotation matrix.
 void rotate(Robot& robot, const std::array<Vec3, 3>& rows);
-// A rotation drawn uniformly (unit quaternion) with `seed`.
+// A uniformly random rotation (from a unit quaternion).
 std::array<Vec3, 3> random_rotation(std::uint64_t seed);
 
-// The robot at rest, all of it moving with one velocity.
+// The rest pose, all masses with the same velocity.
 State moving(const Robot& robot, Vec3 velocity);
-// Shaken: every coordinate moved by at most `amount` [m], every velocity at most `speed` [m/s], drawn with `seed`.
+// The rest pose with every coordinate moved by at most `amount` [m] and random velocities of at most `speed` [m/s].
 State shaken(const Robot& robot, float amount, float speed, std::uint64_t seed);
 
 }  // namespace mercury::bodies

@@ -56,7 +56,7 @@ TEST(Configuration, DefaultsAreThoseOfTheDesign) {
   EXPECT_EQ(land.stiffness_scale, 200);
 }
 
-TEST(Configuration, NamesAndTheirReverse) {
+TEST(Configuration, NamesAndParsingAreInverse) {
   for (const Solver solver : {Solver::force, Solver::xpbd}) EXPECT_EQ(solver_named(name_of(solver)), solver);
   EXPECT_EQ(name_of(Solver::xpbd), "xpbd");
   for (const Environment& environment : {Environment(Ocean{}), Environment(OceanSimple{}), Environment(Land{})})
@@ -70,7 +70,7 @@ TEST(Configuration, NamesAndTheirReverse) {
   for (const char* name : {"auto", "cpu", "cuda", "cuda:1", "cuda:all"}) EXPECT_EQ(name_of(device_named(name)), name);
 }
 
-TEST(Configuration, UnknownNamesAreAnsweredWithWhatIsAccepted) {
+TEST(Configuration, ErrorsForUnknownNamesListTheAcceptedOnes) {
   EXPECT_EQ(message_of([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
   EXPECT_EQ(message_of([] { environment_named("lava"); }),
             "environment: \"lava\" is not an environment; give ocean, ocean-simple or land");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program may change between calls of step: materials, state, configuration, pulls.
+// What a program may change between calls of step(): materials, state, configuration, perturbations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ class Control : public BackendTest {
 };
 INSTANTIATE_TEST_SUITE_P(All, Control, every_device, BackendTest::name);
 
-TEST_P(Control, AStifferMaterialShortensThePeriodOfTheRobotThatGotItAlone) {
+TEST_P(Control, AStifferMaterialShortensThePeriodOfItsRobotOnly) {
   const Robot pair = bodies::pair({50, 0, 0, 0});
   const std::vector<Robot> robots(2, pair);
   Simulation simulation(configuration(), robots);
@@ -40,7 +40,7 @@ TEST_P(Control, AStifferMaterialShortensThePeriodOfTheRobotThatGotItAlone) {
   }
 }
 
-TEST_P(Control, MaterialsChangedWhileRunningFollowTheReferenceFromThereOn) {
+TEST_P(Control, ChangedMaterialsFollowTheReferenceFromThatStepOn) {
   Robot robot = bodies::random_voxels({.x = 3, .y = 3, .z = 2}, 1);
   const auto defaults = default_materials();
   robot.materials.assign(defaults.begin(), defaults.end());
@@ -76,7 +76,7 @@ TEST_P(Control, ResetKeepsChangedMaterials) {
   EXPECT_EQ(simulation.material(0, 1), (Material{70, 0.1f, 1, 0}));
 }
 
-TEST_P(Control, BadMaterialsStatesAndPullsAreRefused) {
+TEST_P(Control, BadMaterialsStatesAndPerturbationsAreRefused) {
   const Robot pair = bodies::pair({50, 0, 0, 0});
   Simulation simulation(configuration(), {&pair, 1});
   EXPECT_THROW(simulation.set_material(0, 1, {-1, 0, 0, 0}), InputError);
@@ -122,8 +122,8 @@ TEST_P(Control, ConfigureChangesSolverEnvironmentAndTimeStepAndKeepsStateAndTime
   EXPECT_THROW(simulation.configure(setting), InputError);
 }
 
-// A pull is a spring of rest length 0 to a point: a free mass swings about it with omega = sqrt(k).
-TEST_P(Control, APulledMassSwingsAboutItsTargetAndIsFreeWhenLetGo) {
+// A perturbation is a spring of rest length 0 to a point: a free mass oscillates about it with omega = sqrt(k).
+TEST_P(Control, AMassOscillatesAboutTheTargetOfItsPerturbationUntilThatIsRemoved) {
   const Robot point = bodies::point({0, 0, 0});
   const std::vector<Robot> robots(2, point);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {
@@ -146,7 +146,7 @@ TEST_P(Control, APulledMassSwingsAboutItsTargetAndIsFreeWhenLetGo) {
   }
 }
 
-TEST_P(Control, PulledRobotsFollowTheReference) {
+TEST_P(Control, PerturbedRobotsFollowTheReference) {
   const Robot robot = bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 3);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {
     const Configuration setting{.solver = solver, .device = device()};
@@ -175,7 +175,7 @@ TEST_P(Control, ABadRobotIsNamedWithItsPlaceInTheBatch) {
   }
 }
 
-TEST_P(Control, ABatchMayBeEmptyAndGrow) {
+TEST_P(Control, AnEmptyBatchCanGrow) {
   Simulation simulation(configuration(), {});
   EXPECT_EQ(simulation.size(), 0u);
   simulation.step(10);

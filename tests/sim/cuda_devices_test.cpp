@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot needs of the chip, and what the CUDA device here says to it.
+// How much shared memory a robot needs, and whether it fits on the CUDA device of this machine.
 #include "mercury/cuda_devices.h"
 
 #include <gtest/gtest.h>
@@ -24,28 +24,28 @@ TEST(Chip, AMassTakesThe36BytesOfThePaper) {
   const Configuration water;
   const auto bytes = [&](std::size_t masses) { return chip_bytes(chain(masses), water); };
   EXPECT_EQ(bytes(1280) - bytes(64), 1216u * 36);
-  EXPECT_EQ(bytes(33), bytes(64));  // groups of 32
+  EXPECT_EQ(bytes(33), bytes(64));  // tiles of 32
   EXPECT_LT(bytes(1), 5 * 1024u);   // the tables
   EXPECT_LE(bytes(1248), 48 * 1024u);
 }
 
-TEST(Chip, XpbdDoesWithAsMuch) {
+TEST(Chip, XpbdNeedsNoMore) {
   const Robot robot = chain(640);
   EXPECT_EQ(chip_bytes(robot, {.solver = Solver::xpbd}), chip_bytes(robot, {}));
 }
 
-TEST(Chip, OnlyContactsTakeRoomOnLand) {
+TEST(Chip, LandNeedsMoreOnlyForContacts) {
   const Robot robot = chain(640);
   EXPECT_GT(chip_bytes(robot, {.environment = Land{}}), chip_bytes(robot, {}));
   EXPECT_EQ(chip_bytes(robot, {.environment = Land{.self_collision = false}}), chip_bytes(robot, {}));
 }
 
-TEST(Chip, ADeviceThatIsNotThereIsNamed) {
+TEST(Chip, AMissingDeviceIsAnError) {
   EXPECT_THROW(chip_fit(chain(10), {}, cuda_device_count()), DeviceError);
   EXPECT_THROW(chip_fit(chain(10), {}, -1), DeviceError);
 }
 
-TEST(Chip, AgreesWithWhatABatchOnTheDeviceSays) {
+TEST(Chip, AgreesWithABatchOnTheDevice) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device";
   for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})})
     for (const Solver solver : {Solver::force, Solver::xpbd})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot that leaves the finite is frozen and reported; the others go on untouched.
+// A robot that explodes is frozen and reported. The others go on as if it were not there.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ class Explosion : public EveryPair {
             bodies::random_voxels({.x = 4, .y = 2, .z = 3}, 3)};
   }
   static constexpr std::uint16_t victim = 20;
-  // The middle robot's state with one mass mistreated.
+  // The state of the middle robot with one mass moved or pushed.
   static State mistreated(const Simulation& simulation, Vec3 position, Vec3 velocity) {
     State state = simulation.state(1);
     state.positions[victim] = position;
@@ -29,7 +29,7 @@ class Explosion : public EveryPair {
 };
 INSTANTIATE_TEST_SUITE_P(All, Explosion, every_pair, EveryPair::name);
 
-TEST_P(Explosion, IsReportedWithTimeAndFirstBadSpringAndTheRobotIsFrozenWhileItsNeighboursGoOn) {
+TEST_P(Explosion, IsReportedWithTimeAndCulpritAndFreezesOnlyThatRobot) {
   const auto robots = three();
   const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   const Vec3 rest = robots[1].masses[victim];
@@ -73,7 +73,7 @@ TEST_P(Explosion, IsReportedWithTimeAndFirstBadSpringAndTheRobotIsFrozenWhileIts
   }
 }
 
-TEST_P(Explosion, IsOverAfterAResetOrANewState) {
+TEST_P(Explosion, EndsWithAResetOrANewState) {
   const auto robots = three();
   Simulation simulation(configuration(), robots), fresh(configuration(), robots);
   const State state = mistreated(simulation, {}, {1e10f, 0, 0});
@@ -121,7 +121,7 @@ TEST_P(Explosion, KeepsItsTimeWhenTheTimeStepChanges) {
   }
 }
 
-TEST_P(Explosion, GoesWithAStateIntoAnotherSimulation) {
+TEST_P(Explosion, IsPartOfAStateThatAnotherSimulationTakes) {
   const auto robots = three();
   Simulation simulation(configuration(), robots), other(configuration(), robots);
   const State state = mistreated(simulation, {}, {1e10f, 0, 0});
@@ -131,10 +131,10 @@ TEST_P(Explosion, GoesWithAStateIntoAnotherSimulation) {
   ASSERT_TRUE(frozen.exploded);
   other.step(25);
   other.set_state(1, frozen);
-  const Telemetry told = other.telemetry(1), before = simulation.telemetry(1);
-  EXPECT_TRUE(told.exploded);
-  EXPECT_EQ(told.exploded_at, before.exploded_at);
-  EXPECT_EQ(told.culprit_spring, before.culprit_spring);
+  const Telemetry after = other.telemetry(1), before = simulation.telemetry(1);
+  EXPECT_TRUE(after.exploded);
+  EXPECT_EQ(after.exploded_at, before.exploded_at);
+  EXPECT_EQ(after.culprit_spring, before.culprit_spring);
   other.step(25);
   EXPECT_EQ(other.hash(1), simulation.hash(1)) << "it stays frozen";
   EXPECT_EQ(other.telemetry(1).exploded_at, before.exploded_at);
@@ -142,10 +142,10 @@ TEST_P(Explosion, GoesWithAStateIntoAnotherSimulation) {
   EXPECT_FALSE(other.telemetry(1).exploded);
 }
 
-class GoingOn : public EveryPair {};
-INSTANTIATE_TEST_SUITE_P(All, GoingOn, every_pair, EveryPair::name);
+class Continuing : public EveryPair {};
+INSTANTIATE_TEST_SUITE_P(All, Continuing, every_pair, EveryPair::name);
 
-TEST_P(GoingOn, FromAStateAndItsClockIsBitForBitGoingOn) {
+TEST_P(Continuing, FromAStateAndItsClockGivesTheSameBits) {
   const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, 5);
   Simulation first(configuration(), std::span(&robot, 1));
   first.step(70);
@@ -174,7 +174,7 @@ TEST_P(GoingOn, FromAStateAndItsClockIsBitForBitGoingOn) {
 class Stability : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, Stability, every_device, BackendTest::name);
 
-TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndThatOfXpbdDoesNot) {
+TEST_P(Stability, OfTheForceSolverEndsAtTwoOverOmegaAndXpbdIsStableBeyond) {
   const Robot pair = bodies::pair({50, 0, 0, 0});
   const double limit = 2 / std::sqrt(2 * 50.0);
   const auto explodes = [&](Solver solver, double dt) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots leave and change places; those that stay notice nothing.
+// Simulation::keep(): robots are removed and reordered. The rest go on unchanged.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ std::vector<Robot> four() {
   return robots;
 }
 
-TEST_P(Keep, RobotsThatStayGoOnAsIfNobodyHadLeft) {
+TEST_P(Keep, RobotsThatStayMoveAsIfAllHadStayed) {
   const std::vector<Robot> robots = four();
   Simulation all(configuration(), robots), fewer(configuration(), robots);
   fewer.step(100);
@@ -48,7 +48,7 @@ TEST_P(KeepOn, TunedMaterialsMoveWithTheirRobot) {
   EXPECT_EQ(simulation.material(1, 5), default_materials()[5]);
 }
 
-TEST_P(KeepOn, AnExplosionIsRemembered) {
+TEST_P(KeepOn, AnExplosionIsKept) {
   Simulation simulation({.environment = empty_space(), .device = device()}, four());
   State far = simulation.state(1);
   far.positions[0].x = 2e6f;
@@ -62,7 +62,7 @@ TEST_P(KeepOn, AnExplosionIsRemembered) {
   EXPECT_FALSE(simulation.telemetry(1).exploded);
 }
 
-TEST_P(KeepOn, AllMayLeave) {
+TEST_P(KeepOn, AllRobotsCanBeRemoved) {
   Simulation simulation({.device = device()}, four());
   simulation.keep({});
   simulation.step(10);
@@ -71,7 +71,7 @@ TEST_P(KeepOn, AllMayLeave) {
   EXPECT_EQ(simulation.add(four()[0]), 0u);
 }
 
-TEST_P(KeepOn, OnlyRobotsThatAreThereCanStayAndOnlyOnce) {
+TEST_P(KeepOn, AnIndexMustExistAndAppearOnce) {
   Simulation simulation({.device = device()}, four());
   EXPECT_THROW(simulation.keep(std::array<std::size_t, 1>{4}), std::out_of_range);
   EXPECT_THROW(simulation.keep(std::array<std::size_t, 2>{1, 1}), std::invalid_argument);

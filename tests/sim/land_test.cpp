@@ -103,8 +103,8 @@ TEST_P(OnLand, ABlockOnASlopeHoldsBelowTheFrictionAngleAndSlidesAbove) {
   }
 }
 
-// A sheet of side x side masses, 0.1 m apart. Each is joined to those two places away and a knight's move away, so that
-// the contact distance, half the shortest spring, is the spacing of the masses: no hole is wide enough for a mass.
+// A sheet of side x side masses, 0.1 m apart. Springs join masses two steps or a knight's move apart, so the contact
+// distance, half the shortest spring, is the spacing of the masses: no hole is wide enough for a mass.
 void add_sheet(Robot& robot, int side, Vec3 corner) {
   constexpr float spacing = 0.1f;
   const std::size_t first = robot.masses.size();
@@ -144,7 +144,7 @@ TEST_P(OnLand, TwoLayersPressedTogetherDoNotPassThroughEachOther) {
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const Vec3 offset : {Vec3{0, 0, 0.12f}, Vec3{0.05f, 0.05f, 0.12f}, Vec3{0.031f, 0.012f, 0.12f}}) {
       const Robot robot = two_sheets(offset);
-      Land land{.gravity = {0, 0, -30}};  // three times the weight presses
+      Land land{.gravity = {0, 0, -30}};  // three times the normal weight
       Simulation collides(on_land(land, solver, 5), {&robot, 1});
       land.self_collision = false;
       Simulation passes(on_land(land, solver, 5), {&robot, 1});
@@ -159,7 +159,7 @@ TEST_P(OnLand, TwoLayersPressedTogetherDoNotPassThroughEachOther) {
     }
 }
 
-// Two masses at distance d and a spring far away that sets the contact distance of 0.5 m.
+// Two masses at distance d, and a spring far away that makes the contact distance 0.5 m.
 Robot two_points_beside_a_spring(float distance) {
   Robot robot;
   robot.materials = bodies::one_material(tissue_like);
@@ -168,7 +168,7 @@ Robot two_points_beside_a_spring(float distance) {
   return robot;
 }
 
-TEST_P(OnLand, MassesThatNoSpringJoinsRepelInProportionToTheDistanceMissing) {
+TEST_P(OnLand, MassesThatNoSpringJoinsRepelInProportionToTheMissingDistance) {
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const float distance : {0.1f, 0.3f, 0.49f, 0.51f, 0.7f}) {
       const Robot robot = two_points_beside_a_spring(distance);
@@ -194,7 +194,7 @@ TEST_P(OnLand, ACrowdOfLooseMassesFollowsTheReference) {
     double dt;                // [s]
     float contact_stiffness;  // [N/m]
   };
-  // The last is stiffer than XPBD takes at its time step, and is softened.
+  // The last is stiffer than XPBD accepts at its time step, so it is softened (contact_stiffness_of).
   for (const auto& [solver, dt, contact_stiffness] :
        {Case{Solver::force, 1e-3, 10}, {Solver::xpbd, 1e-3, 10}, {Solver::xpbd, 5e-3, 100}}) {
     Configuration configuration = on_land({.contact_stiffness = contact_stiffness}, solver);

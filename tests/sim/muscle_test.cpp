@@ -41,7 +41,7 @@ TEST(Muscle, FactorIsExactToFloatRoundingInTheFirstMinutes) {
       }
 }
 
-// The phase of one step is known to 2^-54 of a turn, 3.5e-16 rad, so that is what a step may cost.
+// per_step is rounded to 2^-54 turn, 3.5e-16 rad, so the phase may be off by as much per step.
 TEST(Muscle, PhaseErrorStaysFarBelowATenThousandthOfARadianAtAMillionSecondsAndBeyond) {
   for (const Material& muscle : many_muscles())
     for (const double dt : {1e-3, 7.3e-4, 1.0 / 300})
@@ -59,9 +59,9 @@ TEST(Muscle, APassiveMaterialNeverMoves) {
   for (std::int64_t step = 0; step < 1000; ++step) EXPECT_EQ(muscle_factor(Material{40, 0, 3, 1}, 1e-3, step), 1.0f);
 }
 
-// At a time step of many minutes an XPBD spring of two masses is as long as the law says after every step, and damping
-// leaves no velocity: the law can be read off positions over any time. Corrections are summed in units of 2^-18 of the
-// spring's length there, hence the tolerance; it stands for 1e-5 rad.
+// At a time step of many minutes, an XPBD spring has its rest length after every step, and damping leaves no velocity.
+// So positions show the muscle law over any time. Corrections are then summed in units of 2^-18 of the spring's length,
+// which gives the tolerance. It corresponds to 1e-5 rad.
 class MuscleLength : public BackendTest {
  protected:
   static constexpr double dt = 997.3;  // [s]
@@ -75,7 +75,7 @@ class MuscleLength : public BackendTest {
 };
 INSTANTIATE_TEST_SUITE_P(All, MuscleLength, every_device, BackendTest::name);
 
-TEST_P(MuscleLength, OfEveryDefaultMuscleFollowsTheLawForAMillionSeconds) {
+TEST_P(MuscleLength, OfEveryDefaultMuscleIsExactForAMillionSeconds) {
   std::vector<Robot> robots;
   std::vector<Material> muscles;
   for (const Material& material : default_materials()) {

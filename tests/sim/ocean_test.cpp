@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Water: surface drag (paper, equation 1) and drag on points.
+// Water: drag and lift on faces (paper, equation 1) and drag on masses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ Robot cube(std::uint64_t orientation, const Material& material = stiff) {
   return robot;
 }
 
-// Area of a closed convex body's shadow along the direction [m2]: half of sum A |n.direction|.
+// Area of the shadow that a closed convex body casts along a direction [m2]: half of sum A |n.direction|.
 double shadow(const Robot& robot, const Vector& direction) {
   double sum = 0;
   for (const Face& face : robot.faces) {
@@ -49,12 +49,13 @@ Vector mean_velocity(const Simulation& simulation, std::size_t robot) {
   return sum / static_cast<double>(velocities.size());
 }
 
-// Summed over a body that moves as one, F.u = rho C_D |u|^3 times the shadow, whatever C_L: lift turns, drag brakes.
+// Over a body that moves rigidly, the sum of F.u is rho C_D |u|^3 times the shadow. C_L does not matter: lift is
+// perpendicular to u.
 TEST_P(Water, DragOnATowedCubeTakesThePowerOfItsShadowAtAnyLift) {
   std::vector<Robot> robots;
   for (std::uint64_t orientation = 0; orientation < 60; ++orientation) robots.push_back(cube(orientation, soft));
   const Vec3 velocity{0.6f, -1.1f, 0.8f};
-  constexpr double dt = 0.02;  // [s], long, so that the change of velocity stands out from float rounding
+  constexpr double dt = 0.02;  // [s], long, so that the change of velocity is far above float rounding
   const Vector v = vector_of(velocity);
   for (const float lift : {0.0f, 0.2f, 0.7f, 1.0f, 1.5f, 3.0f}) {
     Simulation simulation(water({.drag_coefficient = 1, .lift_coefficient = lift}, dt), robots);
@@ -99,7 +100,7 @@ TEST_P(Water, TowedCubeIsSlowedAndNeverSpedUpAtAnyLift) {
   }
 }
 
-// One plate of 3 masses, no spring: the force is equation 1 itself.
+// A plate of 3 masses without springs: the force is equation 1 itself.
 TEST_P(Water, APlateFeelsDragAcrossAndLiftAlongTheFlow) {
   Robot plate;
   plate.masses = {{0, 0, 0}, {0.2f, 0, 0}, {0, 0.3f, 0}};
@@ -141,8 +142,8 @@ TEST_P(Water, AFlowCarriesACubeUpToItsOwnVelocity) {
   }
 }
 
-// At a steady fall gravity's power is that of drag: M g v = rho C_D |v|^3 times the shadow, of a flat cube rho C_D v^3
-// A. (A flat fall does not last: turned a little, the shadow grows. It is read off before the cube has turned.)
+// In a steady fall the power of gravity equals that of drag: M g v = rho C_D |v|^3 times the shadow. A cube that falls
+// flat has the shadow A, but only for a while, because turning a little increases its shadow. The test measures before.
 TEST_P(Water, TerminalSpeedOfAFallingCubeIsThatOfEquationOne) {
   const double g = 2, density = 1000, drag = 1.1, mass = 8;
   const Robot flat = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, stiff);

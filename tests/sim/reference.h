@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second opinion on the physics: one robot in double precision, written from the paper and the design for reading,
-// not for speed. It shares no equation with sim/; only the plain data that says what to simulate.
+// An independent implementation of the physics: one robot in double precision, written from the paper for reading, not
+// for speed. It shares no equation with sim/, only the plain data that describes what to simulate.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace mercury::reference {
 
 using Vector = Eigen::Vector3d;
-using Field = std::vector<Vector>;  // one vector a mass
+using Field = std::vector<Vector>;  // one vector per mass
 
 Vector vector_of(Vec3 v);
 
@@ -27,7 +27,7 @@ double rest_length(const Material& material, double rest_length, double time);
 
 class Reference {
  public:
-  // Starts at time 0 at the robot's rest pose; on land, with the lowest mass at z = 0.
+  // Starts at time 0 in the rest pose; on land with the lowest mass at z = 0.
   Reference(const Configuration& configuration, const Robot& robot);
 
   void set_state(const State& state);
@@ -58,7 +58,7 @@ class Reference {
   Robot robot_;
   std::vector<Perturbation> perturbations_;
   std::set<std::pair<int, int>> joined_;  // both orders
-  std::vector<double> springs_at_;        // s, one a mass
+  std::vector<double> springs_at_;        // s, one per mass
   double contact_distance_ = 0;           // [m]
   Field x_, v_;
   std::int64_t steps_ = 0;

@@ -32,7 +32,7 @@ class Reproducibility : public EveryPair {
     return robots;
   }
 
-  // One hash a robot after `steps`, in the order of `robots`.
+  // One hash per robot after `steps`, in the order of `robots`.
   static std::vector<std::uint64_t> run(const Configuration& configuration, std::span<const Robot> robots,
                                         std::int64_t steps_a_call = steps) {
     Simulation simulation(configuration, robots);
@@ -136,19 +136,19 @@ TEST_P(Reproducibility, AStateReadAndSetAgainContinuesBitForBit) {
   EXPECT_EQ(continued.hash(0), whole.hash(0));
 }
 
-// A run with all that may change on the way: robots of the second half come later; solver, environment and time step
-// change, materials of all and of one, a robot is pulled and let go, two explode, all is reset.
-class Story {
+// A run during which everything changes: the second half of the robots comes later; solver, environment and time step
+// change, the materials of all robots and of one; one robot is perturbed for a while, two explode, and all is reset.
+class EventfulRun {
  public:
-  // `which` robots of `all` take part, the first half of `all` from the start.
-  Story(const Configuration& configuration, std::span<const Robot> all, const std::vector<std::size_t>& which)
+  // Runs the robots `which` of `all`. Those in the first half of `all` are there from the start.
+  EventfulRun(const Configuration& configuration, std::span<const Robot> all, const std::vector<std::size_t>& which)
       : configuration_(configuration), all_(all), simulation_(configuration) {
     for (const std::size_t robot : which) (robot < all.size() / 2 ? first_ : later_).push_back(robot);
     add(first_);
   }
 
-  // Hashes by robot, one a chapter.
-  std::map<std::size_t, std::vector<std::uint64_t>> tell() {
+  // For each robot, its hash and whether it has exploded after every part of the run.
+  std::map<std::size_t, std::vector<std::uint64_t>> results() {
     run(60);
     configuration_.dt = 5e-4;
     configuration_.damping = 0.3;
@@ -214,7 +214,7 @@ class Story {
   std::map<std::size_t, std::vector<std::uint64_t>> hashes_;
 };
 
-// Most robots are built alike, which a backend may make use of.
+// Most robots have the same topology, because backends group such robots.
 TEST_P(Reproducibility, WhateverChangesWhileRunningARobotAloneMovesAsInTheBatch) {
   std::vector<Robot> robots;
   for (std::uint64_t i = 0; i < 44; ++i)
@@ -223,19 +223,19 @@ TEST_P(Reproducibility, WhateverChangesWhileRunningARobotAloneMovesAsInTheBatch)
   std::iota(which.begin(), which.end(), std::size_t{0});
   Configuration setting = configuration();
   setting.device.threads = 1;
-  const auto told = Story(setting, robots, which).tell();
-  EXPECT_TRUE(std::ranges::count(told.at(4), 1u) == 2 && std::ranges::count(told.at(21), 1u) == 2)
-      << "two chapters exploded";
-  EXPECT_EQ(std::ranges::count(told.at(5), 1u), 0);
+  const auto expected = EventfulRun(setting, robots, which).results();
+  EXPECT_TRUE(std::ranges::count(expected.at(4), 1u) == 2 && std::ranges::count(expected.at(21), 1u) == 2)
+      << "exploded after two parts of the run";
+  EXPECT_EQ(std::ranges::count(expected.at(5), 1u), 0);
   setting.device.threads = 3;
   std::ranges::reverse(which);
-  EXPECT_EQ(Story(setting, robots, which).tell(), told);
+  EXPECT_EQ(EventfulRun(setting, robots, which).results(), expected);
   for (const std::size_t robot : {0u, 2u, 3u, 4u, 5u, 10u, 21u, 22u, 32u, 43u})
-    EXPECT_EQ(Story(setting, robots, {robot}).tell().at(robot), told.at(robot)) << robot;
+    EXPECT_EQ(EventfulRun(setting, robots, {robot}).results().at(robot), expected.at(robot)) << robot;
 }
 
-// 6,156 masses fit on the largest chips if XPBD leaves the numbers of springs in device memory, 8,000 on none; whatever
-// path they take keeps the promises.
+// 6,156 masses fit on the largest chips if XPBD keeps the valences in device memory; 8,000 fit on none. All paths must
+// be reproducible.
 class LargeRobots : public Reproducibility {
  protected:
   void expect_reproducible(int layers) const;

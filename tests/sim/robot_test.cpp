@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of a robot, each with the line that a user reads when it is broken.
+// The rules that a robot must obey, each with the message for a user who breaks it.
 #include "mercury/robot.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ const float nan_value = std::nanf("");
 
 Robot sound() { return bodies::voxels({.x = 2, .y = 1, .z = 1}, {50, 0.1f, 1, 0}); }
 
-// What validate says of the sound robot after `spoil`; empty if nothing.
+// The message of validate() for a valid robot after `spoil`; empty if there is none.
 std::string message_after(const std::function<void(Robot&)>& spoil) {
   Robot robot = sound();
   spoil(robot);
@@ -31,7 +31,7 @@ std::string message_after(const std::function<void(Robot&)>& spoil) {
   return "";
 }
 
-TEST(RobotRules, ASoundRobotPasses) {
+TEST(RobotRules, AValidRobotPasses) {
   EXPECT_EQ(message_after([](Robot&) {}), "");
   EXPECT_EQ(message_after([](Robot& robot) { robot.springs.clear(); }), "");
   EXPECT_EQ(message_after([](Robot& robot) { robot.faces.clear(); }), "");

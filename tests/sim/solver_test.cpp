@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs alone: what theory says of the two solvers in empty space.
+// Springs in empty space: both solvers against theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(All, Springs, every_device, BackendTest::name);
 constexpr float stiffness = 50;  // [N/m]
 constexpr Material passive{stiffness, 0, 0, 0};
 
-// Mean time between upward passages of the pair's length through its rest length [s], over `periods` of them.
+// Mean time between passages of the pair's length upwards through its rest length [s], over `periods` passages.
 double measured_period(Simulation& simulation, int periods) {
   const double dt = simulation.configuration().dt;
   double first = 0, last = 0, before = 0;
@@ -70,7 +70,7 @@ Momenta momenta(const State& state) {
   return sum;
 }
 
-TEST_P(Springs, MomentumOfAShakenMuscularRobotIsKeptToRounding) {
+TEST_P(Springs, MomentumOfAShakenMuscularRobotIsConservedToRounding) {
   const Robot robot = bodies::random_voxels({}, 1);
   const State start = bodies::shaken(robot, 0.02f, 1, 2);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {
@@ -81,14 +81,15 @@ TEST_P(Springs, MomentumOfAShakenMuscularRobotIsKeptToRounding) {
     // 216 velocities of some 0.5 m/s, each rounded 1000 times to 24 bits, errors adding up as in a random walk:
     // 216^1/2 1000^1/2 3e-8 = 1.4e-5 kg m/s.
     EXPECT_LT((after.linear - before.linear).norm(), 5e-5) << name_of(solver);
-    // Central forces at x^n turn nothing; XPBD's stand at the prediction, so only Algorithm 1 keeps it to rounding.
+    // Central forces at x^n conserve angular momentum. XPBD's act at the predicted positions, so only Algorithm 1
+    // conserves it to rounding.
     if (solver == Solver::force) {
       EXPECT_LT((after.angular - before.angular).norm(), 5e-5);
     }
   }
 }
 
-TEST_P(Springs, EnergyIsKeptWithinOnePercentForTenSeconds) {
+TEST_P(Springs, EnergyIsConservedWithinOnePercentForTenSeconds) {
   const Robot lattice = bodies::voxels({.x = 3, .y = 2, .z = 2}, passive);
   State start = bodies::moving(lattice, {});
   for (Vec3& x : start.positions) x = {1.2f * x.x, x.y, x.z + 0.3f * x.x};  // stretched and sheared
@@ -106,10 +107,10 @@ TEST_P(Springs, EnergyIsKeptWithinOnePercentForTenSeconds) {
     least_kinetic = std::min(least_kinetic, simulation.telemetry(0).kinetic_energy);
     most_kinetic = std::max(most_kinetic, simulation.telemetry(0).kinetic_energy);
   }
-  EXPECT_GT(most_kinetic - least_kinetic, 0.2 * before);  // it did change hands
+  EXPECT_GT(most_kinetic - least_kinetic, 0.2 * before);  // elastic and kinetic energy did exchange
 }
 
-// Unconditionally stable: where a long first step has thrown the masses far, the springs take the energy out again.
+// XPBD is unconditionally stable: after a long first step that moves the masses far, the springs remove the energy.
 TEST_P(Springs, XpbdLosesEnergyAtAnyTimeStep) {
   const Robot lattice = bodies::voxels({.x = 3, .y = 2, .z = 2}, passive);
   const State start = bodies::shaken(lattice, 0.02f, 0.5f, 5);
@@ -177,7 +178,7 @@ double distance_of_solvers(const Robot& robot, const State& start, double dt, do
   return largest;
 }
 
-// Both are of first order, and the prediction at which XPBD looks differs from x^n by dt v^n: halving dt halves the
+// Both solvers are of first order, and XPBD's predicted positions differ from x^n by dt v^n. So halving dt halves the
 // distance.
 TEST_P(Springs, XpbdConvergesToTheForceSolverWithOrderOne) {
   const Robot robot = bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 7);

@@ -8,7 +8,7 @@
 namespace mercury {
 namespace {
 
-TEST(SplitBackend, GivesWhatOnePartGivesForEveryRobot) {
+TEST(SplitBackend, GivesTheSameResultsAsOneBackend) {
   std::vector<Robot> robots;
   for (unsigned seed = 0; seed < 5; ++seed)
     robots.push_back(bodies::random_voxels({.x = 2, .y = 2, .z = 1 + static_cast<int>(seed)}, seed));

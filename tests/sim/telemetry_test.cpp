@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telemetry against an independent calculation, and the other ways to read a batch.
+// Telemetry against an independent calculation, and other ways to read a batch.
 #include "mercury/telemetry.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 class TelemetryOf : public EveryPair {};
 INSTANTIATE_TEST_SUITE_P(All, TelemetryOf, every_pair, EveryPair::name);
 
-TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
+TEST_P(TelemetryOf, AMovingRobotAgreesWithAnIndependentCalculation) {
   const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 2}, 2),
                                      bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
   Simulation simulation(configuration(), robots);
@@ -47,8 +47,8 @@ TEST_P(TelemetryOf, AMovingRobotIsThatOfAnIndependentCalculation) {
   }
 }
 
-// Backends may prepare the next report while they step; what is changed before it is asked for must show.
-TEST_P(TelemetryOf, ARobotIsThatOfTheMomentItIsAskedFor) {
+// Backends may compute the next report while they step. It must show changes that come after that.
+TEST_P(TelemetryOf, ARobotShowsItsPresentState) {
   const Robot robot = bodies::random_voxels({}, 1);
   Simulation simulation(configuration(), {&robot, 1});
   const State start = bodies::shaken(robot, 0.01f, 0.2f, 3);
@@ -70,11 +70,11 @@ TEST_P(TelemetryOf, ARobotIsThatOfTheMomentItIsAskedFor) {
   EXPECT_NEAR(simulation.telemetry(0).elastic_energy, 2 * soft, 1e-5 * soft);
 }
 
-// Whether it is made while stepping or apart, and whoever else is in the batch.
-TEST_P(TelemetryOf, ARobotIsTheSameHoweverItIsAskedFor) {
+// It does not depend on whether the report is computed while stepping, or on the other robots of the batch.
+TEST_P(TelemetryOf, ARobotIsTheSameBitForBitInAnyBatch) {
   const Robot robot = bodies::random_voxels({}, 1);
   const State start = bodies::shaken(robot, 0.01f, 0.2f, 3);
-  const auto told = [&](std::vector<Robot> robots, int calls) {
+  const auto report = [&](std::vector<Robot> robots, int calls) {
     Simulation simulation(configuration(), robots);
     simulation.set_state(0, start.positions, start.velocities);
     Telemetry last;
@@ -84,10 +84,10 @@ TEST_P(TelemetryOf, ARobotIsTheSameHoweverItIsAskedFor) {
     }
     return last;
   };
-  const Telemetry once = told({robot}, 1);
+  const Telemetry once = report({robot}, 1);
   const std::vector<Robot> several = {robot, bodies::random_voxels({.x = 9, .y = 8, .z = 7}, 2),
                                       bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
-  for (const Telemetry& other : {told({robot}, 3), told(several, 1), told(several, 4)}) {
+  for (const Telemetry& other : {report({robot}, 3), report(several, 1), report(several, 4)}) {
     EXPECT_EQ(other.center_of_mass, once.center_of_mass);
     EXPECT_EQ(other.velocity, once.velocity);
     EXPECT_EQ(other.kinetic_energy, once.kinetic_energy);
@@ -134,7 +134,7 @@ TEST_P(Reading, TheHashIsFnv1aOverTheBytesOfPositionsAndVelocities) {
   for (const auto* list : {&state.positions, &state.velocities})
     for (const Vec3 value : *list)
       for (const float component : {value.x, value.y, value.z}) {
-        unsigned char bytes[4];  // little-endian machines alone are supported
+        unsigned char bytes[4];  // only little-endian machines are supported
         std::memcpy(bytes, &component, 4);
         for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211u;
       }
