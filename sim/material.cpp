@@ -88,7 +88,7 @@ MaterialId combine(MaterialId i, MaterialId j) {
   require_base(j);
   if (i == j) return i;
   if (i > j) std::swap(i, j);
-  // Pairs (1,2) .. (1,22), (2,3) .. : before row i stand sum over r < i of (22 - r).
+  // Pairs are ordered (1,2) .. (1,22), (2,3) ..: sum over r < i of (22 - r) of them come before those of i.
   const int before = (i - 1) * base_material_count - i * (i - 1) / 2;
   return static_cast<MaterialId>(base_material_count + 1 + before + (j - i - 1));
 }

@@ -68,10 +68,10 @@ class SplitBackend final : public Backend {
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
-    part_of(robot).read(place_of(robot), positions, velocities);
+    part_of(robot).read(index_in_part(robot), positions, velocities);
   }
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    part_of(robot).write(place_of(robot), positions, velocities);
+    part_of(robot).write(index_in_part(robot), positions, velocities);
   }
   void read_positions(std::span<Vec3> out) const override {
     for_each_part([&](std::size_t p) { parts_[p]->read_positions(masses_of(p, out)); });
@@ -80,12 +80,12 @@ class SplitBackend final : public Backend {
     for_each_part([&](std::size_t p) { parts_[p]->read_velocities(masses_of(p, out)); });
   }
 
-  RobotStatus status(std::size_t robot) const override { return part_of(robot).status(place_of(robot)); }
+  RobotStatus status(std::size_t robot) const override { return part_of(robot).status(index_in_part(robot)); }
   std::vector<RobotStatus> statuses() const override {
     return gather<RobotStatus>([](const Backend& part) { return part.statuses(); });
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    part_of(robot).set_status(place_of(robot), status);
+    part_of(robot).set_status(index_in_part(robot), status);
   }
 
   void write_materials(std::span<const Material> tables) override {
@@ -95,13 +95,13 @@ class SplitBackend final : public Backend {
     });
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
-    part_of(robot).write_materials(place_of(robot), table);
+    part_of(robot).write_materials(index_in_part(robot), table);
   }
 
   void set_perturbations(std::span<const Perturbation> perturbations) override {
     std::vector<std::vector<Perturbation>> shares(parts_.size());
     for (Perturbation perturbation : perturbations) {
-      const std::size_t p = index_of(perturbation.robot);
+      const std::size_t p = part_index(perturbation.robot);
       perturbation.robot -= first_robot_[p];
       shares[p].push_back(perturbation);
     }
@@ -116,16 +116,16 @@ class SplitBackend final : public Backend {
   }
 
  private:
-  std::size_t index_of(std::size_t robot) const {
+  std::size_t part_index(std::size_t robot) const {
     return static_cast<std::size_t>(std::ranges::upper_bound(first_robot_, robot) - first_robot_.begin()) - 1;
   }
-  Backend& part_of(std::size_t robot) const { return *parts_[index_of(robot)]; }
-  std::size_t place_of(std::size_t robot) const { return robot - first_robot_[index_of(robot)]; }
+  Backend& part_of(std::size_t robot) const { return *parts_[part_index(robot)]; }
+  std::size_t index_in_part(std::size_t robot) const { return robot - first_robot_[part_index(robot)]; }
   std::span<Vec3> masses_of(std::size_t p, std::span<Vec3> all) const {
     return all.subspan(first_mass_[p], first_mass_[p + 1] - first_mass_[p]);
   }
 
-  // All parts at once; an error of one is thrown when all are done.
+  // Runs work(part) for all parts at once. If parts throw, the last exception is thrown when all are done.
   template <class Work>
   void for_each_part(const Work& work) const {
     std::vector<std::future<void>> others;
@@ -154,7 +154,7 @@ class SplitBackend final : public Backend {
   }
 
   std::vector<std::unique_ptr<Backend>> parts_;
-  std::vector<std::size_t> first_robot_{0}, first_mass_{0};  // of each part, and the end
+  std::vector<std::size_t> first_robot_{0}, first_mass_{0};  // of each part, then the end
 };
 
 }  // namespace

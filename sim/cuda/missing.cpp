@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for the CUDA backend in a build without nvcc.
+// The CUDA backend of a build without nvcc: there are no devices.
 #include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"

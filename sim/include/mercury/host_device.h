@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows whether nvcc is compiling: marks functions that run on host and device, and names the
-// arithmetic that differs between them. An equation written in these names is computed for one float, and for a vector
-// of floats whose type brings the same names (sim/cpu/lanes.h).
+// Functions that run on host and device, and the arithmetic that differs between them. This is the only file that asks
+// whether nvcc is compiling.
+//
+// An equation written in these names works for one float, and for a vector of floats whose type brings functions of the
+// same names (sim/cpu/lanes.h). Products and sums are fused only where multiply_add() or fnma() say so, and only on the
+// device: compiler options turn fusing off (-ffp-contract=off, --fmad=false). So every CPU rounds alike.
 #pragma once
 
 #include <bit>
@@ -11,12 +14,13 @@
 #ifdef __CUDACC__
 #define MERCURY_HOST_DEVICE __host__ __device__ __forceinline__
 #else
-#define MERCURY_HOST_DEVICE __attribute__((always_inline)) inline  // into each instruction set's own code
+#define MERCURY_HOST_DEVICE \
+  __attribute__((always_inline)) inline  // so that it is compiled for the instruction set of its caller
 #endif
 
 namespace mercury {
 
-// a b + c. On the device one instruction with one rounding; on the host two roundings, which every CPU does alike.
+// a b + c. One rounding on the device, two on the host.
 MERCURY_HOST_DEVICE float multiply_add(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   return __fmaf_rn(a, b, c);
@@ -25,7 +29,7 @@ MERCURY_HOST_DEVICE float multiply_add(float a, float b, float c) {
 #endif
 }
 
-// c - a b, rounded likewise.
+// c - a b, rounded in the same way.
 MERCURY_HOST_DEVICE float fnma(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   return __fmaf_rn(-a, b, c);
@@ -37,7 +41,7 @@ MERCURY_HOST_DEVICE float fnma(float a, float b, float c) {
 MERCURY_HOST_DEVICE float absolute(float a) { return std::fabs(a); }
 MERCURY_HOST_DEVICE float square_root(float a) { return std::sqrt(a); }
 
-// Branches that a vector of floats can take lane by lane.
+// Choices that a vector of floats makes lane by lane.
 MERCURY_HOST_DEVICE float select(bool condition, float yes, float no) { return condition ? yes : no; }
 MERCURY_HOST_DEVICE std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) {
   return condition ? yes : no;
@@ -45,7 +49,7 @@ MERCURY_HOST_DEVICE std::uint32_t select(bool condition, std::uint32_t yes, std:
 MERCURY_HOST_DEVICE float negated_where(bool condition, float a) { return condition ? -a : a; }
 MERCURY_HOST_DEVICE bool all_of(bool a, bool b, bool c) { return a && b && c; }
 
-// 1 / sqrt(a), a > 0; on the device within 2 units in the last place.
+// 1 / sqrt(a) for a > 0. On the device within 2 units in the last place.
 MERCURY_HOST_DEVICE float inverse_sqrt(float a) {
 #ifdef __CUDA_ARCH__
   float result;
@@ -56,7 +60,7 @@ MERCURY_HOST_DEVICE float inverse_sqrt(float a) {
 #endif
 }
 
-// 1 / a; on the device within 1 unit in the last place.
+// 1 / a. On the device within 1 unit in the last place.
 MERCURY_HOST_DEVICE float inverse(float a) {
 #ifdef __CUDA_ARCH__
   float result;
@@ -75,7 +79,7 @@ MERCURY_HOST_DEVICE std::int32_t bits_of(float a) {
 #endif
 }
 
-// The bits of a two's complement integer, as a float.
+// The bits as a two's complement integer, converted to float.
 MERCURY_HOST_DEVICE float float_of_signed(std::uint32_t a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
 MERCURY_HOST_DEVICE bool top_bit(std::uint32_t a) { return (a & 0x80000000u) != 0; }
 
@@ -84,7 +88,7 @@ MERCURY_HOST_DEVICE std::int32_t round_to_int(float a) {
 #ifdef __CUDA_ARCH__
   return __float2int_rn(a);
 #else
-  constexpr double magic = 6755399441055744.0;  // 1.5 x 2^52 pushes the fraction out, as in fixed_point.h
+  constexpr double magic = 6755399441055744.0;  // 1.5 x 2^52: the addition rounds, as in sim/physics/fixed_point.h
   return static_cast<std::int32_t>(std::bit_cast<std::int64_t>(static_cast<double>(a) + magic));
 #endif
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vector of three floats, for host and device.
+// A vector of three floats with the usual operators, for host and device.
 #pragma once
 
 #include <cmath>
