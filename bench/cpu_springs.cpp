@@ -205,7 +205,7 @@ void run(double seconds, const char* filter, const char* kernel_name) {
     if (*kernel_name == 0 || kernel.name == kernel_name) kernels.push_back(kernel);
   const std::vector<Crowd> all = crowds();
   for (const Solver solver : {Solver::force, Solver::xpbd})
-    for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name})
+    for (const std::string_view environment : environment_names())
       compare(all, {.solver = solver, .environment = environment_named(environment)}, seconds, filter, kernels);
 }
 

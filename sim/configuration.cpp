@@ -80,6 +80,12 @@ std::string name_of(const Device& device) {
   return device.index == 0 ? "cuda" : "cuda:" + std::to_string(device.index);
 }
 
+std::vector<std::string_view> environment_names() {
+  std::vector<std::string_view> names;
+  for_each_environment([&](const auto& kind) { names.push_back(kind.name); });
+  return names;
+}
+
 Solver solver_named(std::string_view name) {
   if (name == "force") return Solver::force;
   if (name == "xpbd") return Solver::xpbd;
@@ -88,12 +94,11 @@ Solver solver_named(std::string_view name) {
 
 Environment environment_named(std::string_view name) {
   std::optional<Environment> found;
-  std::vector<std::string_view> names;
   for_each_environment([&](const auto& kind) {
     if (kind.name == name) found = kind;
-    names.push_back(kind.name);
   });
   if (found) return *found;
+  const std::vector<std::string_view> names = environment_names();
   std::string accepted;
   for (std::size_t i = 0; i < names.size(); ++i)
     accepted.append(i == 0 ? "" : i + 1 < names.size() ? ", " : " or ").append(names[i]);

@@ -35,12 +35,6 @@ std::string joined(const std::vector<std::string_view>& names, const char* last_
   return text;
 }
 
-std::vector<std::string_view> environment_names() {
-  std::vector<std::string_view> names;
-  for_each_environment([&](const auto& kind) { names.push_back(kind.name); });
-  return names;
-}
-
 // The environments that have a parameter, by its default there.
 std::vector<std::pair<std::string, std::vector<std::string_view>>> environments_by_default(std::string_view name) {
   std::vector<std::pair<std::string, std::vector<std::string_view>>> groups;

@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(All, Agreement, every_pair, EveryPair::name);
 TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   for (const Solver solver : {Solver::force, Solver::xpbd})
-    for (const std::string_view environment : {Ocean::name, OceanSimple::name, Land::name}) {
+    for (const std::string_view environment : environment_names()) {
       const Robot robot = bodies::random_voxels({}, 6);
       Configuration configuration{.solver = solver, .environment = environment_named(environment)};
       configuration.device.kind = DeviceKind::cpu;

@@ -49,7 +49,7 @@ class EveryPair : public testing::TestWithParam<Pair> {
 
 inline const auto every_device = testing::Values(DeviceKind::cpu, DeviceKind::cuda);
 inline const auto every_pair = testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
-                                                testing::Values(Ocean::name, OceanSimple::name, Land::name));
+                                                testing::ValuesIn(environment_names()));
 
 // Empty space, without water or gravity. Only springs act.
 inline OceanSimple empty_space() { return {.point_drag = 0}; }

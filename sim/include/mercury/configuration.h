@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "mercury/parameters.h"
 #include "mercury/vec3.h"
@@ -132,6 +133,7 @@ struct Configuration {
 
 // "force", "xpbd"; "ocean", "ocean-simple", "land"; "auto", "cpu", "cuda", "cuda:1", "cuda:all".
 std::string_view name_of(Solver solver);
+std::vector<std::string_view> environment_names();
 std::string_view name_of(const Environment& environment);
 std::string name_of(const Device& device);
 // The reverse, with the environment's defaults. Throw ParameterError that lists what is accepted.
