@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens on the host before and between steps: plans, muscles' factors, lists of near masses, files, growing.
+// The parts of the host's work before and between steps: schedules, muscles, near pairs, files, growing.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "mercury/nn_robot.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "sim/cpu/kernel.h"
+#include "sim/cpu/kernels/kernel.h"
 #include "sim/physics/face_pairs.h"
 
 namespace mercury::bench {
@@ -18,16 +18,16 @@ namespace {
 
 using State = benchmark::State;
 
-// By voxels a side.
+// The argument is the number of voxels per side.
 Robot lattice_of(const State& state) { return lattice(static_cast<int>(state.range(0))); }
 
-void plan_of_springs(State& state) {
+void schedule_of_springs(State& state) {
   const Robot robot = lattice_of(state);
-  const cpu::Places places = cpu::arrange(robot, cpu::kernels().front().lanes);
-  for (auto _ : state) benchmark::DoNotOptimize(cpu::plan_springs(robot, places));
+  const cpu::Slots slots = cpu::assign_slots(robot, cpu::kernels().front().lanes);
+  for (auto _ : state) benchmark::DoNotOptimize(cpu::schedule_springs(robot, slots));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.springs.size()));
 }
-BENCHMARK(plan_of_springs)->Name("plan of springs")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(schedule_of_springs)->Name("schedule of springs")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
 
 void pairs_of_faces(State& state) {
   const Robot robot = lattice_of(state);
@@ -41,18 +41,18 @@ void make_body(State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(cpu::make_body(robot, cpu::kernels().front().lanes));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.springs.size()));
 }
-BENCHMARK(make_body)->Name("robot made ready for the CPU")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(make_body)->Name("body for the CPU")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
 
 void near_pairs(State& state) {
   const Robot robot = lattice_of(state);
   cpu::Body body = cpu::make_body(robot, cpu::kernels().front().lanes);
   cpu::set_state(body, robot.masses, std::vector<Vec3>(robot.masses.size()));
-  for (auto _ : state) body.near_pairs.list(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
+  for (auto _ : state) body.near_pairs.search_grid(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.masses.size()));
 }
-BENCHMARK(near_pairs)->Name("list of near masses")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(near_pairs)->Name("search for near pairs")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);
 
-// Of all materials of the default table.
+// All materials of the default table.
 cpu::Muscles all_muscles() {
   std::vector<Material> materials(max_materials);
   std::ranges::copy(default_materials(), materials.begin());
@@ -81,7 +81,7 @@ void phases(State& state) {
   Clock clock{.step = 123456789};
   for (auto _ : state) {
     muscles.move_to(clock);
-    ++clock.step;  // which no steps have led to
+    ++clock.step;  // so that the phases are not current
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(max_materials));
 }
@@ -110,7 +110,7 @@ void draw_voxels(State& state) {
 }
 BENCHMARK(draw_voxels)->Name("draw a voxel robot")->Unit(benchmark::kMicrosecond);
 
-// Network, alpha shape, springs and skin; by points of the cloud.
+// Network, alpha shape, springs and skin. The argument is the number of points in the cloud.
 void grow_robot(State& state) {
   const NnGenome genome = random_nn_genome({.points = static_cast<std::size_t>(state.range(0))}, 1);
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU backend: robots are shared out over the cores, each stepped by one of them.
+// The CPU backend: work batches of robots run on a thread pool.
 #include "mercury/backend.h"
 
 #include <oneapi/tbb/blocked_range.h>
@@ -13,9 +13,9 @@
 #include <chrono>
 #include <optional>
 
+#include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
-#include "sim/cpu/pack.h"
-#include "sim/cpu/party.h"
+#include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/telemetry.h"
 
 namespace mercury {
@@ -27,7 +27,7 @@ class CpuBackend final : public Backend {
  public:
   CpuBackend(const Device& device, const Kernel& kernel)
       : kernel_(kernel), arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
-    // Without this, more threads than cores are refused, with a warning on stderr.
+    // Without this, TBB refuses more threads than cores, with a warning on stderr.
     if (device.threads > oneapi::tbb::info::default_concurrency())
       allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                          static_cast<std::size_t>(device.threads));
@@ -40,14 +40,14 @@ class CpuBackend final : public Backend {
   std::vector<std::string> notes() const override { return {}; }
 
   std::size_t robots_at_once() const override {
-    const bool together = !bodies_.empty() && fits_in_party(bodies_.front());
+    const bool together = !bodies_.empty() && fits_in_group(bodies_.front());
     return static_cast<std::size_t>(arena_.max_concurrency()) * (together ? kernel_.lanes : 1);
   }
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return busy_seconds_; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
-    packs_.clear();
+    batches_.clear();
     bodies_.clear();
     bodies_.resize(robots.size());
     for_each_body([&](std::size_t i) {
@@ -61,24 +61,25 @@ class CpuBackend final : public Backend {
   void configure(const Configuration& configuration) override {
     configuration_ = configuration;
     setting_ = setting_of(configuration);
-    unpack();
-    for_each_body([&](std::size_t i) { update_laws(bodies_[i], configuration_); });
+    ungroup();
+    for_each_body([&](std::size_t i) { update_spring_parameters(bodies_[i], configuration_); });
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
     const auto start = std::chrono::steady_clock::now();
-    std::atomic<std::size_t> broken = 0;
+    std::atomic<std::size_t> broken_up = 0;
     arena_.execute([&] {
-      if (packs_.empty()) packs_ = pack(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
-      oneapi::tbb::parallel_for(std::size_t{0}, packs_.size(), [&](std::size_t i) {
-        broken += advance(kernel_, packs_[i], bodies_, setting_, clock, steps);
+      if (batches_.empty())
+        batches_ = make_work_batches(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
+      oneapi::tbb::parallel_for(std::size_t{0}, batches_.size(), [&](std::size_t i) {
+        broken_up += advance(kernel_, batches_[i], bodies_, setting_, clock, steps);
       });
     });
-    out_of_place_ += broken;
-    // Groups are made anew of the robots that are whole, but not at every explosion.
+    changes_since_grouping_ += broken_up;
+    // New groups exclude the robots that have exploded. They are not worth it at each explosion.
     std::size_t groups = 0;
-    for (const Pack& pack : packs_) groups += pack.groups.size();
-    if (16 * out_of_place_ > groups) unpack();
+    for (const WorkBatch& batch : batches_) groups += batch.groups.size();
+    if (16 * changes_since_grouping_ > groups) ungroup();
     busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -89,7 +90,7 @@ class CpuBackend final : public Backend {
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    if (bodies_[robot].residence.group) cpu::store(*bodies_[robot].residence.group);
+    if (bodies_[robot].location.group) cpu::store(*bodies_[robot].location.group);
     set_state(bodies_[robot], positions, velocities);
   }
 
@@ -110,17 +111,17 @@ class CpuBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) ++out_of_place_;
+    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
     bodies_[robot].status = status;
   }
 
   void write_materials(std::span<const Material> tables) override {
     for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });
-    for (Pack& pack : packs_) pack.laws_are_stale = true;
+    for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     replace_table(robot, table);
-    for (Pack& pack : packs_) pack.laws_are_stale = true;
+    for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
   }
 
   void set_perturbations(std::span<const Perturbation> perturbations) override {
@@ -142,24 +143,24 @@ class CpuBackend final : public Backend {
     arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
   }
 
-  // Robots are shared out anew before the next step.
-  void unpack() {
-    cpu::store(packs_);
-    packs_.clear();
-    out_of_place_ = 0;
+  // Has new batches made before the next step.
+  void ungroup() {
+    cpu::store(batches_);
+    batches_.clear();
+    changes_since_grouping_ = 0;
   }
 
   void replace_table(std::size_t robot, std::span<const Material> table) {
     std::ranges::copy(table, bodies_[robot].materials.begin());
-    update_laws(bodies_[robot], configuration_);
+    update_spring_parameters(bodies_[robot], configuration_);
   }
 
   const Kernel kernel_;
   std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
   std::vector<Body> bodies_;
-  std::vector<Pack> packs_;       // empty = to be made before the next step
-  std::size_t out_of_place_ = 0;  // groups broken up, robots made whole again or exploded by order
+  std::vector<WorkBatch> batches_;          // empty = to be made before the next step
+  std::size_t changes_since_grouping_ = 0;  // groups broken up, exploded robots set by the caller
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;

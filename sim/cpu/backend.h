@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "mercury/backend.h"
-#include "sim/cpu/kernel.h"
+#include "sim/cpu/kernels/kernel.h"
 
 namespace mercury::cpu {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot's state in a few numbers.
+// The telemetry of a body.
 #pragma once
 
-#include "sim/cpu/body.h"
+#include "sim/cpu/layout/body.h"
 
 namespace mercury::cpu {
 

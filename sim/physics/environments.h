@@ -10,7 +10,7 @@
 //   on_face(normal, u, u.u, drag, lift)   the same with fewer multiplications, see OceanModel::Coefficients
 //   floor(x, displacement)                contact with the floor at the end of a step, if has_floor
 //
-// Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/lanes.h).
+// Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/kernels/lanes.h).
 #pragma once
 
 #include "mercury/configuration.h"

@@ -20,9 +20,12 @@ API = {"sim/api": "sim/include", "robots/api": "robots/include"}
 ALLOWED = {
     "sim/api": "",
     "sim/physics": "sim/api",
-    "sim/cpu": "sim/api sim/physics",
     "sim/cuda": "sim/api sim/physics",
     "sim": "sim/api sim/physics",
+    "sim/cpu/layout": "sim/api sim/physics",
+    "sim/cpu/kernels": "sim/api sim/physics sim/cpu/layout",
+    "sim/cpu/grouping": "sim/api sim/physics sim/cpu/layout",
+    "sim/cpu": "sim/api sim/physics sim/cpu/layout sim/cpu/kernels sim/cpu/grouping",
     "robots/api": "sim/api",
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",

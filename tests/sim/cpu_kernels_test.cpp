@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever the instruction set, the CPU computes the bits of the plain loop over one spring after the other.
+// On each instruction set, the CPU computes the bits of a plain loop over one spring after the other.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using test::KernelCase;
 
-// Without some of its springs and faces.
+// The robot without some of its springs and faces.
 Robot torn(const Robot& robot, std::uint64_t seed) {
   Robot result = robot;
   std::mt19937_64 random(seed);
@@ -25,7 +25,7 @@ Robot torn(const Robot& robot, std::uint64_t seed) {
   return result;
 }
 
-// Two bodies in one place, which no spring joins.
+// The robot and its shifted copy, which no spring joins.
 Robot entangled(const Robot& robot) {
   Robot result = robot;
   const auto masses = static_cast<std::uint16_t>(robot.masses.size());
@@ -36,7 +36,7 @@ Robot entangled(const Robot& robot) {
   return result;
 }
 
-std::vector<Robot> zoo() {
+std::vector<Robot> various_robots() {
   const Robot lattice = bodies::random_voxels({.x = 5, .y = 4, .z = 3}, 1);
   std::vector<Robot> robots = {lattice,
                                bodies::random_voxels({.x = 17, .y = 2, .z = 2}, 2),
@@ -61,7 +61,6 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
     return of.configuration();
   }
 
-  // The state after steps that are cut into calls, and what became of the robot.
   struct Result {
     State state;
     std::int64_t exploded_step;
@@ -71,12 +70,12 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
                    std::int64_t steps) const {
     const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
     const Robot* const pointer = &robot;
-    const Configuration told = configuration();
-    backend->load({&pointer, 1}, told);
+    const Configuration settings = configuration();
+    backend->load({&pointer, 1}, settings);
     backend->write(0, start.positions, start.velocities);
     backend->set_perturbations(perturbations);
-    Clock clock{.dt = told.dt};
-    for (std::int64_t call : {std::int64_t{1}, std::int64_t{40}, steps - 41}) {
+    Clock clock{.dt = settings.dt};
+    for (const std::int64_t call : {std::int64_t{1}, std::int64_t{40}, steps - 41}) {
       backend->step(clock, call);
       clock.step += call;
     }
@@ -105,13 +104,13 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
     for (std::size_t i = 0; i < robot.masses.size(); ++i)
       if (got.state.positions[i] != wanted.state.positions[i] || got.state.velocities[i] != wanted.state.velocities[i])
         ++different;
-    EXPECT_EQ(different, 0u) << which << ", masses that differ, of " << robot.masses.size();
+    EXPECT_EQ(different, 0u) << which << ": masses that differ, of " << robot.masses.size();
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, CpuKernel, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
 
 TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
-  const std::vector<Robot> robots = zoo();
+  const std::vector<Robot> robots = various_robots();
   for (std::size_t i = 0; i < robots.size(); ++i) {
     State start = bodies::shaken(robots[i], 0.01f, 0.5f, i);
     for (Vec3& x : start.positions) x.z += 0.3f;
@@ -122,14 +121,14 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoop) {
 
 TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopInACurrent) {
   flow = {0.3f, -0.2f, 1.5f};
-  const std::vector<Robot> robots = zoo();
+  const std::vector<Robot> robots = various_robots();
   for (const std::size_t i : {0u, 3u, 5u})
     expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
 }
 
-// 30 m/s: the list of near masses is made anew again and again, and the robots go far.
+// 30 m/s: near pairs are searched again and again, and the robots move far.
 TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopForFastRobots) {
-  const std::vector<Robot> robots = zoo();
+  const std::vector<Robot> robots = various_robots();
   for (const std::size_t i : {1u, 3u, 6u}) {
     State start = bodies::shaken(robots[i], 0.02f, 3, i);
     for (Vec3& v : start.velocities) v += Vec3{20, 20, -10};
@@ -150,30 +149,30 @@ TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
   }
 }
 
-// Every machine has one kernel, and the tests above compare it with the plain loop as all others.
+// So each machine has a kernel.
 TEST(CpuKernels, EndWithThePortableOne) {
   ASSERT_FALSE(cpu::kernels().empty());
   EXPECT_EQ(cpu::kernels().back().name, "portable");
 }
 
-// Robots of one build but of other materials, lengths and states.
-class CpuKernelTogether : public CpuKernel {
+// Robots with the same topology but different materials, lengths and states.
+class CpuKernelInLockstep : public CpuKernel {
  protected:
   void SetUp() override {
     std::mt19937_64 random(11);
     for (std::size_t i = 0; i < GetParam().kernel.lanes + GetParam().kernel.lanes * 3 / 4 + 1; ++i) {
-      robots.push_back(built);
+      robots.push_back(original);
       for (Spring& spring : robots.back().springs) {
         spring.material = static_cast<MaterialId>(1 + random() % 253);
         spring.rest_length *= 1 + 0.05f * static_cast<float>(random() % 8);
       }
-      starts.push_back(bodies::shaken(built, 0.01f, 0.5f, i));
+      starts.push_back(bodies::shaken(original, 0.01f, 0.5f, i));
       for (Vec3& x : starts.back().positions) x.z += 0.02f * static_cast<float>(i % 5);
     }
   }
 
-  // All of them in one batch on one core, calls of 3, 45, 200 and 52 steps.
-  void expect_all_same(std::span<const Perturbation> perturbations = {}) const {
+  // Steps all robots in one batch, in calls of 3, 45, 200 and 52 steps, and compares each with the plain loop.
+  void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}) const {
     const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
     std::vector<const Robot*> pointers;
     for (const Robot& robot : robots) pointers.push_back(&robot);
@@ -190,7 +189,7 @@ class CpuKernelTogether : public CpuKernel {
       for (const Perturbation& perturbation : perturbations)
         if (perturbation.robot == i) own.push_back(perturbation);
       const Result wanted = by_plain_loop(robots[i], starts[i], own, clock.step);
-      State got{std::vector<Vec3>(built.masses.size()), std::vector<Vec3>(built.masses.size())};
+      State got{std::vector<Vec3>(original.masses.size()), std::vector<Vec3>(original.masses.size())};
       backend->read(i, got.positions, got.velocities);
       EXPECT_EQ(backend->status(i).exploded_step, wanted.exploded_step) << i;
       EXPECT_EQ(backend->status(i).bad_mass, wanted.bad_mass) << i;
@@ -198,30 +197,30 @@ class CpuKernelTogether : public CpuKernel {
     }
   }
 
-  const Robot built = entangled(bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3));
+  const Robot original = entangled(bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3));
   std::vector<Robot> robots;
   std::vector<State> starts;
 };
-INSTANTIATE_TEST_SUITE_P(All, CpuKernelTogether, testing::ValuesIn(test::every_kernel_case()),
+INSTANTIATE_TEST_SUITE_P(All, CpuKernelInLockstep, testing::ValuesIn(test::every_kernel_case()),
                          test::name_of_kernel_case);
 
-TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoop) { expect_all_same(); }
+TEST_P(CpuKernelInLockstep, GivesTheBitsOfThePlainLoop) { expect_the_plain_loop(); }
 
-TEST_P(CpuKernelTogether, GiveTheBitsOfThePlainLoopAtSpeed) {
+TEST_P(CpuKernelInLockstep, GivesTheBitsOfThePlainLoopAtSpeed) {
   for (State& start : starts)
     for (std::size_t i = 0; i < start.velocities.size(); ++i)
       start.velocities[i] += Vec3{20, 5 * static_cast<float>(i % 3), -10};
-  expect_all_same();
+  expect_the_plain_loop();
 }
 
-TEST_P(CpuKernelTogether, AnExplosionOrAPullIsItsRobotsOwn) {
+TEST_P(CpuKernelInLockstep, AnExplosionOrAPerturbationAffectsItsRobotOnly) {
   starts[2].velocities[5] += Vec3{1e10f, 0, 0};
   starts[3].velocities[7] += Vec3{3e3f, 0, 0};
   robots[1].materials.assign(materials_of(robots[1]).begin(), materials_of(robots[1]).end());
   for (Material& material : robots[1].materials) material.stiffness *= 2e4f;  // too stiff for the time step
   robots[1].materials[air] = {};
   const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20}};
-  expect_all_same(perturbations);
+  expect_the_plain_loop(perturbations);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kernel of the CPU with every pair of solver and environment, as parameters of tests.
+// All kernels of the CPU with all pairs of solver and environment, as parameters of tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct KernelCase {
   cpu::Kernel kernel;
   Solver solver;
   std::string_view environment;
-  Vec3 flow{};  // of the water, if there is any
+  Vec3 flow{};  // of the water
 
   Configuration configuration() const {
     Configuration configuration{

@@ -1,53 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small robots of different builds that are stepped side by side: each has the bits that it has alone, whatever becomes
-// of the others.
+// Small robots of different topologies that are stepped together in lockstep groups: each gives the bits that it gives
+// alone, whatever happens to the others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <set>
 
-#include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
 #include "bodies.h"
 #include "kernel_cases.h"
+#include "mixed_robots.h"
 #include "sim/cpu/backend.h"
-#include "sim/cpu/lockstep.h"
-#include "sim/cpu/party.h"
-#include "sim/cpu/similar.h"
 
 namespace mercury {
 namespace {
 
-// No two built alike: voxels left out here and there, other sizes, some numbered in another order, some with materials
-// of their own; one that is no lattice.
-std::vector<Robot> crowd(std::size_t lanes) {
-  std::vector<Robot> robots;
-  for (std::uint64_t seed = 1; seed <= 2 * lanes + 3; ++seed) {
-    const int n = seed % 5 == 0 ? 3 : 2;
-    robots.push_back(bench::lattice_with_holes(n, 0.3, seed));
-    Robot& robot = robots.back();
-    if (seed % 3 == 0) robot = bench::scrambled(robot, seed);
-    if (seed % 4 == 0) {
-      robot.materials.assign(materials_of(robot).begin(), materials_of(robot).end());
-      for (Material& material : robot.materials) {
-        material.stiffness *= 1 + 0.01f * static_cast<float>(seed);
-        material.phase += 0.1f * static_cast<float>(seed);
-      }
-    }
-  }
-  robots.push_back(bodies::random_voxels({.x = 3, .y = 2, .z = 1}, 1));
-  robots.push_back(bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2));
-  bodies::rotate(robots[4], bodies::random_rotation(1));
-  return robots;
-}
-
 using test::KernelCase;
 
-// A backend with robots, its clock, and what became of them.
+// A backend with robots and its clock.
 class Batch {
  public:
   Batch(const KernelCase& of, std::span<const Robot> robots, std::int64_t threads = 1)
@@ -92,7 +64,7 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
     }
   }
 
-  // All in one batch, calls of 1 to 45 steps, beside the plain loop.
+  // Steps all robots in one batch, in calls of 1 to 45 steps, and compares each with the plain loop.
   void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}, Vec3 flow = {}) const {
     KernelCase of = GetParam();
     of.flow = flow;
@@ -114,7 +86,7 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
     }
   }
 
-  std::vector<Robot> robots = crowd(GetParam().kernel.lanes);
+  std::vector<Robot> robots = test::mixed_robots(GetParam().kernel.lanes);
   std::vector<State> starts;
 };
 INSTANTIATE_TEST_SUITE_P(All, MixedBatch, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
@@ -130,7 +102,7 @@ TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopAtSpeed) {
 
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopInACurrent) { expect_the_plain_loop({}, {0.3f, -0.2f, 1.5f}); }
 
-TEST_P(MixedBatch, WhatPullsARobotPullsNoOther) {
+TEST_P(MixedBatch, APerturbationActsOnItsRobotOnly) {
   const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20},
                                                    {0, 5, {0.3f, 0.1f, 0.4f}, 2},
                                                    {7, 3, {-1, 0, 0.5f}, 50},
@@ -138,7 +110,7 @@ TEST_P(MixedBatch, WhatPullsARobotPullsNoOther) {
   expect_the_plain_loop(perturbations);
 }
 
-TEST_P(MixedBatch, AnExplosionIsItsRobotsOwn) {
+TEST_P(MixedBatch, AnExplosionAffectsItsRobotOnly) {
   starts[2].velocities[5] += Vec3{1e10f, 0, 0};  // in the first step
   starts[7].velocities[3] += Vec3{3e3f, 0, 0};
   robots[3].materials.assign(materials_of(robots[3]).begin(), materials_of(robots[3]).end());
@@ -147,14 +119,14 @@ TEST_P(MixedBatch, AnExplosionIsItsRobotsOwn) {
   expect_the_plain_loop();
 }
 
-TEST_P(MixedBatch, AnInfiniteVelocityIsItsRobotsOwn) {
+TEST_P(MixedBatch, AnInfiniteVelocityAffectsItsRobotOnly) {
   starts[2].velocities[5].x = std::numeric_limits<float>::infinity();
   starts[7].velocities[3] += Vec3{0, -1e36f, 0};
   expect_the_plain_loop();
 }
 
-// Compared as statuses, for a state that holds NaN differs from itself.
-TEST_P(MixedBatch, AVelocityThatIsNoNumberExplodesItsRobotOnly) {
+// Compares statuses, since a state that holds NaN differs from itself.
+TEST_P(MixedBatch, ANaNVelocityExplodesItsRobotOnly) {
   starts[2].velocities[5].y = std::numeric_limits<float>::quiet_NaN();
   Batch batch(GetParam(), robots);
   for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
@@ -163,9 +135,9 @@ TEST_P(MixedBatch, AVelocityThatIsNoNumberExplodesItsRobotOnly) {
     EXPECT_EQ(batch.backend().status(i).exploded_step, i == 2 ? 0 : -1) << i;
 }
 
-// Everything that can be done to a robot, done to some of the batch, and to each of them alone.
+// Edits some robots of a batch in all possible ways, and does the same to each of them alone.
 TEST_P(MixedBatch, EditsReachTheirRobotOnly) {
-  using Edit = std::function<void(Batch&, const std::function<bool(std::size_t)>& is_there, std::size_t first)>;
+  using Edit = std::function<void(Batch&, const std::function<bool(std::size_t)>& contains, std::size_t first)>;
   const auto table_of = [&](std::size_t i, float stiffness) {
     std::vector<Material> table(max_materials);
     std::ranges::copy(materials_of(robots[i]), table.begin());
@@ -175,32 +147,32 @@ TEST_P(MixedBatch, EditsReachTheirRobotOnly) {
     }
     return table;
   };
-  const Edit script = [&](Batch& batch, const auto& is_there, std::size_t first) {
+  const Edit script = [&](Batch& batch, const auto& contains, std::size_t first) {
     for (std::size_t i = 0; i < robots.size(); ++i)
-      if (is_there(i)) batch.write(i - first, starts[i]);
+      if (contains(i)) batch.write(i - first, starts[i]);
     batch.step(5);
     for (const std::size_t i : {1u, 4u})
-      if (is_there(i)) batch.backend().write_materials(i - first, table_of(i, 0.3f));
+      if (contains(i)) batch.backend().write_materials(i - first, table_of(i, 0.3f));
     batch.step(3);
     for (const std::size_t i : {0u, 5u})
-      if (is_there(i)) batch.write(i - first, starts[i]);
+      if (contains(i)) batch.write(i - first, starts[i]);
     batch.step(40);
     for (const std::size_t i : {2u, 6u})
-      if (is_there(i)) {
+      if (contains(i)) {
         State broken = batch.state(i - first);
-        (i == 2 ? broken.velocities : broken.positions)[1].x = 1e10f;  // at once, or before the next step
+        (i == 2 ? broken.velocities : broken.positions)[1].x = 1e10f;  // explodes in the next step, or before it
         batch.write(i - first, broken);
       }
     batch.step(2);
     batch.step(3);
-    if (is_there(2)) {
+    if (contains(2)) {
       batch.write(2 - first, starts[2]);
       batch.backend().set_status(2 - first, {});
     }
     batch.step(10);
     std::vector<Material> tables;
     for (std::size_t i = 0; i < robots.size(); ++i)
-      if (is_there(i)) std::ranges::copy(table_of(i, 1 + 0.1f * static_cast<float>(i)), std::back_inserter(tables));
+      if (contains(i)) std::ranges::copy(table_of(i, 1 + 0.1f * static_cast<float>(i)), std::back_inserter(tables));
     batch.backend().write_materials(tables);
     batch.step(4);
     KernelCase other = GetParam();
@@ -225,8 +197,8 @@ TEST_P(MixedBatch, EditsReachTheirRobotOnly) {
   EXPECT_GE(all.backend().status(6).exploded_step, 0);
 }
 
-// What is reported while states are in lanes is what was reported of them alone, and all masses are read from there.
-TEST_P(MixedBatch, IsReadAndReportedAsEachAlone) {
+// Reports and reads states while lockstep groups hold them.
+TEST_P(MixedBatch, ReportsWhatEachRobotReportsAlone) {
   Batch all(GetParam(), robots);
   for (std::size_t i = 0; i < robots.size(); ++i) all.write(i, starts[i]);
   all.step(20);
@@ -266,116 +238,6 @@ TEST_P(MixedBatch, AnyNumberOfThreadsGivesTheSameBits) {
     batch->step(50);
   }
   for (std::size_t i = 0; i < robots.size(); ++i) expect_same(many.state(i), one.state(i), i);
-}
-
-// The tests above would show nothing if each robot were stepped by itself.
-TEST(Parties, AreMadeOfRobotsOfDifferentBuilds) {
-  for (const cpu::Kernel& kernel : cpu::kernels()) {
-    const std::vector<Robot> robots = crowd(kernel.lanes);
-    std::vector<cpu::Body> bodies;
-    for (const Robot& robot : robots) bodies.push_back(cpu::make_body(robot, kernel.lanes));
-    const std::vector<cpu::Party> parties = cpu::find_parties(bodies, 1, {});
-    std::set<std::size_t> in_parties;
-    for (const cpu::Party& party : parties) in_parties.insert(party.bodies.begin(), party.bodies.end());
-    EXPECT_GE(in_parties.size(), kernel.lanes) << kernel.name;
-    std::size_t mixed = 0;
-    for (const cpu::Party& party : parties)
-      mixed += party.bodies.size() > 1 && !same_topology(robots[party.bodies[0]], robots[party.bodies[1]]);
-    EXPECT_GE(mixed, 1u) << kernel.name;
-  }
-}
-
-// Long and flat robots by turns, 1,100 of them, which is more than are looked at at once: only what is left over at the
-// end goes together.
-TEST(Parties, AreMadeOfRobotsOfOneKind) {
-  constexpr std::size_t robots = 1100, group_size = 8;
-  const Robot kinds[] = {bodies::random_voxels({.x = 8, .y = 1, .z = 1}, 1),
-                         bodies::random_voxels({.x = 3, .y = 1, .z = 4}, 2)};
-  std::vector<cpu::Cell> cells[2];
-  std::vector<FacePair> faces[2];
-  for (int kind = 0; kind < 2; ++kind) {
-    cells[kind] = cpu::cells_of(kinds[kind]);
-    faces[kind] = pair_faces(kinds[kind]);
-  }
-  std::vector<cpu::Outline> outlines;
-  for (std::size_t i = 0; i < robots; ++i) outlines.push_back({cells[i % 2], kinds[i % 2].springs, faces[i % 2]});
-  std::set<std::size_t> seen;
-  std::size_t mixed = 0, small = 0;
-  for (const std::vector<std::size_t>& group : cpu::similar_groups(outlines, group_size)) {
-    EXPECT_LE(group.size(), group_size);
-    small += group.size() < group_size;
-    mixed += std::ranges::any_of(group, [&](std::size_t i) { return i % 2 != group.front() % 2; });
-    for (const std::size_t i : group) EXPECT_TRUE(seen.insert(i).second) << i;
-  }
-  EXPECT_EQ(seen.size(), robots);
-  EXPECT_LE(mixed, 1u);
-  EXPECT_LE(small, 2u);
-}
-
-TEST(Parties, SeatEveryMassSpringAndFaceOnce) {
-  const std::vector<Robot> robots = crowd(8);
-  std::vector<cpu::Body> bodies;
-  for (const Robot& robot : robots) bodies.push_back(cpu::make_body(robot, 8));
-  for (const cpu::Party& party : cpu::find_parties(bodies, 1, {})) {
-    const cpu::Build& build = *party.assembly.build;
-    std::vector<std::uint32_t> owners;
-    for (std::uint32_t seat = 0; seat < build.joints.size(); ++seat)
-      owners.insert(owners.end(), build.joints[seat].owned, seat);
-    for (std::size_t lane = 0; lane < party.bodies.size(); ++lane) {
-      const cpu::Body& body = bodies[party.bodies[lane]];
-      const auto& [seats, slots, faces] = *party.assembly.seatings[lane];
-      const auto distinct = [](const auto& values) { return std::set(values.begin(), values.end()).size(); };
-      EXPECT_EQ(distinct(seats), body.robot->masses.size());
-      EXPECT_EQ(distinct(slots), body.robot->springs.size());
-      EXPECT_EQ(distinct(faces), body.face_pairs.size());
-      for (std::size_t s = 0; s < slots.size(); ++s) {
-        const Spring& spring = body.robot->springs[s];
-        EXPECT_EQ(std::minmax(owners[slots[s]], build.partners[slots[s]]),
-                  std::minmax(seats[spring.a], seats[spring.b]));
-      }
-      for (std::size_t p = 0; p < faces.size(); ++p) {
-        const FacePair &own = body.face_pairs[p], &seat = build.faces[faces[p]];
-        EXPECT_TRUE(seat.a == seats[own.a] && seat.b == seats[own.b] && seat.c == seats[own.c] &&
-                    seat.d == seats[own.d]);
-      }
-    }
-  }
-}
-
-// The corners that a lane's half of a slot holds are those of its robot's pair of faces, also where two pairs share a
-// slot.
-TEST(Parties, PairsOfFacesThatShareASlotAreTheirRobotsOwn) {
-  for (const std::size_t lanes : {4u, 8u, 16u}) {
-    const std::vector<Robot> robots = crowd(lanes);
-    std::vector<cpu::Body> bodies;
-    for (const Robot& robot : robots) bodies.push_back(cpu::make_body(robot, lanes));
-    std::size_t shared = 0;
-    for (const cpu::Party& party : cpu::find_parties(bodies, 1, {})) {
-      const cpu::Lockstep group = cpu::make_lockstep(bodies, party.bodies, party.assembly, false);
-      shared += group.split_faces.size();
-      for (std::size_t lane = 0; lane < party.bodies.size(); ++lane) {
-        const cpu::Seating& seating = *group.seatings[lane];
-        const std::vector<FacePair>& pairs = bodies[party.bodies[lane]].face_pairs;
-        std::set<std::uint32_t> slots;
-        for (std::size_t p = 0; p < pairs.size(); ++p) {
-          const std::uint32_t slot = group.face_slots[seating.faces[p]];
-          EXPECT_TRUE(slots.insert(slot).second) << "two pairs of a robot in one slot";
-          std::array<std::uint32_t, 4> corners{};
-          if (slot < group.faces.size()) {
-            const auto& [a, b, c, d] = group.faces[slot];
-            corners = {a, b, c, d};
-          } else {
-            const auto& [a, b, c, d] = group.split_faces[slot - group.faces.size()];
-            const auto mine = [&](cpu::Lockstep::Halves seats) { return 2 * lane < lanes ? seats.lower : seats.upper; };
-            corners = {mine(a), mine(b), mine(c), mine(d)};
-          }
-          const auto start = [&](std::uint16_t mass) { return group.start_of(seating.seats[mass]); };
-          EXPECT_EQ(corners, (std::array{start(pairs[p].a), start(pairs[p].b), start(pairs[p].c), start(pairs[p].d)}));
-        }
-      }
-    }
-    EXPECT_EQ(shared > 0, lanes > 4) << lanes << " lanes";
-  }
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 // whether nvcc is compiling.
 //
 // An equation written in these names works for one float, and for a vector of floats whose type brings functions of the
-// same names (sim/cpu/lanes.h). Products and sums are fused only where multiply_add() or fnma() say so, and only on the
-// device: compiler options turn fusing off (-ffp-contract=off, --fmad=false). So every CPU rounds alike.
+// same names (sim/cpu/kernels/lanes.h). Products and sums are fused only where multiply_add() or fnma() say so, and
+// only on the device: compiler options turn fusing off (-ffp-contract=off, --fmad=false). So every CPU rounds alike.
 #pragma once
 
 #include <bit>

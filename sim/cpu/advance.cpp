@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/advance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "sim/cpu/grouping/cost_model.h"
+#include "sim/cpu/layout/scalar_forces.h"
+
+namespace mercury::cpu {
+namespace {
+
+// Factors of the bodies' materials. A body with the same table as the previous one has the same factors.
+class FactorCache {
+ public:
+  explicit FactorCache(Muscles& muscles) : muscles_(muscles) {}
+
+  const std::array<FactorId, max_materials>& factors_of(const Body& body) {
+    if (previous_ == nullptr || previous_->measures.used != body.measures.used ||
+        std::memcmp(previous_->materials.data(), body.materials.data(), max_materials * sizeof(Material)) != 0)
+      factors_ = muscles_.add(body.materials, body.measures.used);
+    previous_ = &body;
+    return factors_;
+  }
+
+ private:
+  Muscles& muscles_;
+  const Body* previous_ = nullptr;
+  std::array<FactorId, max_materials> factors_{};
+};
+
+void update_spring_parameters(WorkBatch& batch, std::span<Body> bodies, const AnyEnvironmentModel& model) {
+  batch.muscles = {};
+  FactorCache factor_cache(batch.muscles);
+  for (LockstepGroup& group : batch.groups) {
+    std::vector<std::array<FactorId, max_materials>> factors;
+    for (const std::size_t i : group.bodies) {
+      factors.push_back(factor_cache.factors_of(bodies[i]));
+      set_factors(bodies[i], factors.back());  // in case the group breaks up
+    }
+    if (!group.bodies.empty()) set_spring_parameters(group, bodies, model, factors);
+  }
+  for (const std::size_t i : batch.bodies) set_factors(bodies[i], factor_cache.factors_of(bodies[i]));
+  batch.spring_parameters_are_stale = false;
+}
+
+// Whether a velocity is so large that one more step could overflow to infinity or NaN, or is not finite already.
+bool could_overflow(const Body& body) {
+  constexpr float max_speed = 1e30f;  // [m/s]
+  for (std::size_t mass = 0; mass < body.slots.of_mass.size(); ++mass) {
+    const Vec3 v = body.velocity(mass);
+    if (!(std::abs(v.x) <= max_speed && std::abs(v.y) <= max_speed && std::abs(v.z) <= max_speed)) return true;
+  }
+  return false;
+}
+
+// Whether all members can be stepped in lockstep.
+bool is_ready(const LockstepGroup& group, std::span<Body> bodies) {
+  return std::ranges::all_of(group.bodies, [&](std::size_t i) {
+    Body& body = bodies[i];
+    return body.status.exploded_step < 0 && (!body.written || (!could_overflow(body) && accept_state(body)));
+  });
+}
+
+void break_up(LockstepGroup& group, WorkBatch& batch) {
+  store(group);
+  batch.bodies.insert(batch.bodies.end(), group.bodies.begin(), group.bodies.end());
+  group = {};
+}
+
+void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting, Factors factors, std::int64_t step,
+                   std::int64_t steps) {
+  if (body.status.exploded_step >= 0) return;
+  const std::int64_t done = body.written && !accept_state(body) ? 0 : kernel.advance(body, setting, factors, steps);
+  if (done < steps) explode(body, step + done);
+}
+
+}  // namespace
+
+std::size_t advance(const Kernel& kernel, WorkBatch& batch, std::span<Body> bodies, const StepSetting& setting,
+                    const Clock& clock, std::int64_t steps) {
+  if (batch.spring_parameters_are_stale) update_spring_parameters(batch, bodies, setting.model);
+  std::size_t broken_up = 0;
+  const auto break_up_counted = [&](LockstepGroup& group) {
+    break_up(group, batch);
+    ++broken_up;
+  };
+  for (LockstepGroup& group : batch.groups) {
+    if (group.bodies.empty()) continue;
+    if (!is_ready(group, bodies)) {
+      break_up_counted(group);
+      continue;
+    }
+    if (!group.holds_state()) load(group, bodies);
+    set_perturbations(group);
+  }
+  batch.muscles.move_to(clock);
+  const std::size_t muscles = batch.muscles.amplitude.size();
+  const std::int64_t at_once =
+      std::clamp(static_cast<std::int64_t>(limits.factors_at_once / muscles), std::int64_t{1}, limits.steps_at_once);
+  batch.factors.resize(static_cast<std::size_t>(std::min(steps, at_once)) * muscles);
+  for (std::int64_t done = 0; done < steps; done += at_once) {
+    const std::int64_t now = std::min(at_once, steps - done);
+    kernel.fill_factors(batch.muscles, batch.factors.data(), now);
+    const Factors factors{batch.factors.data(), muscles};
+    for (LockstepGroup& group : batch.groups) {
+      if (group.bodies.empty()) continue;
+      reset_padding(group, now);
+      make_checkpoint(group);
+      if (kernel.advance_group(group, setting, factors, now)) continue;
+      return_to_checkpoint(group);
+      break_up_counted(group);
+    }
+    for (const std::size_t i : batch.bodies) advance_alone(kernel, bodies[i], setting, factors, clock.step + done, now);
+  }
+  return broken_up;
+}
+
+void store(std::span<WorkBatch> batches) {
+  for (WorkBatch& batch : batches)
+    for (LockstepGroup& group : batch.groups) store(group);
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/grouping/group_plan.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "sim/cpu/grouping/cost_model.h"
+#include "sim/cpu/grouping/merged_topology.h"
+#include "sim/cpu/grouping/partition.h"
+
+namespace mercury::cpu {
+namespace {
+
+using Group = std::vector<std::size_t>;
+
+bool have_same_topology(const Body& a, const Body& b) {
+  return a.topology_key == b.topology_key && same_topology(*a.robot, *b.robot) && a.face_pairs == b.face_pairs;
+}
+
+// Takes groups of robots with the same topology from `left`, if at least three quarters of their lanes have a member.
+std::vector<Group> groups_of_same_topology(std::span<const Body> bodies, Group& left) {
+  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i].topology_key; });
+  std::vector<Group> groups;
+  Group others;
+  for (auto first = left.begin(); first != left.end();) {
+    const std::size_t lanes = bodies[*first].slots.lanes;
+    auto last = first + 1;
+    while (last != left.end() && static_cast<std::size_t>(last - first) < lanes &&
+           have_same_topology(bodies[*first], bodies[*last]))
+      ++last;
+    if (4 * static_cast<std::size_t>(last - first) >= 3 * lanes)
+      groups.emplace_back(first, last);
+    else
+      others.insert(others.end(), first, last);
+    first = last;
+  }
+  left = std::move(others);
+  return groups;
+}
+
+// Lattice cells by body and mass; empty for bodies that take part in no group of similar robots.
+using Patterns = std::vector<std::vector<LatticeCell>>;
+
+Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> wanted, bool faces) {
+  Patterns patterns(bodies.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t w) {
+    const std::vector<LatticeCell>& cells = bodies[wanted[w]].cells;
+    patterns[wanted[w]] = faces || cells.empty() ? cells : in_common_pose(cells);
+  });
+  return patterns;
+}
+
+std::vector<Group> groups_of_similar(std::span<const Body> bodies, const Patterns& patterns,
+                                     std::span<const std::size_t> left, bool faces) {
+  Group candidates;
+  std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
+  if (candidates.empty()) return {};
+  std::vector<RobotItems> robots;
+  for (const std::size_t i : candidates) {
+    robots.push_back({patterns[i], bodies[i].robot->springs, {}});
+    if (faces) robots.back().face_pairs = bodies[i].face_pairs;
+  }
+  std::vector<Group> groups = partition_by_similarity(robots, bodies[candidates.front()].slots.lanes);
+  for (Group& group : groups)
+    for (std::size_t& robot : group) robot = candidates[robot];
+  return groups;
+}
+
+GroupPlan plan_same_topology(std::span<const Body> bodies, Group group) {
+  const Body& first = bodies[group.front()];
+  std::vector<std::uint32_t> slots(first.robot->masses.size());
+  std::iota(slots.begin(), slots.end(), 0u);
+  const Member member{first.robot, first.face_pairs, slots};
+  GroupPlan plan{std::move(group), merge_topologies({&member, 1}, slots.size())};
+  plan.merged.index_maps.resize(plan.bodies.size(), plan.merged.index_maps.front());
+  return plan;
+}
+
+// Reorders members so that more face pairs are in one half of them only: two such pairs share a split face tile.
+void maximize_split_face_tiles(GroupPlan& plan) {
+  std::vector<std::shared_ptr<const IndexMap>>& index_maps = plan.merged.index_maps;
+  const std::size_t members = plan.bodies.size(), half = members / 2;
+  const auto split_tiles = [&] {
+    const auto [lower, upper] = half_face_pairs(plan.merged.topology->face_pairs.size(), index_maps);
+    return std::min(lower.size(), upper.size());
+  };
+  const auto exchange = [&](std::size_t i, std::size_t j) {
+    std::swap(index_maps[i], index_maps[j]);
+    std::swap(plan.bodies[i], plan.bodies[j]);
+  };
+  std::size_t most = split_tiles();
+  for (std::size_t i = 0; i < half; ++i)
+    for (std::size_t j = half; j < members; ++j) {
+      exchange(i, j);
+      if (const std::size_t now = split_tiles(); now > most)
+        most = now;
+      else
+        exchange(i, j);
+    }
+}
+
+std::size_t index_of(LatticeCell c) {
+  constexpr std::size_t across = max_cells_across;
+  return c.x + across * (c.y + across * std::size_t{c.z});
+}
+
+// Slots are the cells in which any member has a mass, in the order z, y, x.
+GroupPlan plan_similar(std::span<const Body> bodies, const Patterns& patterns, Group group) {
+  constexpr std::uint32_t none = 0xffffffffu;
+  std::vector<std::uint32_t> slot_of_cell(std::size_t{max_cells_across} * max_cells_across * max_cells_across, none);
+  for (const std::size_t i : group)
+    for (const LatticeCell c : patterns[i]) slot_of_cell[index_of(c)] = 0;
+  std::uint32_t slots = 0;
+  for (std::uint32_t& slot : slot_of_cell)
+    if (slot != none) slot = slots++;
+  std::vector<Member> members;
+  for (const std::size_t i : group) {
+    members.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
+    for (const LatticeCell c : patterns[i]) members.back().slots.push_back(slot_of_cell[index_of(c)]);
+  }
+  GroupPlan plan{std::move(group), merge_topologies(members, slots)};
+  if (bodies[plan.bodies.front()].slots.lanes >= min_lanes_to_split) maximize_split_face_tiles(plan);
+  return plan;
+}
+
+bool is_faster_than_alone(std::span<const Body> bodies, const GroupPlan& plan, bool faces) {
+  double alone = 0;
+  for (const std::size_t i : plan.bodies) alone += cost_alone(bodies[i], faces);
+  const Topology& topology = *plan.merged.topology;
+  return fits_in_cache(topology, bodies[plan.bodies.front()].slots.lanes) && cost_in_lockstep(topology, faces) < alone;
+}
+
+}  // namespace
+
+std::vector<GroupPlan> plan_lockstep_groups(std::span<const Body> bodies, std::size_t threads,
+                                            const Configuration& configuration) {
+  Group left;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (fits_in_group(bodies[i])) left.push_back(i);
+  const bool faces = std::holds_alternative<Ocean>(configuration.environment);
+  std::vector<Group> groups = groups_of_same_topology(bodies, left);
+  const std::size_t same = groups.size();
+  const Patterns patterns = patterns_of(bodies, left, faces);
+  std::ranges::move(groups_of_similar(bodies, patterns, left, faces), std::back_inserter(groups));
+  groups.resize(groups_worth_keeping(groups.size(), threads));
+
+  std::vector<GroupPlan> plans(groups.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+    plans[g] = g < same ? plan_same_topology(bodies, std::move(groups[g]))
+                        : plan_similar(bodies, patterns, std::move(groups[g]));
+    if (g >= same && !is_faster_than_alone(bodies, plans[g], faces)) plans[g] = {};
+  });
+  std::erase_if(plans, [](const GroupPlan& plan) { return plan.bodies.empty(); });
+  return plans;
+}
+
+}  // namespace mercury::cpu

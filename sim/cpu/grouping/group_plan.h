@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decides which robots step together as lockstep groups (layout/lockstep_group.h).
+//
+//   all bodies --> same topology? --> groups without padding
+//                      | no
+//                      v
+//                  similar cells? --> partition.h --> merged_topology.h --> cheaper than alone? --> groups
+//                      | no                                                     | no
+//                      v                                                        v
+//                    alone                                                    alone
+//
+// 1. Robots with the same topology fill all entries: any of them can step together.
+// 2. Other robots are compared by the lattice cells of their masses. They share the slot of a cell. Poses are made
+//    common first, unless faces give forces: the vertex order of a face pair depends on the pose, and pairs must match.
+// 3. A group is kept if the cost model says that it is faster than its members alone, and if it leaves no thread idle.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sim/cpu/layout/body.h"
+#include "sim/cpu/layout/topology.h"
+
+namespace mercury::cpu {
+
+struct GroupPlan {
+  std::vector<std::size_t> bodies;  // 1 to as many as there are lanes
+  MergedTopology merged;            // one index map per body
+};
+
+// Each body is in one plan at most; the others step alone.
+std::vector<GroupPlan> plan_lockstep_groups(std::span<const Body> bodies, std::size_t threads,
+                                            const Configuration& configuration);
+
+}  // namespace mercury::cpu

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/grouping/partition.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "sim/cpu/grouping/cost_model.h"
+
+namespace mercury::cpu {
+namespace {
+
+using Group = std::vector<std::size_t>;
+using Word = std::uint64_t;
+
+std::uint32_t index_of(LatticeCell c) {
+  return static_cast<std::uint32_t>(c.x + max_cells_across * (c.y + max_cells_across * c.z));
+}
+
+// The robots' sets: bits of cells, then of springs, then of face pairs.
+class ItemSets {
+ public:
+  explicit ItemSets(std::span<const RobotItems> robots, std::span<const std::size_t> members) {
+    std::size_t all_cells = 0, all_springs = 0;
+    for (const std::size_t i : members) {
+      const auto& [cells, springs, face_pairs] = robots[i];
+      all_cells += cells.size();
+      all_springs += springs.size();
+      costs_.push_back(costs.slot * static_cast<double>(cells.size()) +
+                       costs.entry * static_cast<double>(springs.size()) +
+                       costs.face_pair * static_cast<double>(face_pairs.size()));
+    }
+    const bool few_springs = all_springs <= limits.springs_per_robot * members.size();
+    cell_cost_ = costs.slot +
+                 (few_springs ? 0 : costs.entry * static_cast<double>(all_springs) / static_cast<double>(all_cells));
+    std::vector<Item> cells, springs, pairs;
+    for (std::uint32_t m = 0; m < members.size(); ++m)
+      append_items(robots[members[m]], m, few_springs, cells, springs, pairs);
+    const auto words_of = [](std::vector<Item>& items) { return (sort_and_count_common(items) + 63) / 64; };
+    springs_start_ = words_of(cells);
+    pairs_start_ = springs_start_ + words_of(springs);
+    words_ = pairs_start_ + words_of(pairs);
+    bits_.resize(words_ * members.size());
+    set_bits(cells, 0);
+    set_bits(springs, springs_start_);
+    set_bits(pairs, pairs_start_);
+  }
+
+  std::size_t words() const { return words_; }
+  const Word* of(std::size_t robot) const { return bits_.data() + words_ * robot; }
+  double cost(std::size_t robot) const { return costs_[robot]; }
+  // What a robot adds to the cost of a union.
+  double added(const Word* to, const Word* robot) const {
+    const auto new_items = [&](std::size_t first, std::size_t last) {
+      int count = 0;
+      for (std::size_t w = first; w < last; ++w) count += std::popcount(robot[w] & ~to[w]);
+      return count;
+    };
+    return cell_cost_ * new_items(0, springs_start_) + costs.entry * new_items(springs_start_, pairs_start_) +
+           costs.face_pair * new_items(pairs_start_, words_);
+  }
+  void unite(Word* with, const Word* robot) const {
+    for (std::size_t w = 0; w < words_; ++w) with[w] |= robot[w];
+  }
+
+ private:
+  struct Item {
+    std::uint64_t key;
+    std::uint32_t robot;
+  };
+
+  static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs, std::vector<Item>& cells,
+                           std::vector<Item>& springs, std::vector<Item>& pairs) {
+    const auto index = [&](std::uint16_t mass) { return std::uint64_t{index_of(items.cells[mass])}; };
+    for (const LatticeCell c : items.cells) cells.push_back({index_of(c), robot});
+    if (with_springs)
+      for (const Spring& spring : items.springs) {
+        const auto [low, high] = std::minmax({index(spring.a), index(spring.b)});
+        springs.push_back({low << 16 | high, robot});
+      }
+    for (const auto& [a, b, c, d] : items.face_pairs)
+      pairs.push_back({((index(a) << 16 | index(b)) << 16 | index(c)) << 16 | index(d), robot});
+  }
+
+  // Calls visit(number, first, last) for the items of each key that several robots have.
+  template <class Visit>
+  static void for_each_common(const std::vector<Item>& items, const Visit& visit) {
+    std::size_t number = 0;
+    for (auto first = items.begin(); first != items.end() && number < limits.items_distinguished;) {
+      const auto last = std::find_if(first, items.end(), [&](const Item& item) { return item.key != first->key; });
+      if (last - first > 1) visit(number++, first, last);
+      first = last;
+    }
+  }
+  static std::size_t sort_and_count_common(std::vector<Item>& items) {
+    std::ranges::sort(items, {}, &Item::key);
+    std::size_t count = 0;
+    for_each_common(items, [&](std::size_t, auto, auto) { ++count; });
+    return count;
+  }
+  void set_bits(const std::vector<Item>& items, std::size_t first_word) {
+    for_each_common(items, [&](std::size_t number, auto first, auto last) {
+      for (; first != last; ++first) bits_[words_ * first->robot + first_word + number / 64] |= Word{1} << number % 64;
+    });
+  }
+
+  std::size_t springs_start_ = 0, pairs_start_ = 0, words_ = 0;
+  double cell_cost_ = 0;
+  std::vector<Word> bits_;
+  std::vector<double> costs_;
+};
+
+// Robots are sorted by size, largest first. Each group takes candidates from the next in size.
+std::vector<Group> greedy_groups(const ItemSets& sets, std::size_t robots, std::size_t group_size) {
+  Group left(robots);
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  std::vector<Group> groups;
+  while (!left.empty()) {
+    std::vector<Word> all_items(sets.words());
+    Group group;
+    const auto take = [&](Group::iterator chosen) {
+      sets.unite(all_items.data(), sets.of(*chosen));
+      group.push_back(*chosen);
+      left.erase(chosen);
+    };
+    const auto price = [&](std::size_t robot) {
+      return sets.added(all_items.data(), sets.of(robot)) - costs.worth_of_size * sets.cost(robot);
+    };
+    take(left.begin());
+    while (group.size() < group_size && !left.empty()) {
+      const auto end = left.begin() + static_cast<std::ptrdiff_t>(std::min(limits.candidates_compared, left.size()));
+      auto best = left.begin();
+      double least = std::numeric_limits<double>::infinity();
+      for (auto i = left.begin(); i != end; ++i)
+        if (const double p = price(*i); p < least) {
+          least = p;
+          best = i;
+        }
+      take(best);
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+class Exchange {
+ public:
+  Exchange(const ItemSets& sets, std::vector<Group>& groups)
+      : sets_(sets), groups_(groups), others_(groups.size()), own_(groups.size()) {
+    for (std::size_t g = 0; g < groups.size(); ++g) update(g);
+  }
+
+  void run() {
+    for (int round = 0; round < limits.exchange_rounds; ++round) {
+      bool any = false;
+      for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (std::size_t i = 0; i < groups_[g].size(); ++i) any |= exchange(g, i);
+      if (!any) return;
+    }
+  }
+
+ private:
+  // Exchanges member i of group g for the member of the next groups that gains most, if one does.
+  bool exchange(std::size_t g, std::size_t i) {
+    double most = costs.min_gain;
+    std::size_t best_group = 0, best = 0;
+    const Word* const mine = sets_.of(groups_[g][i]);
+    for (std::size_t h = g + 1; h < std::min(groups_.size(), g + 1 + limits.groups_in_reach); ++h)
+      for (std::size_t j = 0; j < groups_[h].size(); ++j) {
+        double gain = own_[g][i] + own_[h][j];
+        if (gain <= most) continue;
+        gain -= sets_.added(others(g, i), sets_.of(groups_[h][j]));
+        if (gain <= most) continue;
+        gain -= sets_.added(others(h, j), mine);
+        if (gain <= most) continue;
+        most = gain;
+        best_group = h;
+        best = j;
+      }
+    if (most == costs.min_gain) return false;
+    std::swap(groups_[g][i], groups_[best_group][best]);
+    update(g);
+    update(best_group);
+    return true;
+  }
+
+  void update(std::size_t g) {
+    const Group& group = groups_[g];
+    others_[g].assign(group.size() * sets_.words(), 0);
+    own_[g].resize(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      for (std::size_t j = 0; j < group.size(); ++j)
+        if (j != i) sets_.unite(others_[g].data() + i * sets_.words(), sets_.of(group[j]));
+      own_[g][i] = sets_.added(others(g, i), sets_.of(group[i]));
+    }
+  }
+  const Word* others(std::size_t g, std::size_t i) const { return others_[g].data() + i * sets_.words(); }
+
+  const ItemSets& sets_;
+  std::vector<Group>& groups_;
+  std::vector<std::vector<Word>> others_;  // by group and member: the union of the other members
+  std::vector<std::vector<double>> own_;   // by group and member: what it adds to that union
+};
+
+std::vector<Group> groups_of(std::span<const RobotItems> robots, std::span<const std::size_t> members,
+                             std::size_t group_size) {
+  const ItemSets sets(robots, members);
+  std::vector<Group> groups = greedy_groups(sets, members.size(), group_size);
+  Exchange(sets, groups).run();
+  for (Group& group : groups)
+    for (std::size_t& robot : group) robot = members[robot];
+  return groups;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> partition_by_similarity(std::span<const RobotItems> robots,
+                                                              std::size_t group_size) {
+  Group by_size(robots.size());
+  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
+  std::ranges::stable_sort(by_size, std::greater{}, [&](std::size_t i) { return robots[i].cells.size(); });
+  std::vector<std::vector<Group>> parts((robots.size() + limits.robots_compared - 1) / limits.robots_compared);
+  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    const std::span<const std::size_t> members = std::span(by_size).subspan(p * limits.robots_compared);
+    parts[p] = groups_of(robots, members.first(std::min(limits.robots_compared, members.size())), group_size);
+  });
+  std::vector<Group> groups;
+  for (std::vector<Group>& part : parts) std::ranges::move(part, std::back_inserter(groups));
+  return groups;
+}
+
+}  // namespace mercury::cpu

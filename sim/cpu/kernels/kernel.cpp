@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/kernels/kernel.h"
+
+#include <hwy/targets.h>
+
+#include <vector>
+
+#include "sim/cpu/kernels/kernel_list.h"
+
+namespace mercury::cpu {
+namespace {
+
+std::vector<Kernel> usable_kernels() {
+  std::vector<Kernel> usable;
+#if HWY_ARCH_X86
+  const std::int64_t supported = hwy::SupportedTargets();
+  if ((supported & HWY_AVX3) != 0) usable.push_back(avx512_kernel);
+  if ((supported & HWY_AVX2) != 0) usable.push_back(avx2_kernel);
+  if ((supported & HWY_SSE4) != 0) usable.push_back(sse4_kernel);
+#elif HWY_ARCH_ARM_A64
+  usable.push_back(neon_kernel);
+#endif
+  usable.push_back(portable_kernel);
+  return usable;
+}
+
+}  // namespace
+
+std::span<const Kernel> kernels() {
+  static const std::vector<Kernel> usable = usable_kernels();
+  return usable;
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The step of robots, compiled once per instruction set. All kernels give the same bits.
+//
+//   kernel_avx2.cpp ...    one file per instruction set: sets HWY_TARGET and includes the rest
+//     lanes.h              vectors that compute as floats do
+//     gather.h             masses in any slots
+//     body_stepper.h       a robot alone       spring_rows.h, face_tiles.h, motion.h, near_search.h
+//     lockstep_stepper.h   a lockstep group
+//     muscle_factors.h     all muscles
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "sim/cpu/layout/lockstep_group.h"
+#include "sim/cpu/layout/muscles.h"
+#include "sim/cpu/layout/step_setting.h"
+
+namespace mercury::cpu {
+
+struct Kernel {
+  std::string_view name;  // "AVX2"
+  std::size_t lanes;      // bodies must have been made for this number
+
+  // Computes L(t) / L0 of all muscles at the next steps, factors[step][muscles.amplitude.size()], and moves the
+  // muscles' phases on by these steps.
+  void (*fill_factors)(Muscles& muscles, float* factors, std::int64_t steps);
+
+  // Advances a body that has not exploded. Returns the number of complete steps; if it is less than `steps`, the body
+  // exploded in the step after them.
+  std::int64_t (*advance)(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps);
+
+  // Advances a group. Returns false if a member may have exploded on the way; the group's state is then undefined.
+  bool (*advance_group)(LockstepGroup& group, const StepSetting& setting, Factors factors, std::int64_t steps);
+};
+
+// The kernels that this machine can run, fastest first. The last one is portable.
+std::span<const Kernel> kernels();
+
+}  // namespace mercury::cpu

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// How masses move once the sums of what acts on them are complete.
+#pragma once
+
+#include "sim/cpu/kernels/body_arrays.h"
+#include "sim/cpu/layout/step_setting.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mercury::cpu::HWY_NAMESPACE {
+
+// The smallest box around the masses that were added.
+struct Box {
+  Lanes3 low, high;
+
+  HWY_INLINE Box() : low{3e38f, 3e38f, 3e38f}, high{-3e38f, -3e38f, -3e38f} {}
+  HWY_INLINE void add(Lanes3 x) {
+    low = {smaller(low.x, x.x), smaller(low.y, x.y), smaller(low.z, x.z)};
+    high = {larger(high.x, x.x), larger(high.y, x.y), larger(high.z, x.z)};
+  }
+  // Of all lanes together. Rounded like the length of a spring, so that no spring in the box can come out longer.
+  HWY_INLINE float squared_diagonal() const {
+    return squared_length(
+        Vec3{largest(high.x) - smallest(low.x), largest(high.y) - smallest(low.y), largest(high.z) - smallest(low.z)});
+  }
+};
+
+// Notes a mass that left the finite. Returns false if the slot is padding.
+inline bool note_bad_mass(Body& body, std::size_t slot) {
+  const std::uint32_t mass = body.slots.mass_at[slot];
+  body.status.bad_mass = std::min(body.status.bad_mass, mass);
+  return mass != no_mass;
+}
+
+// The velocity before damping. `sum` counts units of `per_unit` newtons, a power of two: multiplying by it is exact, so
+// it does not matter when that happens.
+template <class EnvironmentModel>
+HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const EnvironmentModel& model,
+                                 const StepConstants& constants) {
+  if constexpr (EnvironmentModel::still_water) return multiply_add(constants.dt * per_unit, float_of(sum), v);
+  return accelerated(v, per_unit * float_of(sum) + model.on_mass(v), constants);
+}
+
+// Calls call(model) with the environment's model, or with StillWaterOceanModel where that gives the same bits faster.
+template <class Call>
+HWY_INLINE auto with_model(const StepSetting& setting, const Call& call) {
+  constexpr float min_dt = 1e-6f;  // [s]; below, dt times a unit of force may not be exact
+  const auto* const ocean = std::get_if<OceanModel>(&setting.model);
+  if (ocean != nullptr && StillWaterOceanModel::fits(*ocean) && setting.constants.dt >= min_dt)
+    return call(StillWaterOceanModel{*ocean});
+  return std::visit(call, setting.model);
+}
+
+// One phase of a body's step, tile by tile.
+template <class EnvironmentModel, bool gathered_springs>
+class Motion {
+ public:
+  static constexpr bool needs_aos = EnvironmentModel::has_faces || gathered_springs;
+
+  // `scale`: units per newton, or per metre for corrections.
+  HWY_INLINE Motion(Body& body, const EnvironmentModel& model, const StepConstants& constants, float scale)
+      : body_(body), arrays_(body), model_(model), constants_(constants), inverse_scale_(1 / scale), box_() {}
+
+  // Algorithm 1: the end of the step.
+  HWY_INLINE void end_with_forces(std::size_t slot) {
+    const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
+    Lanes3 v = accelerated_by(take<true>(slot), inverse_scale_, v0, model_, constants_);
+    Lanes3 x = multiply_add(constants_.dt, v, x0);
+    end_step(x, v, model_, constants_);
+    store_state(x, v, x0, v0, slot);
+    box_.add(x);
+    store_aos_of(x, v, slot);
+  }
+
+  // Algorithm 2: replaces the position by the prediction and the velocity by v + dt F.
+  HWY_INLINE void predict(std::size_t slot) {
+    const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
+    Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, v0, model_, constants_);
+    Lanes3 x = multiply_add(constants_.dt, v, x0);
+    store_state(x, v, x0, v0, slot);
+    box_.add(x);
+    if constexpr (gathered_springs) arrays_.store_x_aos(x, slot);
+  }
+  // Algorithm 2: the end of the step, after a prediction.
+  HWY_INLINE void end_with_corrections(std::size_t slot) {
+    const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
+    const Lanes3 correction = Lanes(inverse_scale_) * float_of(take<true>(slot));
+    Lanes3 x = x0 + correction;
+    Lanes3 v = multiply_add(constants_.inverse_dt, correction, v0);
+    end_step(x, v, model_, constants_);
+    store_state(x, v, x0, v0, slot);
+    box_.add(x);
+    store_aos_of(x, v, slot);
+  }
+
+  // Of all masses moved so far: whether they are within reach, and the box around them.
+  bool is_finite() const { return is_finite_; }
+  HWY_INLINE float squared_diagonal() const { return box_.squared_diagonal(); }
+
+ private:
+  template <bool springs>
+  HWY_INLINE Integers3 take(std::size_t slot) const {
+    return arrays_.template take<springs, needs_aos>(slot);
+  }
+
+  // Stores the new state of masses that are within reach. The others keep the old one, and the robot has exploded.
+  HWY_INLINE void store_state(Lanes3& x, Lanes3& v, Lanes3 x0, Lanes3 v0, std::size_t slot) {
+    const Mask good = within_reach(x);
+    if (HWY_UNLIKELY(!every(good))) {
+      x = select(good, x, x0);
+      v = select(good, v, v0);
+      const std::uint32_t lanes = bits_of(good);
+      for (std::size_t lane = 0; lane < lane_count; ++lane)
+        if ((lanes >> lane & 1) == 0 && note_bad_mass(body_, slot + lane)) is_finite_ = false;
+    }
+    store_aligned(x, arrays_.x, slot);
+    store_aligned(v, arrays_.v, slot);
+  }
+
+  HWY_INLINE void store_aos_of(Lanes3 x, Lanes3 v, std::size_t slot) const {
+    if constexpr (needs_aos) arrays_.store_x_aos(x, slot);
+    if constexpr (EnvironmentModel::has_faces) arrays_.store_v_aos(v, slot);
+  }
+
+  Body& body_;
+  const BodyArrays arrays_;
+  const EnvironmentModel model_;
+  const StepConstants constants_;
+  const float inverse_scale_;
+  Box box_;
+  bool is_finite_ = true;
+};
+
+}  // namespace mercury::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

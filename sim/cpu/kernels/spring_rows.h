@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evaluates the springs of a body, row by row (layout/spring_schedule.h).
+#pragma once
+
+#include "sim/cpu/kernels/body_arrays.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mercury::cpu::HWY_NAMESPACE {
+
+// Reads the springs of one row after the other. The same equation serves both solvers: XPBD's stiffness is
+// xpbd_stiffness().
+template <bool checked>
+struct SpringRow {
+  const float* factors;
+  const float* rest_length;
+  const float* stiffness;
+  const FactorId* factor;
+  Lanes longest_squared;  // of all springs so far, if `checked`
+
+  // What the next row's springs add to their partners, in units, plus rounding_magic_bits. `d` points from partner to
+  // owner. Moves on to the row after it.
+  HWY_INLINE Integers3 operator()(Lanes3 d) {
+    const Lanes squared = squared_length(d);
+    const Lanes rest = load_aligned(rest_length);
+    const Mask is_spring = rest > 0.0f;
+    if constexpr (checked) longest_squared = select((squared > longest_squared) & is_spring, squared, longest_squared);
+    const Lanes length = rest * look_up(factors, factor, is_spring);
+    const Lanes per_distance = hooke(squared, length, load_aligned(stiffness));
+    rest_length += lane_count;
+    stiffness += lane_count;
+    factor += lane_count;
+    return {to_fixed_plus_magic(per_distance, d.x), to_fixed_plus_magic(per_distance, d.y),
+            to_fixed_plus_magic(per_distance, d.z)};
+  }
+};
+
+// Adds all springs' contributions to the sums. If `checked`, returns false if a spring is beyond the stretch limit.
+//
+// Calls finish(first slot) once for each tile whose sums are complete and whose positions no spring reads any more.
+// That is one tile behind the springs, so that the sums have left the store buffer when they are read. With gathered
+// rows, whose partners are in any tile, it is after all springs; so it is if `checked`, since no mass may move before
+// all springs have passed.
+template <bool checked, bool gathered_springs, class Finish>
+bool add_springs(Body& body, const float* factors, const Finish& finish) {
+  constexpr bool finish_early = !checked && !gathered_springs;
+  const BodyArrays arrays(body);
+  const SpringSchedule& schedule = body.springs;
+  SpringRow<checked> next_row{factors, schedule.rest_length.data(), schedule.stiffness.data(), schedule.factor.data(),
+                              0.0f};
+  const Run* run = schedule.runs.data();
+  const std::uint32_t* partners = schedule.partners.data();
+  std::size_t slot = 0;
+  for (const auto& [runs, gathered_rows] : schedule.tiles) {
+    const Lanes3 own = load_aligned(arrays.x, slot);
+    Integers3 sum{zeros(), zeros(), zeros()};
+    for (const Run* const end = run + runs; run != end; ++run) {
+      const auto [partner, reaction] = *run;
+      const Integers3 f = next_row(own - load(arrays.x, partner));
+      sum = sum - f;
+      add(f, arrays.reaction, reaction);
+    }
+    for (const std::uint32_t* const end = partners + (gathered_springs ? gathered_rows * lane_count : 0);
+         partners != end; partners += lane_count) {
+      const Integers3 f = next_row(own - components(gather(arrays.x_aos, partners)));
+      sum = sum - f;
+      scatter_add(f, arrays.scattered, partners);
+    }
+    store_aligned(sum, arrays.own, slot);
+    if (finish_early && slot > 0) finish(slot - lane_count);
+    slot += lane_count;
+  }
+  if constexpr (finish_early) {
+    finish(slot - lane_count);
+    return true;
+  }
+  if (checked && !(largest(next_row.longest_squared) <= body.measures.squared_stretch_limit())) return false;
+  for (std::size_t first = 0; first < slot; first += lane_count) finish(first);
+  return true;
+}
+
+}  // namespace mercury::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

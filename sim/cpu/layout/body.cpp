@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/layout/body.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mercury/telemetry.h"
+#include "sim/physics/springs.h"
+
+namespace mercury::cpu {
+
+Body make_body(const Robot& robot, std::size_t lanes) {
+  Body body;
+  body.robot = &robot;
+  body.measures = measure(robot);
+  body.slots = assign_slots(robot, lanes);
+  body.topology_key = topology_key(robot);
+  body.springs = schedule_springs(robot, body.slots);
+  body.face_pairs = pair_faces(robot);
+  body.face_tiles = tile_faces(body.face_pairs, body.slots);
+  body.cells = lattice_cells_of(robot);
+  body.near_pairs = NearPairs(robot, body.slots);
+  body.materials.assign(max_materials, {});
+  std::ranges::copy(materials_of(robot), body.materials.begin());
+  const std::size_t size = body.slots.size_with_spare();
+  body.x.assign(size, 0);
+  body.v.assign(size, 0);
+  body.sums.own.assign(size, 0);
+  body.sums.reaction.assign(reaction_arrays * size, 0);
+  body.sums.scattered.assign(4 * size, 0);
+  body.sums.taken.assign(size, 0);
+  body.x_aos.assign(4 * size, 0);
+  body.v_aos.assign(4 * size, 0);
+  return body;
+}
+
+void clear(Sums& sums) {
+  for (Triples<std::int32_t>* triples : {&sums.own, &sums.reaction, &sums.taken}) {
+    std::ranges::fill(triples->x, 0);
+    std::ranges::fill(triples->y, 0);
+    std::ranges::fill(triples->z, 0);
+  }
+  std::ranges::fill(sums.scattered, 0);
+}
+
+void update_spring_parameters(Body& body, const Configuration& configuration) {
+  const Robot& robot = *body.robot;
+  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
+  const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
+  const bool force = configuration.solver == Solver::force;
+  std::array<float, max_materials> coefficient;  // by material: stiffness (force solver) or compliance (XPBD), in units
+  for (std::size_t id = 0; id < max_materials; ++id) {
+    const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
+    coefficient[id] =
+        force ? static_cast<float>(stiffness) * body.scale.force
+              : static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / body.scale.correction;
+  }
+  coefficient[air] = force ? 0 : std::numeric_limits<float>::infinity();
+
+  const std::vector<std::uint32_t> valence = valences(robot);
+  const float per_scale = 1 / body.scale.correction;
+  body.stiffness.resize(robot.springs.size());
+  for (std::size_t s = 0; s < robot.springs.size(); ++s) {
+    const Spring& spring = robot.springs[s];
+    const auto valence_sum = static_cast<float>(valence[spring.a] + valence[spring.b]);
+    body.stiffness[s] =
+        force ? coefficient[spring.material] : xpbd_stiffness(valence_sum * per_scale, coefficient[spring.material]);
+  }
+  SpringSchedule& springs = body.springs;
+  for (std::size_t i = 0; i < springs.stiffness.size(); ++i)
+    springs.stiffness[i] = springs.spring[i] == no_spring ? 0 : body.stiffness[springs.spring[i]];
+}
+
+void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {
+  SpringSchedule& springs = body.springs;
+  for (std::size_t i = 0; i < springs.factor.size(); ++i)
+    springs.factor[i] =
+        springs.spring[i] == no_spring ? FactorId{0} : factors[body.robot->springs[springs.spring[i]].material];
+}
+
+void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  const auto set = [](Triples<float>& values, std::size_t slot, Vec3 value) {
+    values.x[slot] = value.x;
+    values.y[slot] = value.y;
+    values.z[slot] = value.z;
+  };
+  for (std::size_t mass = 0; mass < positions.size(); ++mass) set(body.x, body.slots.of_mass[mass], positions[mass]);
+  for (std::size_t mass = 0; mass < velocities.size(); ++mass) set(body.v, body.slots.of_mass[mass], velocities[mass]);
+  for (const std::uint32_t slot : body.slots.padding) {
+    set(body.x, slot, positions[0]);
+    set(body.v, slot, {});
+  }
+  body.squared_diagonal = std::numeric_limits<float>::infinity();
+  body.aos_is_current = false;
+  body.written = true;
+  body.near_pairs.forget();
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// One robot as the CPU steps it alone: structure of arrays, so that a vector holds the same quantity of a tile's
+// masses.
+//
+// Fixed-point sums. What acts on a mass is summed as 32-bit integers (sim/physics/fixed_point.h), so that a sum does
+// not depend on the order of its terms. A slot has four sums, each filled by another part of the step:
+//
+//   own         springs that the mass owns                                              stored once per step
+//   reaction    runs in which it is the partner, perturbations, contacts                reaction_arrays arrays in turn
+//   scattered   gathered rows in which it is the partner, faces                         x, y, z, unused: 16 bytes a
+//   slot taken       reaction + scattered when they were last read
+//
+//   force = own + reaction[0] + reaction[1] + scattered - taken + bias
+//
+// 1. Nothing is set to zero. `reaction` and `scattered` only grow, and wrap around; the difference to `taken` is what
+//    this step has added.
+// 2. Springs are rounded by adding a magic number, which leaves rounding_magic_bits in every integer. Subtracting it
+//    from each would cost three instructions per row. It stays in the sums instead, and SpringSchedule::bias takes out
+//    all that a slot receives in one step.
+// 3. Partners that stand anywhere are one access of 16 bytes in an array of structures (aos), instead of three of four
+//    bytes. Positions and velocities have such copies as well; they are maintained only if faces or gathered rows need
+//    them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "mercury/backend.h"
+#include "sim/cpu/layout/aligned.h"
+#include "sim/cpu/layout/lattice_cells.h"
+#include "sim/cpu/layout/near_pairs.h"
+#include "sim/cpu/layout/slots.h"
+#include "sim/cpu/layout/spring_schedule.h"
+#include "sim/physics/measures.h"
+
+namespace mercury::cpu {
+
+// x, y and z by slot.
+template <class T>
+struct Triples {
+  Aligned<T> x, y, z;
+  void assign(std::size_t n, T value) {
+    x.assign(n, value);
+    y.assign(n, value);
+    z.assign(n, value);
+  }
+};
+
+// In units of FixedPointScale; see above.
+struct Sums {
+  Triples<std::int32_t> own;
+  Triples<std::int32_t> reaction;  // reaction_arrays arrays, one after the other
+  Aligned<std::int32_t> scattered;
+  Triples<std::int32_t> taken;
+  bool with_scattered = false;  // whether `taken` includes `scattered`
+};
+void clear(Sums& sums);
+
+struct LockstepGroup;
+
+// Where the state of a body is while a lockstep group holds it.
+struct StateLocation {
+  LockstepGroup* group = nullptr;          // nullptr = in the body itself
+  const float *x = nullptr, *v = nullptr;  // [slot of the group][x, y, z][lane], from the body's lane on
+  const std::uint32_t* slots = nullptr;    // by mass
+  std::size_t lanes = 1;
+
+  Vec3 at(const float* values, std::size_t mass) const {
+    const float* const first = values + 3 * lanes * slots[mass];
+    return {first[0], first[lanes], first[2 * lanes]};
+  }
+};
+
+struct Body {
+  const Robot* robot = nullptr;
+  RobotMeasures measures;
+  std::uint64_t topology_key = 0;  // mercury/robot.h
+  std::vector<FacePair> face_pairs;
+  std::vector<LatticeCell> cells;
+  Slots slots;
+  SpringSchedule springs;
+  std::vector<std::uint32_t> face_tiles;  // tile_faces()
+  NearPairs near_pairs;
+  std::vector<Material> materials;  // max_materials elements
+  FixedPointScale scale;
+  // By spring, in units: k of the force solver, or xpbd_stiffness(). 0 for springs of air.
+  std::vector<float> stiffness;
+
+  StateLocation location;       // while a group holds the state, x and v are undefined
+  Triples<float> x, v;          // between XPBD's prediction and correction: the prediction and v + dt F
+  Aligned<float> x_aos, v_aos;  // [slot][x, y, z, unused]
+  Sums sums;
+
+  float squared_diagonal = std::numeric_limits<float>::infinity();  // of the box around all masses [m2], if known
+  bool aos_is_current = false;                                      // x_aos and v_aos
+  bool written = true;                                              // the caller set the state, perhaps out of reach
+  RobotStatus status;
+  std::vector<Perturbation> perturbations;
+
+  Vec3 position(std::size_t mass) const {
+    return location.group ? location.at(location.x, mass) : at(x, slots.of_mass[mass]);
+  }
+  Vec3 velocity(std::size_t mass) const {
+    return location.group ? location.at(location.v, mass) : at(v, slots.of_mass[mass]);
+  }
+  static Vec3 at(const Triples<float>& values, std::size_t slot) {
+    return {values.x[slot], values.y[slot], values.z[slot]};
+  }
+};
+
+// A body for kernels of this number of lanes, without a state.
+Body make_body(const Robot& robot, std::size_t lanes);
+
+// Computes what depends on materials and configuration.
+void update_spring_parameters(Body& body, const Configuration& configuration);
+
+// Sets which factor each spring reads, by material.
+void set_factors(Body& body, const std::array<FactorId, max_materials>& factors);
+
+// No group may hold the body's state.
+void set_state(Body& body, std::span<const Vec3> positions, std::span<const Vec3> velocities);
+
+}  // namespace mercury::cpu

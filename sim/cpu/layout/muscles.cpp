@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/layout/muscles.h"
+
+#include <algorithm>
+
+namespace mercury::cpu {
+namespace {
+
+constexpr std::size_t max_lanes = 16;
+
+}  // namespace
+
+Muscles::Muscles() {
+  movements_.push_back({});
+  factor_of_.emplace(Movement{0, 0, 0}, FactorId{0});
+}
+
+std::array<FactorId, max_materials> Muscles::add(std::span<const Material> table,
+                                                 const std::array<bool, max_materials>& wanted) {
+  std::array<FactorId, max_materials> factors{};
+  for (std::size_t id = 0; id < max_materials; ++id) {
+    if (!wanted[id]) continue;
+    const Material& m = table[id];
+    const Movement movement = m.amplitude == 0 ? Movement{0, 0, 0} : Movement{m.amplitude, m.frequency, m.phase};
+    const auto [found, is_new] = factor_of_.emplace(movement, static_cast<FactorId>(movements_.size()));
+    if (is_new) {
+      movements_.push_back(m);
+      current_ = false;
+    }
+    factors[id] = found->second;
+  }
+  return factors;
+}
+
+void Muscles::move_to(const Clock& clock) {
+  const bool goes_on = current_ && clock.dt == clock_.dt && clock.base_time == clock_.base_time &&
+                       clock.base_step == clock_.base_step && clock.step == step;
+  if (goes_on) return;
+  clock_ = clock;
+  step = clock.step;
+  current_ = true;
+  const std::size_t padded = (size() + max_lanes - 1) / max_lanes * max_lanes;
+  amplitude.assign(padded, 0);
+  phase.assign(padded, 0);
+  per_step.assign(padded, 0);
+  for (std::size_t i = 0; i < size(); ++i) {
+    const MusclePhase muscle = muscle_phase(movements_[i], clock);
+    amplitude[i] = movements_[i].amplitude;
+    phase[i] = phase_at(muscle, clock.step - clock.base_step);
+    per_step[i] = muscle.per_step;
+  }
+}
+
+}  // namespace mercury::cpu

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cpu/layout/spring_schedule.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "mercury/telemetry.h"
+#include "sim/physics/fixed_point.h"
+
+namespace mercury::cpu {
+namespace {
+
+struct Link {
+  std::uint32_t owner, partner;  // slots
+  std::uint32_t spring;
+};
+
+// What a step of one robot costs, in runs.
+constexpr double gathered_row_cost = 2.5;
+constexpr double aos_cost_per_tile = 1.5;  // of keeping x_aos, which only gathered rows need
+// The part of a gathered row's lanes that have a spring, about.
+constexpr double gathered_row_fill = 0.9;
+
+class Scheduler {
+ public:
+  Scheduler(const Robot& robot, const Slots& slots) : robot_(robot), slots_(slots), lanes_(slots.lanes) {
+    find_runs();
+    choose_runs();
+    balance_owners();
+    schedule_.tiles.resize(slots.tiles());
+    schedule_.bias.assign(slots.size_with_spare(), 0);
+    for (std::uint32_t tile = 0; tile < slots.tiles(); ++tile) {
+      append_runs(tile);
+      append_gathered_rows(tile);
+    }
+    schedule_.stiffness.resize(schedule_.rest_length.size());
+    schedule_.factor.resize(schedule_.rest_length.size());
+  }
+
+  SpringSchedule take() { return std::move(schedule_); }
+
+ private:
+  std::uint32_t tile_of(std::uint32_t slot) const { return slot / static_cast<std::uint32_t>(lanes_); }
+  std::size_t lane_of(std::uint32_t slot) const { return slot % lanes_; }
+
+  // Springs of one tile with the same distance from owner slot to partner slot could form a run.
+  void find_runs() {
+    links_.reserve(robot_.springs.size());
+    for (std::uint32_t s = 0; s < robot_.springs.size(); ++s) {
+      const auto [low, high] = std::minmax(slots_.of_mass[robot_.springs[s].a], slots_.of_mass[robot_.springs[s].b]);
+      links_.push_back({low, high, s});
+    }
+    // Two springs between the same masses cannot share a run.
+    const auto key = [&](const Link& link) { return std::tuple(tile_of(link.owner), link.partner - link.owner); };
+    std::ranges::sort(links_, {},
+                      [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
+    for (auto first = links_.begin(); first != links_.end();) {
+      const auto last = std::find_if(first, links_.end(), [&](const Link& link) { return key(link) != key(*first); });
+      const auto repeated = std::stable_partition(first, last, [&, before = ~0u](const Link& link) mutable {
+        return std::exchange(before, link.owner) != link.owner;
+      });
+      for (const auto& [begin, end] : {std::pair(first, repeated), std::pair(repeated, last)})
+        if (begin != end) candidates_.push_back({begin, end});
+      first = last;
+    }
+  }
+
+  // A run needs a minimum number of springs; takes the minimum that makes all springs cheapest.
+  void choose_runs() {
+    std::size_t min_springs = 1;
+    double cheapest = cost(1);
+    for (std::size_t n = 2; n <= lanes_ + 1; ++n)
+      if (const double c = cost(n); c < cheapest) {
+        cheapest = c;
+        min_springs = n;
+      }
+    for (const std::span<const Link> candidate : candidates_) {
+      if (candidate.size() >= min_springs)
+        runs_.push_back(candidate);
+      else
+        gathered_.insert(gathered_.end(), candidate.begin(), candidate.end());
+    }
+  }
+  double cost(std::size_t min_springs_in_run) const {
+    double runs = 0, rest = 0;
+    for (const std::span<const Link> candidate : candidates_)
+      (candidate.size() >= min_springs_in_run ? runs : rest) +=
+          candidate.size() >= min_springs_in_run ? 1 : static_cast<double>(candidate.size());
+    if (rest == 0) return runs;
+    return runs + gathered_row_cost * rest / (gathered_row_fill * static_cast<double>(lanes_)) +
+           aos_cost_per_tile * static_cast<double>(slots_.tiles());
+  }
+
+  // The busiest lane of a tile sets its number of gathered rows: springs go to the end that owns fewer.
+  void balance_owners() {
+    std::vector<std::uint32_t> load(slots_.size_with_spare());
+    for (const Link& link : gathered_) ++load[link.owner];
+    constexpr int sweeps = 8;
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (Link& link : gathered_) {
+        const std::uint32_t here = load[link.owner], there = load[link.partner] + 1;
+        if (there > here || (there == here && sweep % 2 == 0)) continue;
+        --load[link.owner];
+        std::swap(link.owner, link.partner);
+        ++load[link.owner];
+      }
+    std::ranges::stable_sort(gathered_, {}, [&](const Link& link) { return tile_of(link.owner); });
+  }
+
+  // Appends a row of padding to a tile. Returns its first entry.
+  std::size_t append_row(std::uint32_t tile) {
+    const std::size_t first = schedule_.rest_length.size();
+    schedule_.rest_length.resize(first + lanes_, 0.0f);
+    schedule_.spring.resize(first + lanes_, no_spring);
+    for (std::size_t lane = 0; lane < lanes_; ++lane)
+      schedule_.bias[tile * lanes_ + lane] += std::uint32_t{rounding_magic_bits};
+    return first;
+  }
+  void fill(std::size_t first_entry, const Link& link) {
+    schedule_.rest_length[first_entry + lane_of(link.owner)] = robot_.springs[link.spring].rest_length;
+    schedule_.spring[first_entry + lane_of(link.owner)] = link.spring;
+  }
+  // Each step, one entry's force will be added to this slot's sum.
+  void expect_force_at(std::uint32_t slot) { schedule_.bias[slot] -= std::uint32_t{rounding_magic_bits}; }
+
+  void append_runs(std::uint32_t tile) {
+    const auto stride = static_cast<std::uint32_t>(slots_.size_with_spare());
+    for (; next_run_ < runs_.size() && tile_of(runs_[next_run_].front().owner) == tile; ++next_run_) {
+      const Link& first = runs_[next_run_].front();
+      const auto partner = static_cast<std::uint32_t>(tile * lanes_) + (first.partner - first.owner);
+      const std::size_t first_entry = append_row(tile);
+      for (const Link& link : runs_[next_run_]) fill(first_entry, link);
+      for (std::uint32_t lane = 0; lane < lanes_; ++lane) expect_force_at(partner + lane);
+      schedule_.runs.push_back({partner, schedule_.tiles[tile].runs++ % reaction_arrays * stride + partner});
+    }
+  }
+
+  void append_gathered_rows(std::uint32_t tile) {
+    std::vector<std::vector<Link>> by_lane(lanes_);
+    for (; next_gathered_ < gathered_.size() && tile_of(gathered_[next_gathered_].owner) == tile; ++next_gathered_)
+      by_lane[lane_of(gathered_[next_gathered_].owner)].push_back(gathered_[next_gathered_]);
+    const std::size_t rows = std::ranges::max(by_lane, {}, &std::vector<Link>::size).size();
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t first_entry = append_row(tile);
+      for (std::uint32_t lane = 0; lane < lanes_; ++lane) {
+        auto partner = static_cast<std::uint32_t>(tile * lanes_) + lane;  // padding joins the mass to itself
+        if (row < by_lane[lane].size()) {
+          fill(first_entry, by_lane[lane][row]);
+          partner = by_lane[lane][row].partner;
+        }
+        expect_force_at(partner);
+        schedule_.partners.push_back(4 * partner);
+      }
+    }
+    schedule_.tiles[tile].gathered_rows = static_cast<std::uint32_t>(rows);
+  }
+
+  const Robot& robot_;
+  const Slots& slots_;
+  const std::size_t lanes_;
+  std::vector<Link> links_;
+  std::vector<std::span<const Link>> candidates_, runs_;
+  std::vector<Link> gathered_;
+  std::size_t next_run_ = 0, next_gathered_ = 0;
+  SpringSchedule schedule_;
+};
+
+}  // namespace
+
+SpringSchedule schedule_springs(const Robot& robot, const Slots& slots) { return Scheduler(robot, slots).take(); }
+
+std::vector<std::uint32_t> tile_faces(std::span<const FacePair> pairs, const Slots& slots) {
+  std::vector<std::uint32_t> corners;
+  for (std::size_t first = 0; first < pairs.size(); first += slots.lanes)
+    for (const auto corner : {&FacePair::a, &FacePair::b, &FacePair::c, &FacePair::d})
+      for (std::size_t p = first; p < first + slots.lanes; ++p)
+        corners.push_back(4 * slots.of_mass[p < pairs.size() ? pairs[p].*corner : 0]);
+  return corners;
+}
+
+}  // namespace mercury::cpu

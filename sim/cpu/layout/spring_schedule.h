@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The schedule of springs: the order in which the CPU evaluates a robot's springs.
+//
+// Each spring belongs to one of its two masses, its owner; the other mass is its partner. A tile evaluates its springs
+// row by row. A row has one entry per lane: the spring that the mass in this lane owns, or padding. There are two kinds
+// of rows, runs first:
+//
+//   owners         slot    8   9  10  11  12  13  14  15      one tile
+//   run            to     24  25  26  27  28  29  30  31      partners stand as the owners do
+//   run            to      9  10  11  12   -  14  15  16      lane 4 has no such spring
+//   gathered row   to      3  40  17  55   -   8  61   -      partners stand anywhere
+//
+// 1. The owners' forces of all rows add up in registers: one store per tile, not one per spring.
+// 2. A run's partners are one vector in memory, though rarely an aligned one. Loading them and adding to their sums
+//    costs two instructions per axis. In a lattice, most springs of one direction form runs.
+// 3. Gathered rows hold all other springs. Their partners are loaded one by one (kernels/gather.h), which costs more
+//    than twice as much, so that even a run with several unused lanes is cheaper. Owners are chosen so that the lanes
+//    of a tile have about equally many springs in gathered rows: the busiest lane sets the number of rows.
+// 4. Forces on the partners of runs go to one of several reaction arrays in turn. If consecutive runs added to the same
+//    array, the load of one would overlap the recent, differently aligned store of another, and wait for it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mercury/robot.h"
+#include "sim/cpu/layout/aligned.h"
+#include "sim/cpu/layout/muscles.h"
+#include "sim/cpu/layout/slots.h"
+#include "sim/physics/face_pairs.h"
+
+namespace mercury::cpu {
+
+inline constexpr std::uint32_t reaction_arrays = 2;
+
+struct Run {
+  std::uint32_t partner;   // slot of the first lane's partner
+  std::uint32_t reaction;  // index in the reaction arrays, which stand one after the other, for the same lane
+};
+
+struct SpringSchedule {
+  struct Tile {
+    std::uint32_t runs = 0, gathered_rows = 0;
+  };
+  std::vector<Tile> tiles;
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> partners;  // [gathered row][lane]: four times the partner's slot
+
+  // [row][lane]: one element per entry. Rows stand in the order of evaluation: tile by tile, runs first.
+  Aligned<float> rest_length;         // [m]; 0 in padding
+  std::vector<std::uint32_t> spring;  // index in Robot::springs; no_spring in padding
+  Aligned<float> stiffness;           // Body::stiffness; 0 in padding
+  Aligned<FactorId> factor;           // of the spring's material
+
+  // [slot] Removes rounding_magic_bits from the sums, which carry it once per contribution (see body.h).
+  Aligned<std::uint32_t> bias;
+
+  bool has_gathered_rows() const { return !partners.empty(); }
+};
+
+SpringSchedule schedule_springs(const Robot& robot, const Slots& slots);
+
+// Face tiles: as many face pairs as there are lanes. [face tile][corner a, b, c, d][lane]: four times the corner's
+// slot. The last tile is filled up with pairs that have no area.
+std::vector<std::uint32_t> tile_faces(std::span<const FacePair> pairs, const Slots& slots);
+
+}  // namespace mercury::cpu

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a step of the CPU is given besides the robots.
+#pragma once
+
+#include <variant>
+
+#include "sim/physics/environments.h"
+#include "sim/physics/integration.h"
+
+namespace mercury::cpu {
+
+using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
+
+struct StepSetting {
+  Solver solver = Solver::force;
+  AnyEnvironmentModel model = OceanModel(Ocean{});
+  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no self-collision
+  StepConstants constants;
+};
+
+StepSetting setting_of(const Configuration& configuration);
+
+// L(t) / L0 of all muscles, for several steps: [step][muscle].
+struct Factors {
+  const float* first = nullptr;
+  std::size_t muscles = 0;
+  const float* of_step(std::int64_t step) const { return first + static_cast<std::size_t>(step) * muscles; }
+};
+
+}  // namespace mercury::cpu
