@@ -109,17 +109,17 @@ Robot lattice(int n) { return Voxels(n, 0, 1).robot(); }
 Robot lattice_with_holes(int n, double share, std::uint64_t seed) { return Voxels(n, share, seed).robot(); }
 
 Robot scrambled(const Robot& robot, std::uint64_t seed) {
-  std::vector<std::uint16_t> place(robot.masses.size());
-  std::iota(place.begin(), place.end(), std::uint16_t{0});
+  std::vector<std::uint16_t> number(robot.masses.size());
+  std::iota(number.begin(), number.end(), std::uint16_t{0});
   Random random(seed);
-  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random() % i]);
+  for (std::size_t i = number.size(); i > 1; --i) std::swap(number[i - 1], number[random() % i]);
   Robot result = robot;
-  for (std::size_t i = 0; i < place.size(); ++i) result.masses[place[i]] = robot.masses[i];
+  for (std::size_t i = 0; i < number.size(); ++i) result.masses[number[i]] = robot.masses[i];
   for (Spring& spring : result.springs) {
-    spring.a = place[spring.a];
-    spring.b = place[spring.b];
+    spring.a = number[spring.a];
+    spring.b = number[spring.b];
   }
-  for (Face& face : result.faces) face = {place[face.a], place[face.b], place[face.c]};
+  for (Face& face : result.faces) face = {number[face.a], number[face.b], number[face.c]};
   return result;
 }
 

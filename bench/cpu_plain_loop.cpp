@@ -35,7 +35,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
   links_.resize(masses);
   const std::vector<std::uint32_t> at = valences(robot);
   for (const Spring& spring : robot.springs) {
-    splits_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
+    valence_sums_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
     neighbours_[spring.a].push_back(spring.b);
     neighbours_[spring.b].push_back(spring.a);
   }
@@ -47,16 +47,17 @@ void PlainLoop::update_muscles() {
     if (measures_.used[id]) factor_[id] = muscle_factor(materials[id].amplitude, phase_at(phases_[id], now_));
 }
 
-// Adds every spring's contribution, `law(squared, length, spring)` times d. False if one is beyond the stretch limit.
-template <class Law>
-bool PlainLoop::add_springs(const Law& law) {
-  float longest = 0;
+// Adds each spring's contribution, per_distance_of(squared length, rest length, spring) times d. Returns false if a
+// spring is beyond the stretch limit.
+template <class PerDistance>
+bool PlainLoop::add_springs(const PerDistance& per_distance_of) {
+  float longest_squared = 0;
   for (std::size_t s = 0; s < robot_.springs.size(); ++s) {
     const Spring& spring = robot_.springs[s];
     const Vec3 d = state_.positions[spring.b] - state_.positions[spring.a];
     const float squared = squared_length(d);
-    longest = squared > longest ? squared : longest;
-    const float per_distance = law(squared, spring.rest_length * factor_[spring.material], s);
+    longest_squared = squared > longest_squared ? squared : longest_squared;
+    const float per_distance = per_distance_of(squared, spring.rest_length * factor_[spring.material], s);
     const auto units = [&](float along) { return static_cast<std::uint32_t>(to_fixed_small(per_distance, along)); };
     const std::uint32_t fx = units(d.x), fy = units(d.y), fz = units(d.z);
     Sum &a = sums_[spring.a], &b = sums_[spring.b];
@@ -67,7 +68,7 @@ bool PlainLoop::add_springs(const Law& law) {
     b.y -= fy;
     b.z -= fz;
   }
-  return longest <= measures_.squared_stretch_limit();
+  return longest_squared <= measures_.squared_stretch_limit();
 }
 
 bool PlainLoop::add_spring_forces() {
@@ -79,7 +80,7 @@ bool PlainLoop::add_spring_forces() {
 bool PlainLoop::add_spring_corrections() {
   const float inverse_scale = 1 / scale_.correction;
   return add_springs([&](float squared, float length, std::size_t s) {
-    return xpbd(squared, length, splits_[s] * inverse_scale, compliance_[robot_.springs[s].material]);
+    return xpbd(squared, length, valence_sums_[s] * inverse_scale, compliance_[robot_.springs[s].material]);
   });
 }
 
@@ -89,7 +90,8 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
   sums_[mass].z += static_cast<std::uint32_t>(round_to_int(units.z));
 }
 
-// A third of each face's force to each of its masses. False, and the lowest mass noted, if a force is out of range.
+// Adds a third of each face's force to each of its masses. If a force is out of range, notes the lowest of its masses
+// and returns false.
 template <class EnvironmentModel>
 bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
   const auto [drag, lift] = model.of_sums(scale_.force);
@@ -131,7 +133,7 @@ void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
 void PlainLoop::add_contacts() {
   const float distance = measures_.contact_distance();
   if (contact_stiffness_ == 0 || distance == 0) return;
-  // Cells a little larger than the distance, so that rounding cannot part masses that touch.
+  // Cells are a little larger than the distance, so that rounding cannot separate masses that touch.
   const float inverse_size = 1 / (1.01f * distance);
   const auto mask = static_cast<std::uint32_t>(heads_.size() - 1);
   std::ranges::fill(heads_, end_of_list);
@@ -174,8 +176,8 @@ Vec3 PlainLoop::take(std::size_t mass, float inverse_scale) {
   return inverse_scale * Vec3{value(sum.x), value(sum.y), value(sum.z)};
 }
 
-// Stores a mass's new state unless it left the finite; then the mass stays and the robot has exploded.
-bool PlainLoop::keep(std::size_t mass, Vec3 x, Vec3 v) {
+// Stores a mass's new state. If that is out of reach, keeps the old one and returns false: the robot has exploded.
+bool PlainLoop::store_state(std::size_t mass, Vec3 x, Vec3 v) {
   if (within_reach(x)) {
     state_.positions[mass] = x;
     state_.velocities[mass] = v;
@@ -196,7 +198,7 @@ bool PlainLoop::step_force(const EnvironmentModel& model) {
     v = accelerated(v, force, constants_);
     Vec3 x = multiply_add(constants_.dt, v, state_.positions[i]);
     end_step(x, v, model, constants_);
-    finite &= keep(i, x, v);
+    finite &= store_state(i, x, v);
   }
   return finite;
 }
@@ -209,7 +211,7 @@ bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Vec3 v = state_.velocities[i];
     const Vec3 predicted = accelerated(v, take(i, 1 / scale_.force) + model.on_mass(v), constants_);
-    finite &= keep(i, multiply_add(constants_.dt, predicted, state_.positions[i]), predicted);
+    finite &= store_state(i, multiply_add(constants_.dt, predicted, state_.positions[i]), predicted);
   }
   if (!finite || !add_spring_corrections()) return false;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
@@ -217,7 +219,7 @@ bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
     Vec3 x = state_.positions[i] + correction;
     Vec3 v = multiply_add(constants_.inverse_dt, correction, state_.velocities[i]);
     end_step(x, v, model, constants_);
-    finite &= keep(i, x, v);
+    finite &= store_state(i, x, v);
   }
   return finite;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same physics as a plain loop: one spring after the other, one float at a time, as one would write it down first.
-// What vector code is measured against, and what it must agree with bit for bit.
+// The same physics as a plain loop: one spring after the other, one float at a time. Vector code must agree with it bit
+// for bit, and is measured against it.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace mercury::bench {
 
 class PlainLoop {
  public:
-  // The robot at rest in its file's position; it must outlive this.
+  // Starts at rest, in the position of the robot's file. The robot must outlive the loop.
   PlainLoop(const Robot& robot, const Configuration& configuration);
 
   void set_state(const State& state) { state_ = state; }
@@ -35,14 +35,14 @@ class PlainLoop {
   std::uint32_t bad_mass() const { return bad_mass_; }           // lowest mass that left the finite
 
  private:
+  // Signed numbers in two's complement: when a robot explodes, they overflow, which is defined for unsigned types only.
   struct Sum {
-    std::uint32_t x = 0, y = 0,
-                  z = 0;  // signed numbers in two's complement, so that overflow in an explosion is defined
+    std::uint32_t x = 0, y = 0, z = 0;
   };
 
   void update_muscles();
-  template <class Law>
-  bool add_springs(const Law& law);
+  template <class PerDistance>
+  bool add_springs(const PerDistance& per_distance_of);
   bool add_spring_forces();
   bool add_spring_corrections();
   template <class EnvironmentModel>
@@ -58,7 +58,7 @@ class PlainLoop {
   bool step_xpbd(const EnvironmentModel& model);
   void add(std::size_t mass, Vec3 units);
   Vec3 take(std::size_t mass, float inverse_scale);
-  bool keep(std::size_t mass, Vec3 x, Vec3 v);
+  bool store_state(std::size_t mass, Vec3 x, Vec3 v);
   bool joined(std::uint16_t i, std::uint16_t j) const;
 
   const Robot& robot_;
@@ -69,7 +69,7 @@ class PlainLoop {
   float contact_stiffness_ = 0;
   State state_;
   std::vector<Sum> sums_;
-  std::vector<float> splits_;  // of each spring, s_a + s_b
+  std::vector<float> valence_sums_;  // by spring, s_a + s_b
   std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
   std::array<MusclePhase, max_materials> phases_{};
   std::vector<FacePair> faces_;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs evaluated a second on one core, everything that a step does included: every instruction set of this machine
-// against the plain loop, and small robots against large ones, in turns within one run, the best of many short turns
-// (others may use the machine).
+// Springs per second on one core, with all that a step does: each instruction set of this machine against the plain
+// loop, small robots against large ones.
 //
-//   bench_cpu_springs [SECONDS] [FILTER] [KERNEL]     time for each line; only lines that hold FILTER (and the first,
-//   which
-//                                                   ratios refer to); only the kernel of this name
+//   bench_cpu_springs [SECONDS] [FILTER] [KERNEL]
+//     SECONDS   time per line
+//     FILTER    only lines that contain this text, and the first line, which ratios refer to
+//     KERNEL    only the kernel of this name
+//
+// All of them take turns within one run. The best of many short turns counts, since others may use the machine.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -27,7 +29,7 @@ namespace {
 
 using Time = std::chrono::steady_clock;
 
-// Of this thread, which does all the work: time that others take from the core does not count.
+// CPU time of this thread, which does all the work: time that others take from the core does not count.
 double core_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -40,10 +42,10 @@ double seconds_of(const std::function<void()>& work) {
   return core_seconds() - start;
 }
 
-struct Crowd {
+struct Workload {
   std::string name;
   std::vector<Robot> robots;
-  std::int64_t steps_a_call = 0;  // 0 = as many as a turn is long
+  std::int64_t steps_per_call = 0;  // 0 = a call is a whole turn
 
   double springs() const {
     double sum = 0;
@@ -57,18 +59,18 @@ struct Subject {
   double best = 1e9;  // seconds of one turn
 };
 
-Subject plain(const Crowd& crowd, const Configuration& configuration) {
+Subject plain(const Workload& workload, const Configuration& configuration) {
   auto loops = std::make_shared<std::vector<PlainLoop>>();
-  for (const Robot& robot : crowd.robots) loops->emplace_back(robot, configuration);
+  for (const Robot& robot : workload.robots) loops->emplace_back(robot, configuration);
   return {[loops](std::int64_t steps) {
     for (PlainLoop& loop : *loops) loop.step(steps);
   }};
 }
 
-Subject vectorised(const Crowd& crowd, const Configuration& configuration, const cpu::Kernel& kernel) {
+Subject vectorised(const Workload& workload, const Configuration& configuration, const cpu::Kernel& kernel) {
   std::shared_ptr<Backend> backend = cpu::make_backend({.threads = 1}, kernel);
   std::vector<const Robot*> robots;
-  for (const Robot& robot : crowd.robots) robots.push_back(&robot);
+  for (const Robot& robot : workload.robots) robots.push_back(&robot);
   backend->load(robots, configuration);
   auto clock = std::make_shared<Clock>(Clock{.dt = configuration.dt});
   return {[backend, clock](std::int64_t steps) {
@@ -77,44 +79,44 @@ Subject vectorised(const Crowd& crowd, const Configuration& configuration, const
   }};
 }
 
-// A crowd and those that step it in turns.
+// A workload and the subjects that step it in turns.
 struct Line {
-  const Crowd& crowd;
-  std::int64_t steps_a_call, calls;  // of a turn
-  std::vector<Subject> subjects;     // the plain loop, then a kernel each
+  const Workload& workload;
+  std::int64_t steps_per_call, calls;  // per turn
+  std::vector<Subject> subjects;       // the plain loop, then the kernels
 
-  Line(const Crowd& robots, const Configuration& configuration, const std::vector<cpu::Kernel>& kernels)
-      : crowd(robots) {
-    constexpr double springs_a_turn = 1.5e6;
-    const auto steps = std::max<std::int64_t>(4, static_cast<std::int64_t>(springs_a_turn / crowd.springs()));
-    steps_a_call = crowd.steps_a_call == 0 ? steps : crowd.steps_a_call;
-    calls = std::max<std::int64_t>(1, steps / steps_a_call);
-    subjects.push_back(plain(crowd, configuration));
-    for (const cpu::Kernel& kernel : kernels) subjects.push_back(vectorised(crowd, configuration, kernel));
+  Line(const Workload& robots, const Configuration& configuration, const std::vector<cpu::Kernel>& kernels)
+      : workload(robots) {
+    constexpr double springs_per_turn = 1.5e6;
+    const auto steps = std::max<std::int64_t>(4, static_cast<std::int64_t>(springs_per_turn / workload.springs()));
+    steps_per_call = workload.steps_per_call == 0 ? steps : workload.steps_per_call;
+    calls = std::max<std::int64_t>(1, steps / steps_per_call);
+    subjects.push_back(plain(workload, configuration));
+    for (const cpu::Kernel& kernel : kernels) subjects.push_back(vectorised(workload, configuration, kernel));
     for (Subject& subject : subjects) subject.step(200);
   }
 
   void take_turns() {
     for (Subject& subject : subjects)
       subject.best = std::min(subject.best, seconds_of([&] {
-                                for (std::int64_t call = 0; call < calls; ++call) subject.step(steps_a_call);
+                                for (std::int64_t call = 0; call < calls; ++call) subject.step(steps_per_call);
                               }));
   }
   double rate(const Subject& subject) const {
-    return crowd.springs() * static_cast<double>(steps_a_call * calls) / subject.best;
+    return workload.springs() * static_cast<double>(steps_per_call * calls) / subject.best;
   }
 };
 
-void compare(const std::vector<Crowd>& crowds, const Configuration& configuration, double seconds, const char* filter,
-             const std::vector<cpu::Kernel>& kernels) {
+void compare(const std::vector<Workload>& workloads, const Configuration& configuration, double seconds,
+             const char* filter, const std::vector<cpu::Kernel>& kernels) {
   const std::string what =
       std::string(name_of(configuration.solver)) + ", " + std::string(name_of(configuration.environment));
   std::vector<Line> lines;
-  for (const Crowd& crowd : crowds) {
-    const bool wanted = std::strstr((crowd.name + ", " + what).c_str(), filter) != nullptr;
-    if (wanted || &crowd == &crowds.front()) lines.emplace_back(crowd, configuration, kernels);
+  for (const Workload& workload : workloads) {
+    const bool wanted = std::strstr((workload.name + ", " + what).c_str(), filter) != nullptr;
+    if (wanted || &workload == &workloads.front()) lines.emplace_back(workload, configuration, kernels);
   }
-  if (lines.size() == 1 && std::strstr((crowds.front().name + ", " + what).c_str(), filter) == nullptr) return;
+  if (lines.size() == 1 && std::strstr((workloads.front().name + ", " + what).c_str(), filter) == nullptr) return;
   const auto end = Time::now() + std::chrono::duration<double>(seconds * static_cast<double>(lines.size()));
   while (Time::now() < end)
     for (Line& line : lines) line.take_turns();
@@ -123,7 +125,7 @@ void compare(const std::vector<Crowd>& crowds, const Configuration& configuratio
   for (const cpu::Kernel& kernel : kernels) std::printf("  %8s /plain /large", std::string(kernel.name).c_str());
   std::printf("\n");
   for (const Line& line : lines) {
-    std::printf("%-46s  %.2e", line.crowd.name.c_str(), line.rate(line.subjects.front()));
+    std::printf("%-46s  %.2e", line.workload.name.c_str(), line.rate(line.subjects.front()));
     for (std::size_t i = 1; i < line.subjects.size(); ++i)
       std::printf("  %.2e  %5.2f  %5.2f", line.rate(line.subjects[i]),
                   line.rate(line.subjects[i]) / line.rate(line.subjects.front()),
@@ -139,7 +141,7 @@ std::vector<Robot> with_holes(int n, std::size_t count) {
   return robots;
 }
 
-// Each with a table of its own: the defaults, more or less stiff.
+// Gives each robot its own table of materials.
 std::vector<Robot> with_own_tables(std::vector<Robot> robots) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const std::span<const Material> defaults = materials_of(robots[i]);
@@ -157,7 +159,7 @@ std::vector<Robot> scrambled_each(std::vector<Robot> robots) {
   return robots;
 }
 
-// Set down on the floor, as the simulation does on land.
+// With the lowest mass at z = 0, as the simulation does on land.
 std::vector<Robot> voxel_robots(std::array<int, 3> smallest, std::array<int, 3> largest, std::size_t count) {
   std::vector<Robot> robots = random_voxel_robots({.smallest = smallest, .largest = largest}, 1, count);
   for (Robot& robot : robots) {
@@ -167,7 +169,7 @@ std::vector<Robot> voxel_robots(std::array<int, 3> smallest, std::array<int, 3> 
   return robots;
 }
 
-std::vector<Crowd> crowds() {
+std::vector<Workload> workloads() {
   const auto copies = [](int n, std::size_t count) { return std::vector<Robot>(count, lattice(n)); };
   return {{"1 of 1331 masses", copies(10, 1)},
           {"8 of 1331 masses", copies(10, 8)},
@@ -203,7 +205,7 @@ void run(double seconds, const char* filter, const char* kernel_name) {
   std::vector<cpu::Kernel> kernels;
   for (const cpu::Kernel& kernel : cpu::kernels())
     if (*kernel_name == 0 || kernel.name == kernel_name) kernels.push_back(kernel);
-  const std::vector<Crowd> all = crowds();
+  const std::vector<Workload> all = workloads();
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const std::string_view environment : environment_names())
       compare(all, {.solver = solver, .environment = environment_named(environment)}, seconds, filter, kernels);
