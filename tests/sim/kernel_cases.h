@@ -32,8 +32,7 @@ inline std::vector<KernelCase> every_kernel_case() {
   std::vector<KernelCase> cases;
   for (const cpu::Kernel& kernel : cpu::kernels())
     for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : environment_names())
-        cases.push_back({kernel, solver, environment, {}});
+      for (const std::string_view environment : environment_names()) cases.push_back({kernel, solver, environment, {}});
   return cases;
 }
 
