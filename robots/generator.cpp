@@ -15,9 +15,10 @@ namespace mercury {
 // All generators. Each is described beside its robots.
 Generator voxel_generator();
 Generator nn_generator();
+Generator shell_generator();
 
 const std::vector<Generator>& generators() {
-  static const std::vector<Generator> all{voxel_generator(), nn_generator()};
+  static const std::vector<Generator> all{voxel_generator(), nn_generator(), shell_generator()};
   return all;
 }
 
