@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the window's pictures wait for an edit of a large scene, and how fast it steps as fast as it goes:
-// bench_window_edits [robots [side]].
+// Measures how long the pictures of the window wait for an edit of a large scene, and the steps per second at unlimited
+// speed: bench_window_edits [robots [side]].
 //
-// Robots are random voxel robots without air of side^3 voxels: side 10 has 1,331 masses and 14,230 springs. For each
-// edit, the longest that one picture's share of the scene's work took (LiveScene::frame() and handing bodies to the
-// renderer), and the time until the edit is seen.
+// The robots are random voxel robots of side^3 voxels without air: side 10 has 1,331 masses and 14,230 springs. Prints
+// per edit the longest time of the scene's work for one picture (LiveScene::frame() and uploading bodies to the
+// renderer) and the time until a picture shows the edit.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +29,7 @@ class Window {
       : context_(render::make_context({.kind = render::ContextKind::automatic})),
         renderer_(*context_, {.width = 64, .height = 64}) {}
 
-  // Seconds that one picture waits.
+  // Returns the time that one picture waits [s].
   double picture(LiveScene& scene) {
     const double start = now();
     scene.frame();
@@ -62,7 +62,7 @@ void measure(Window& window, LiveScene& scene, const char* name, const std::func
               1e3 * (now() - begin));
 }
 
-// Steps a second while 60 pictures a second are shown, and of the simulation by itself.
+// Measures steps per second while 60 pictures per second are shown, and of the simulation alone.
 void measure_speed(Window& window, LiveScene& scene) {
   constexpr double seconds = 4;
   std::vector<Robot> robots;
@@ -83,7 +83,7 @@ void measure_speed(Window& window, LiveScene& scene) {
     return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent,
                      static_cast<double>(pictures) / spent};
   };
-  playing(1);  // until samples are as few as they become
+  playing(1);  // until the interval of samples is constant
   const auto [in_window, pictures] = playing(seconds);
   scene.pause();
   scene.wait_until_done();
@@ -94,7 +94,7 @@ void measure_speed(Window& window, LiveScene& scene) {
   while (spent < seconds) {
     const double start = now();
     simulation.step(call);
-    if (now() - start < 0.1) {  // not yet long calls
+    if (now() - start < 0.1) {  // calls are still too short
       call *= 2;
       begin = now();
       first = simulation.steps();
@@ -102,8 +102,8 @@ void measure_speed(Window& window, LiveScene& scene) {
     spent = now() - begin;
   }
   const double alone = static_cast<double>(simulation.steps() - first) / spent;
-  std::printf("as fast as it goes: %.4g steps/s with %.1f new pictures/s; %.4g steps/s by itself (%.0f %%)\n",
-              in_window, pictures, alone, 100 * in_window / alone);
+  std::printf("unlimited speed: %.4g steps/s with %.1f new pictures/s; %.4g steps/s alone (%.0f %%)\n", in_window,
+              pictures, alone, 100 * in_window / alone);
 }
 
 }  // namespace
@@ -150,9 +150,9 @@ int main(int argc, char** argv) {
       [&] { return scene.snapshot().configuration.damping == 0.5; });
   measure(
       window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.snapshot().resets > 0; });
-  double usual = 0;
-  for (int i = 0; i < 20; ++i) usual += window.picture(scene) / 20;
-  std::printf("a picture without edits %.2f ms\n", 1e3 * usual);
+  double picture = 0;
+  for (int i = 0; i < 20; ++i) picture += window.picture(scene) / 20;
+  std::printf("a picture without edits %.2f ms\n", 1e3 * picture);
   measure_speed(window, scene);
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window's scene: robots, edits and taking them back, selection, tuning.
+// The window's scene: robots, edits, undo, selection, mouse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "mercury/random_voxel.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
 namespace {
@@ -31,7 +31,7 @@ TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
   EXPECT_THAT(scene.take_messages(), IsEmpty());
 }
 
-TEST(LiveScene, UndoAndRedoGiveBackWhatWasThereBitForBit) {
+TEST(LiveScene, UndoAndRedoRestoreTheStateBitForBit) {
   LiveScene scene(on_cpu());
   make_robots(scene, 3);
   scene.step(50);
@@ -57,7 +57,7 @@ TEST(LiveScene, UndoAndRedoGiveBackWhatWasThereBitForBit) {
   EXPECT_TRUE(scene.can_redo());
 }
 
-TEST(LiveScene, ADuplicateStartsAtRestWithANameOfItsOwn) {
+TEST(LiveScene, DuplicateStartsAtRestWithItsOwnName) {
   LiveScene scene(on_cpu());
   make_robots(scene, 1);
   scene.step(80);
@@ -70,7 +70,7 @@ TEST(LiveScene, ADuplicateStartsAtRestWithANameOfItsOwn) {
   EXPECT_FALSE(std::ranges::equal(scene.snapshot().positions_of(0), robot.masses));
 }
 
-TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
+TEST(LiveScene, ChildOfASymmetricRobotIsSymmetricAndDiffersFromIt) {
   LiveScene scene(on_cpu());
   make_robots(scene, 1);
   const MutationRequest mutation{.strength = 10, .seed = 3};
@@ -83,7 +83,7 @@ TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
   for (int z = 0; z < child.nz; ++z)
     for (int y = 0; y < child.ny; ++y)
       for (int x = 0; x < child.nx; ++x) ASSERT_EQ(child.at(x, y, z), child.at(x, child.ny - 1 - y, z));
-  // In its parent's place.
+  // With replace, the child takes the place of its parent.
   scene.mutate({ids_of(scene)[0]}, mutation, true);
   scene.wait_until_done();
   ASSERT_THAT(scene.entries(), SizeIs(2));
@@ -91,7 +91,7 @@ TEST(LiveScene, AChildOfASymmetricRobotIsSymmetricAndAnotherOne) {
   EXPECT_EQ(scene.undo_name(), "mutate 1 robot");
 }
 
-TEST(LiveScene, RobotsThatKnowNotWhatTheyWereMadeOfCannotBeMutated) {
+TEST(LiveScene, RobotWithoutAGeneratorCannotBeMutated) {
   LiveScene scene(on_cpu());
   scene.add({Robot{.name = "point", .masses = {{0, 0, 0}}}});
   const auto ids = ids_of(scene);
@@ -104,7 +104,7 @@ TEST(LiveScene, RobotsThatKnowNotWhatTheyWereMadeOfCannotBeMutated) {
   EXPECT_THAT(messages[0].text, HasSubstr("point: cannot be mutated"));
 }
 
-TEST(LiveScene, ARobotThatBreaksARuleIsToldAndLeftOut) {
+TEST(LiveScene, InvalidRobotIsReportedAndLeftOut) {
   LiveScene scene(on_cpu());
   scene.add({Robot{.name = "empty"}, Robot{.name = "point", .masses = {{0, 0, 0}}}});
   scene.wait_until_done();
@@ -112,7 +112,7 @@ TEST(LiveScene, ARobotThatBreaksARuleIsToldAndLeftOut) {
   EXPECT_THAT(scene.take_messages(), SizeIs(1));
 }
 
-TEST(LiveScene, RobotsThatAreKeptElsewhereAreUnsavedOnlyOnceTheyChange) {
+TEST(LiveScene, SavedRobotBecomesUnsavedWhenItChanges) {
   LiveScene scene(on_cpu());
   scene.add({random_voxel_robot({}, 1, 0)}, false);
   scene.add({random_voxel_robot({}, 1, 1)});
@@ -126,7 +126,7 @@ TEST(LiveScene, RobotsThatAreKeptElsewhereAreUnsavedOnlyOnceTheyChange) {
   EXPECT_FALSE(scene.entries()[0].unsaved);
 }
 
-TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
+TEST(LiveScene, ParametersActAtOnceAndADragIsOneUndo) {
   LiveScene scene(on_cpu());
   make_robots(scene, 1);
   Configuration configuration = scene.configuration();
@@ -152,7 +152,7 @@ TEST(LiveScene, ParametersActAtOnceAndTakeOneUndoADrag) {
   EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
 }
 
-TEST(LiveScene, TunedMaterialsMoveTheRobotAsTheSimulationSays) {
+TEST(LiveScene, TunedMaterialsActAsInTheSimulation) {
   LiveScene scene(on_cpu());
   make_robots(scene, 2);
   const auto ids = ids_of(scene);
@@ -177,7 +177,7 @@ TEST(LiveScene, TunedMaterialsMoveTheRobotAsTheSimulationSays) {
   EXPECT_TRUE(std::ranges::equal(scene.materials(ids[0]), default_materials()));
 }
 
-TEST(LiveScene, SelectionKeepsItsOrderAndForgetsWhoLeft) {
+TEST(LiveScene, SelectionKeepsItsOrderAndForgetsRemovedRobots) {
   LiveScene scene(on_cpu());
   make_robots(scene, 3);
   const auto ids = ids_of(scene);
@@ -196,7 +196,7 @@ TEST(LiveScene, SelectionKeepsItsOrderAndForgetsWhoLeft) {
   EXPECT_TRUE(scene.picture().scene().placements[0].selected);
 }
 
-TEST(LiveScene, SpeedGoesThroughOneTwoFiveToNoLimit) {
+TEST(LiveScene, SpeedStepsAreOneTwoFiveUpToUnlimited) {
   LiveScene scene(on_cpu());
   scene.change_speed(1);
   EXPECT_EQ(scene.speed(), 2);
@@ -212,7 +212,7 @@ TEST(LiveScene, SpeedGoesThroughOneTwoFiveToNoLimit) {
   EXPECT_EQ(scene.speed(), 1e-3);
 }
 
-TEST(LiveScene, APullShowsTheForceOfItsSpring) {
+TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
   LiveScene scene(on_cpu());
   make_robots(scene, 4);
   const std::size_t last = 3;
@@ -226,7 +226,7 @@ TEST(LiveScene, APullShowsTheForceOfItsSpring) {
   scene.move_perturbation(target);
   EXPECT_NEAR(scene.perturbation()->force, 30 * 0.5f, 1e-4f);
   EXPECT_LT((scene.perturbation()->target - target).norm(), 1e-6f);
-  // Momentum after n steps is what the hand and nothing else gave: water takes some, so little time is looked at.
+  // The perturbation is the only outer force but for the drag of the water, which is small after two steps.
   scene.step(2);
   scene.wait_until_done();
   Vec3 momentum;
@@ -238,87 +238,7 @@ TEST(LiveScene, APullShowsTheForceOfItsSpring) {
   EXPECT_FALSE(scene.perturbation());
 }
 
-TEST(LiveScene, BodiesAreGivenAnewOnlyWhenRobotsChange) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 2);
-  const auto revision = scene.picture().bodies_revision();
-  scene.step(10);
-  ViewSettings view = scene.view();
-  view.color = &color_quantity("strain");
-  view.shown.arrows.drag = view.shown.legend = view.shown.labels = true;
-  scene.set_view(view);
-  scene.scale_materials(ids_of(scene), {.stiffness = 2});
-  scene.wait_until_done();
-  EXPECT_EQ(scene.picture().bodies_revision(), revision);
-  const render::Scene& drawn = scene.picture().scene();
-  EXPECT_EQ(drawn.positions.size(), 3 * scene.snapshot().positions.size());
-  EXPECT_EQ(drawn.mass_values.size(), scene.snapshot().positions.size());
-  EXPECT_FALSE(drawn.arrows.empty());
-  ASSERT_TRUE(drawn.legend);
-  EXPECT_EQ(drawn.legend->title, "strain");
-  EXPECT_EQ(drawn.labels.size(), 2u);
-  scene.duplicate({ids_of(scene)[0]});
-  scene.wait_until_done();
-  EXPECT_GT(scene.picture().bodies_revision(), revision);
-  EXPECT_EQ(scene.picture().bounds().size(), 3u);
-}
-
-TEST(LiveScene, InAGroupOfAnySizeEachRobotGlowsByItsOwnMaterials) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 120);
-  const auto ids = ids_of(scene);
-  scene.step(300);
-  scene.wait_until_done();
-  const auto revision = scene.picture().bodies_revision();
-  const render::Scene& drawn = scene.picture().scene();
-  // By the law of a muscle: +1 where it is shortest.
-  const auto activation = [&](std::size_t robot, MaterialId id) {
-    return drawn.looks[drawn.placements[robot].first_look + id].activation;
-  };
-  const auto expected = [&](const Material& material) {
-    return -std::sin(static_cast<double>(material.frequency) * scene.snapshot().time +
-                     static_cast<double>(material.phase));
-  };
-  scene.scale_materials({ids[7], ids[110]}, {.frequency = 3});
-  scene.scale_materials({ids[60]}, {.phase = 1});
-  scene.wait_until_done();
-  for (const std::size_t robot : {0u, 7u, 60u, 110u, 119u})
-    for (const MaterialId id : {MaterialId{1}, MaterialId{6}, MaterialId{20}})
-      EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5)
-          << robot << ", material " << int{id};
-  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look)
-      << "those that are the same are kept once";
-  EXPECT_EQ(drawn.placements[0].first_look, drawn.placements[119].first_look);
-  const auto looks = drawn.looks.size();
-  for (int i = 0; i < 50; ++i) {
-    scene.scale_materials({ids[7]},
-                          {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
-    scene.wait_until_done();
-  }
-  EXPECT_LE(drawn.looks.size(), looks + 2 * 254) << "a slider leaves nothing behind";
-  scene.reset_materials(ids);
-  scene.wait_until_done();
-  for (const std::size_t robot : {7u, 60u, 110u})
-    EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
-  EXPECT_EQ(scene.picture().bodies_revision(), revision) << "no body was given anew";
-}
-
-TEST(LiveScene, AnEditMakesNoShapesOfRobotsThatWereThere) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 3);
-  const auto before = scene.hold_snapshot();
-  scene.duplicate({ids_of(scene)[1]});
-  scene.remove({ids_of(scene)[0]});
-  scene.wait_until_done();
-  const LiveRobots& after = *scene.snapshot().robots;
-  ASSERT_EQ(after.shapes.size(), 3u);
-  EXPECT_EQ(after.shapes[0], before->robots->shapes[1]);
-  EXPECT_EQ(after.shapes[1], before->robots->shapes[2]);
-  EXPECT_EQ(after.shapes[2], before->robots->shapes[1]) << "the copy's shape is its original's";
-  EXPECT_EQ(after.bodies->mass_offsets.back(), scene.snapshot().positions.size());
-}
-
-TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
+TEST(EditHistory, ForgetsTheOldestEditsWhenMemoryIsFull) {
   EditHistory history(10);
   SceneDocument document;
   const auto robot = [](std::size_t springs) {
@@ -333,14 +253,14 @@ TEST(EditHistory, ForgetsTheOldestRatherThanFillTheMemory) {
   for (; history.can_undo(); ++undone) history.undo(document);
   EXPECT_GE(undone, 2);
   EXPECT_LE(undone, 4);
-  // Robots that stay cost nothing.
+  // Edits that keep their robots cost no memory.
   EditHistory slider(10);
   for (int i = 0; i < 300; ++i) slider.before_change(document, "change");
   for (undone = 0; slider.can_undo(); ++undone) slider.undo(document);
   EXPECT_EQ(undone, 200);
 }
 
-TEST(LiveScene, ClosesWhileItPlaysAndWorks) {
+TEST(LiveScene, ClosesWhilePlayingAndWorkingInTheBackground) {
   LiveScene scene(on_cpu());
   scene.generate({.count = 200});
   scene.set_speed(unlimited_speed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In slow motion the picture moves evenly, between the states of steps.
+// In slow motion the picture moves evenly between the states of two steps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace mercury {
 namespace {
 
-// One mass that moves at 2 m/s, after so many steps; due at its step's time on the wall.
+// One mass that moves at 2 m/s, after `steps` steps; due at the wall time of its step.
 std::shared_ptr<const Snapshot> snapshot_at(std::int64_t steps, double speed, bool playing = true,
                                             std::uint64_t resets = 0) {
   static const auto robots = std::make_shared<const LiveRobots>(LiveRobots{.revision = 1, .mass_offsets = {0, 1}});
@@ -26,34 +26,34 @@ std::shared_ptr<const Snapshot> snapshot_at(std::int64_t steps, double speed, bo
   return snapshot;
 }
 
-TEST(SlowMotion, MovesEvenlyHoweverStepsFallIntoPictures) {
-  // Steps a second: one, somewhat fewer than pictures, somewhat more, many more.
+TEST(SlowMotion, MovesEvenlyAtAnyRateOfSteps) {
+  // Steps per second: one, somewhat fewer than pictures, somewhat more, many more.
   for (const double speed : {0.001, 0.05, 0.07, 0.2}) {
     SlowMotion motion;
     const double picture = 1 / 60.0, period = 0.001 / speed;
     motion.take(snapshot_at(0, speed));
     double last = 0;
-    std::int64_t told = 0;
+    std::int64_t published = 0;
     int pictures = 0;
     for (double wall = 0; wall < std::max(1.0, 12 * period); wall += picture) {
-      // Physics tells of the newest step one picture late.
+      // Physics publishes the newest step one picture late.
       const auto steps = static_cast<std::int64_t>(std::floor(std::max(0.0, wall - picture) / period + 1e-9));
-      if (steps > told) motion.take(snapshot_at(told = steps, speed));
+      if (steps > published) motion.take(snapshot_at(published = steps, speed));
       const SlowMotion::Shown shown = motion.at(wall);
       const double expected = std::max(0.0, (wall - period - SlowMotion::allowance) * speed);
       EXPECT_NEAR(shown.time, expected, 1e-9) << speed << " at " << wall;
       EXPECT_NEAR(shown.positions[0].x, 2 * shown.time, 1e-6);
       EXPECT_EQ(shown.positions[0].z, 1);
       EXPECT_NEAR(shown.telemetry[0].center_of_mass.x, 2 * shown.time, 1e-6);
-      EXPECT_LE(shown.time, static_cast<double>(told) * 0.001 + 1e-12) << "nothing that was not computed";
+      EXPECT_LE(shown.time, static_cast<double>(published) * 0.001 + 1e-12) << "only computed states are shown";
       pictures += shown.time > last;
       last = shown.time;
     }
-    EXPECT_GT(pictures, 30) << "almost every picture is another one, at " << speed;
+    EXPECT_GT(pictures, 30) << "almost every picture differs from the previous one, at " << speed;
   }
 }
 
-TEST(SlowMotion, ShowsTheStateItselfAtRestAndAtSpeed) {
+TEST(SlowMotion, ShowsTheNewestStateWhenPausedOrFast) {
   SlowMotion motion;
   motion.take(snapshot_at(3, 0.001));
   motion.take(snapshot_at(4, 0.001));
@@ -63,16 +63,16 @@ TEST(SlowMotion, ShowsTheStateItselfAtRestAndAtSpeed) {
   EXPECT_EQ(motion.at(4.1).positions[0].x, 0.008f);
   motion.take(snapshot_at(900, 1));
   motion.take(snapshot_at(916, 1));
-  EXPECT_EQ(motion.at(0.917).time, 0.916) << "a thousand steps a second are smooth by themselves";
+  EXPECT_EQ(motion.at(0.917).time, 0.916) << "a thousand steps per second need no interpolation";
 }
 
-TEST(SlowMotion, NeverRunsBackwardsButAtAReset) {
+TEST(SlowMotion, TimeNeverGoesBackExceptAtAReset) {
   SlowMotion motion;
   motion.take(snapshot_at(10, 0.001));
   motion.take(snapshot_at(11, 0.001));
   const double before = motion.at(12.0).time;
   EXPECT_GT(before, 0.0105);
-  // Faster, which is further behind.
+  // At a higher speed the picture lags further behind.
   motion.take(snapshot_at(12, 0.2));
   EXPECT_GE(motion.at(snapshot_at(12, 0.2)->due_at).time, before);
   motion.take(snapshot_at(0, 0.2, true, 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene for the tests of the window's model, on one thread of the CPU.
+// Scenes for the tests of app/live, on one thread of the CPU.
 #pragma once
 
 #include "app/live/live_scene.h"
@@ -10,7 +10,7 @@ inline LiveSceneOptions on_cpu(Environment environment = Ocean{}) {
   return {.configuration = {.environment = environment, .device = {.kind = DeviceKind::cpu, .threads = 1}}};
 }
 
-// Random voxel robots of seed 5, delivered.
+// Adds random voxel robots and waits until they are in the scene.
 inline void make_robots(LiveScene& scene, std::size_t count, std::uint64_t seed = 5) {
   scene.generate({.count = count, .seed = seed});
   scene.wait_until_done();

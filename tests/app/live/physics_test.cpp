@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window's physics: on its own thread, and yet step by step what the simulation alone gives.
+// The window's physics: on its own thread it gives the same states as a simulation, bit for bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::vector<Vec3> positions_of(const Simulation& simulation) {
   return positions;
 }
 
-TEST(LivePhysics, StepsGiveWhatTheSimulationAloneGives) {
+TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;
     Physics physics(on_cpu(environment), messages);
@@ -59,7 +59,7 @@ TEST(LivePhysics, StepsGiveWhatTheSimulationAloneGives) {
   }
 }
 
-TEST(LivePhysics, WhatPlayedUntilPausedIsWhatSoManyStepsGive) {
+TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   Messages messages;
   Physics physics(on_cpu(), messages);
   const auto robots = some_robots(2);
@@ -76,7 +76,7 @@ TEST(LivePhysics, WhatPlayedUntilPausedIsWhatSoManyStepsGive) {
   EXPECT_EQ(snapshot->positions, positions_of(simulation));
 }
 
-TEST(LivePhysics, ResetGoesBackToRestAtTimeZero) {
+TEST(LivePhysics, ResetReturnsToRestAtTimeZero) {
   Messages messages;
   Physics physics(on_cpu(), messages);
   const auto robots = some_robots(2);
@@ -93,7 +93,7 @@ TEST(LivePhysics, ResetGoesBackToRestAtTimeZero) {
   EXPECT_EQ(physics.newest()->resets, start->resets + 1);
 }
 
-TEST(LivePhysics, RobotsThatStayGoOnWhenOthersComeAndGo) {
+TEST(LivePhysics, RobotsKeepTheirStateWhenOthersAreAddedAndRemoved) {
   Messages messages;
   Physics physics(on_cpu(), messages);
   const auto robots = some_robots(3);
@@ -109,7 +109,7 @@ TEST(LivePhysics, RobotsThatStayGoOnWhenOthersComeAndGo) {
   const auto expected = simulation.positions(1);
   EXPECT_TRUE(std::ranges::equal(snapshot->positions_of(1), expected));
   EXPECT_EQ(snapshot->robots->robots[0].id, robots[2].id);
-  // The first one comes back as it left, at step 40.
+  // The first robot comes back with its state of step 40.
   physics.set_scene(robots, on_cpu());
   physics.wait_until_done();
   Simulation until_40 = alone(robots, on_cpu());
@@ -118,7 +118,7 @@ TEST(LivePhysics, RobotsThatStayGoOnWhenOthersComeAndGo) {
   EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(1), expected));
 }
 
-TEST(LivePhysics, APullMovesTheCentreOfMassAsItsForceSays) {
+TEST(LivePhysics, PerturbationMovesTheCentreOfMassByItsForce) {
   // Empty space without damping: the only outer force is k (target - x) on one mass.
   Configuration space = on_cpu(OceanSimple{.point_drag = 0});
   space.damping = 0;
@@ -129,16 +129,16 @@ TEST(LivePhysics, APullMovesTheCentreOfMassAsItsForceSays) {
   physics.set_perturbations({{.robot = 7, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}, {.robot = 8, .mass = 3}});
   physics.step(1);
   physics.wait_until_done();
-  // One kilogram, 20 N for 1 ms.
+  // 20 N act on 1 kg for 1 ms.
   EXPECT_NEAR(physics.newest()->velocities[0].x, 0.02, 1e-6);
-  ASSERT_EQ(physics.newest()->perturbations.size(), 1u) << "a pull on a robot that is not there is left out";
+  ASSERT_EQ(physics.newest()->perturbations.size(), 1u) << "perturbations on missing robots are ignored";
   physics.step(249);
   physics.wait_until_done();
-  // x = 1 - cos(omega t), omega = sqrt(20); the integrator's positions are half a step ahead.
+  // x = 1 - cos(omega t), omega = sqrt(20); the positions of the integrator are half a step ahead.
   EXPECT_NEAR(physics.newest()->positions[0].x, 1 - std::cos(std::sqrt(20.0) * 0.2505), 1e-4);
 }
 
-TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
+TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
   Configuration wild = on_cpu();
   wild.dt = 1;
   Messages messages;
@@ -169,7 +169,7 @@ TEST(LivePhysics, AnExplosionIsToldOnceAndPausesIfAsked) {
   EXPECT_EQ(physics.take_explosions().size(), 1u);
 }
 
-TEST(LivePhysics, RobotsThatCannotBeSimulatedAreToldAndTheNextSceneIsSimulated) {
+TEST(LivePhysics, FailedSceneIsReportedAndTheNextOneIsSimulated) {
   Messages messages;
   Physics physics(on_cpu(), messages);
   auto robots = some_robots(2);
@@ -191,7 +191,7 @@ TEST(LivePhysics, RobotsThatCannotBeSimulatedAreToldAndTheNextSceneIsSimulated) 
   EXPECT_TRUE(messages.take().empty());
 }
 
-TEST(LivePhysics, ViewsThatTheEnvironmentLacksAreLeftOut) {
+TEST(LivePhysics, DetailsThatTheEnvironmentLacksAreIgnored) {
   Messages messages;
   Physics physics(on_cpu(), messages);
   ViewSettings view{.color = &color_quantity("pressure")};

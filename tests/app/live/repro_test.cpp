@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An explosion seen in the window happens again from its repro: by the program, and in the window.
+// A repro repeats an explosion of the window, in `mercury run` and in the window.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "app/recording/repro.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 
 namespace mercury {
@@ -23,7 +23,7 @@ using testing::SizeIs;
 
 class LiveRepro : public test::FolderTest {
  protected:
-  // All that a user can do on the way, then a time step that tears the robot.
+  // All kinds of changes that a user can make, then a time step that lets the robot explode.
   static void torment(LiveScene& scene, RobotId robot) {
     const auto step = [&](std::int64_t count) {
       scene.step(count);
@@ -52,7 +52,7 @@ class LiveRepro : public test::FolderTest {
     scene.set_configuration(configuration);
     step(300);
   }
-  // But for the step by which the explosion was noticed, which depends on how steps fall into slices.
+  // Without the step at which the explosion was noticed: it depends on how the steps fall into slices.
   nlohmann::json content(const std::string& file) {
     auto document = nlohmann::json::parse(read(file));
     document["exploded"].erase("last_step");
@@ -69,13 +69,13 @@ class LiveRepro : public test::FolderTest {
   }
 };
 
-TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
+TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
   for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
     LiveScene scene(test::on_cpu(environment));
     test::make_robots(scene, 1);
     scene.step(25);
     scene.wait_until_done();
-    test::make_robots(scene, 2, 9);  // comes when time has begun already
+    test::make_robots(scene, 2, 9);  // added while the scene is running
     const RobotId robot = ids_of(scene)[1];
     torment(scene, robot);
     const auto exploded = scene.exploded();
@@ -89,13 +89,13 @@ TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
     const std::string file = path(folder + "/voxel-9-0.repro");
     const test::Outcome run = test::mercury({"run", file, "--device", "cpu", "--threads", "1", "--json", "--quiet"});
     ASSERT_EQ(run.status, 0) << run.messages;
-    const auto told = nlohmann::json::parse(run.output)["robots"][0];
-    EXPECT_TRUE(told["exploded"]);
-    EXPECT_EQ(told["exploded_at"].get<double>(), it->time);
-    EXPECT_EQ(told["first_bad_spring"], it->spring->index);
-    EXPECT_EQ(told["hash"], hash_of(scene, robot)) << "frozen in the same state";
+    const auto reported = nlohmann::json::parse(run.output)["robots"][0];
+    EXPECT_TRUE(reported["exploded"]);
+    EXPECT_EQ(reported["exploded_at"].get<double>(), it->time);
+    EXPECT_EQ(reported["first_bad_spring"], it->spring->index);
+    EXPECT_EQ(reported["hash"], hash_of(scene, robot)) << "frozen in the same state";
 
-    // In the window; twice, since a reset goes back to the repro's start.
+    // In the window, twice: a reset returns to the start of the repro.
     LiveScene again(test::on_cpu());
     test::make_robots(again, 1);
     again.step(10);
@@ -110,7 +110,7 @@ TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
       EXPECT_EQ(again.exploded()[0].time, it->time);
       EXPECT_EQ(again.exploded()[0].spring->index, it->spring->index);
       EXPECT_EQ(hash_of(again, again.exploded()[0].robot), hash_of(scene, robot));
-      // It can be saved again, and is the same.
+      // Saving it again gives the same file.
       ASSERT_TRUE(again.save_repro(ids_of(again)[0], folder_ / "again", true).ok());
       EXPECT_TRUE(content("again/voxel-9-0.repro") == content(folder + "/voxel-9-0.repro"));
       again.reset();
@@ -121,7 +121,7 @@ TEST_F(LiveRepro, HappensAgainBitForBitWithAllThatWasDoneOnTheWay) {
   }
 }
 
-TEST_F(LiveRepro, AChangeInTheWindowEndsTheReplay) {
+TEST_F(LiveRepro, ChangeInTheWindowEndsTheReplay) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 1);
   torment(scene, ids_of(scene)[0]);
@@ -133,10 +133,10 @@ TEST_F(LiveRepro, AChangeInTheWindowEndsTheReplay) {
   again.scale_materials(ids_of(again), {.stiffness = 0.5f});
   again.step(400);
   again.wait_until_done();
-  EXPECT_THAT(again.exploded(), IsEmpty()) << "the time step stays what it was";
+  EXPECT_THAT(again.exploded(), IsEmpty()) << "the recorded change of the time step is not applied";
   EXPECT_EQ(again.snapshot().configuration.dt, 1e-3);
   EXPECT_EQ(again.save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
-  // With other files it cannot be opened, and they can.
+  // A repro cannot be opened together with other files; they are opened without it.
   save_robot(path("one.json"), random_voxel_robot({}, 1, 0));
   again.take_messages();
   again.open({path("voxel-5-0.repro"), path("one.json")});
@@ -147,7 +147,7 @@ TEST_F(LiveRepro, AChangeInTheWindowEndsTheReplay) {
   EXPECT_THAT(messages[0].text, HasSubstr("open it alone"));
 }
 
-TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
+TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
   const auto robot = std::make_shared<const Robot>(random_voxel_robot({}, 5, 0));
   const Configuration configuration = test::on_cpu().configuration;
   Simulation simulation(configuration, std::span(robot.get(), 1));
@@ -178,7 +178,7 @@ TEST_F(LiveRepro, StartsSomeSecondsAgoAfterALongRun) {
   EXPECT_EQ(same.hash(0), simulation.hash(0));
 }
 
-TEST_F(LiveRepro, WhatIsNoReproIsToldInOneLine) {
+TEST_F(LiveRepro, InvalidReproIsReportedInOneLine) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 1);
   torment(scene, ids_of(scene)[0]);
@@ -203,7 +203,7 @@ TEST_F(LiveRepro, WhatIsNoReproIsToldInOneLine) {
     for (const auto& odd : {nlohmann::json(), nlohmann::json(-1), nlohmann::json("x"), nlohmann::json::array({1}),
                             nlohmann::json{{"step", -5}}}) {
       if (name == "changes" && odd.is_null()) continue;          // none
-      if (name == "configuration" && odd.is_object()) continue;  // what is missing has its default
+      if (name == "configuration" && odd.is_object()) continue;  // missing values have their defaults
       changed[name] = odd;
       EXPECT_TRUE(refused(changed.dump())) << name << " " << odd;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray meets, against independent calculations.
+// Picking: what a ray hits, compared with independent calculations.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -8,7 +8,7 @@
 
 #include "app/scene/eigen_vec3.h"
 #include "mercury/random.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// A triangle's crossing by solving for barycentric coordinates and distance, in double precision.
+// Intersects a triangle by solving for barycentric coordinates and distance in double precision.
 std::optional<double> crossing(const render::Ray& ray, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   Eigen::Matrix3d columns;
   columns << b - a, c - a, -ray.direction.cast<double>();
@@ -33,7 +33,7 @@ std::optional<double> crossing(const render::Ray& ray, const Vector3d& a, const 
   return solution[2];
 }
 
-TEST(LivePicking, MeetsTheFaceThatBruteForceFinds) {
+TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 6);
   scene.step(200);
@@ -93,7 +93,7 @@ Robot two_springs() {
   return robot;
 }
 
-TEST(LivePicking, MeetsSpringsWithinTheRadiusAndTellsTheirForce) {
+TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
   LiveScene scene(test::on_cpu(OceanSimple{.stiffness_scale = 3}));
   scene.add({two_springs()});
   scene.wait_until_done();
@@ -111,14 +111,14 @@ TEST(LivePicking, MeetsSpringsWithinTheRadiusAndTellsTheirForce) {
   ASSERT_TRUE(figures.spring);
   EXPECT_EQ(figures.robot, "pair");
   EXPECT_EQ(figures.spring->material_name, "tissue");
-  // Hooke: 40 N/m times the environment's 3, 1 m long where 0.8 m is rest.
+  // Hooke's law: 40 N/m times the environment's factor of 3; length 1 m, rest length 0.8 m.
   EXPECT_NEAR(figures.spring->force, 3 * 40 * 0.2f, 1e-4f);
   EXPECT_NEAR(figures.spring->strain, 0.25f, 1e-6f);
   EXPECT_EQ(figures.mass.springs, 1u);
   EXPECT_EQ(figures.mass.speed, 0);
 }
 
-TEST(LivePicking, WhatIsHiddenOrCutAwayIsNotMet) {
+TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 1);
   const render::Bounds box = scene.picture().bounds()[0];

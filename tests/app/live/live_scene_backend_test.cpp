@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window's scene on every backend; on a machine without a CUDA device its cases are skipped.
+// The window's scene on every backend. The CUDA cases are skipped on a machine without a GPU.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "app/recording/repro.h"
 #include "mercury/random_voxel.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -24,7 +24,7 @@ class LiveOn : public BackendTest {
 };
 INSTANTIATE_TEST_SUITE_P(All, LiveOn, every_device, BackendTest::name);
 
-TEST_P(LiveOn, StepsAndEditsGiveWhatTheSimulationGives) {
+TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
   for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
     LiveScene scene(options(environment));
     test::make_robots(scene, 3);
@@ -53,7 +53,7 @@ TEST_P(LiveOn, StepsAndEditsGiveWhatTheSimulationGives) {
   }
 }
 
-TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
+TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
   LiveScene scene(options());
   test::make_robots(scene, 4);
   scene.set_speed(unlimited_speed);
@@ -64,7 +64,7 @@ TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
     pictures += scene.snapshot().steps != seen;
     seen = scene.snapshot().steps;
     if (scene.snapshot().playing && pictures > 3) {
-      EXPECT_TRUE(scene.snapshot().velocities.empty()) << "they are not read when nobody asks";
+      EXPECT_TRUE(scene.snapshot().velocities.empty()) << "velocities are read only on request";
     }
   }
   scene.pause();
@@ -73,9 +73,9 @@ TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
   simulation.step(scene.snapshot().steps);
   for (std::size_t robot = 0; robot < 4; ++robot) {
     EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(robot), simulation.positions(robot)));
-    EXPECT_FALSE(scene.snapshot().velocities_of(robot).empty()) << "at rest they are there";
+    EXPECT_FALSE(scene.snapshot().velocities_of(robot).empty()) << "a paused scene has velocities";
   }
-  // However many samples were left out, those that are there are evenly spaced.
+  // Samples were dropped, but the others are evenly spaced.
   const Series series = scene.series(test::ids_of(scene)[0]);
   ASSERT_EQ(series.times.size(), series.samples.size());
   ASSERT_GE(series.times.size(), 3u);
@@ -83,7 +83,7 @@ TEST_P(LiveOn, WhatPlaysAsFastAsItGoesIsWhatSoManyStepsGive) {
     EXPECT_NEAR(series.times[i] - series.times[i - 1], series.times[1] - series.times[0], 1e-9) << i;
 }
 
-TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
+TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
   LiveScene scene(options());
   test::make_robots(scene, 2);
   const RobotId robot = test::ids_of(scene)[1];
@@ -117,7 +117,7 @@ TEST_P(LiveOn, AnExplosionIsMarkedComesBackWithUndoAndHappensAgain) {
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(again->index), frozen));
 }
 
-TEST_P(LiveOn, AReproRunsTheSameWayFromItsStart) {
+TEST_P(LiveOn, ReproGivesTheSameStateFromItsStart) {
   Robot robot = random_voxel_robot({}, 5, 0);
   Simulation simulation({.device = device()}, std::span(&robot, 1));
   simulation.step(120);

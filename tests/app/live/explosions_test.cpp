@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explosions in the window's scene: which spring is shown, where, and that it stays true when edits are taken back.
+// Explosions in the window's scene: which spring is shown, where, and that undo restores it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "app/scene/eigen_vec3.h"
 #include "mercury/random_voxel.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
 namespace {
@@ -28,26 +28,28 @@ LiveSceneOptions in_space() {
   return options;
 }
 
-// Springs of material 1, which is sound, but one of material 2, whose k dt^2 is far beyond what the force solver bears.
-Robot with_bad_spring(const std::string& name, std::vector<Vec3> masses,
-                      const std::vector<std::array<std::uint16_t, 2>>& ends, std::size_t bad, float stiffness = 4e6f) {
+// All springs are of material 1, which is stable, except one of material 2, whose k dt^2 makes the force solver
+// unstable.
+Robot with_unstable_spring(const std::string& name, std::vector<Vec3> masses,
+                           const std::vector<std::array<std::uint16_t, 2>>& ends, std::size_t unstable,
+                           float stiffness = 4e6f) {
   Robot robot{.name = name, .masses = std::move(masses)};
   robot.materials = {{}, {.stiffness = 50}, {.stiffness = stiffness}};
-  robot.material_names = {"air", "sound", "brittle"};
+  robot.material_names = {"air", "stable", "unstable"};
   for (const auto& [a, b] : ends)
-    robot.springs.push_back({a, b, static_cast<MaterialId>(robot.springs.size() == bad ? 2 : 1), length});
+    robot.springs.push_back({a, b, static_cast<MaterialId>(robot.springs.size() == unstable ? 2 : 1), length});
   return robot;
 }
 
-// Masses on a line, a little farther apart than their springs want.
-Robot chain(std::size_t bad, float stiffness = 4e6f) {
+// Masses on a line, 1 % farther apart than the rest length of their springs.
+Robot chain(std::size_t unstable, float stiffness = 4e6f) {
   std::vector<Vec3> masses;
   std::vector<std::array<std::uint16_t, 2>> ends;
   for (std::uint16_t i = 0; i < 8; ++i) {
     masses.push_back({1.01f * length * static_cast<float>(i), 0, 0});
     if (i > 0) ends.push_back({static_cast<std::uint16_t>(i - 1), i});
   }
-  return with_bad_spring("chain", masses, ends, bad, stiffness);
+  return with_unstable_spring("chain", masses, ends, unstable, stiffness);
 }
 
 void explode(LiveScene& scene) {
@@ -55,13 +57,13 @@ void explode(LiveScene& scene) {
   scene.wait_until_done();
 }
 
-TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
+TEST(LiveExplosion, UnstableSpringAmongSeparatePairsIsShown) {
   LiveScene scene(in_space());
   std::vector<Vec3> masses;
   for (int pair = 0; pair < 3; ++pair)
     for (int end = 0; end < 2; ++end)
       masses.push_back({1.02f * length * static_cast<float>(end), static_cast<float>(pair), 0});
-  scene.add({with_bad_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
+  scene.add({with_unstable_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
   explode(scene);
   const auto exploded = scene.exploded();
   ASSERT_THAT(exploded, SizeIs(1));
@@ -73,7 +75,7 @@ TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
   EXPECT_EQ(spring.index, 2u);
   EXPECT_EQ(spring.a, 5);
   EXPECT_EQ(spring.b, 4);
-  EXPECT_EQ(spring.figures.material_name, "brittle");
+  EXPECT_EQ(spring.figures.material_name, "unstable");
   EXPECT_GT(spring.figures.length, 16 * length);
   const Eigen::Vector3f offset = scene.picture().offsets()[0];
   EXPECT_EQ(spring.at_a, Eigen::Vector3f(eigen(scene.snapshot().positions_of(0)[5]) + offset));
@@ -86,11 +88,11 @@ TEST(LiveExplosion, OfPairsThatNothingJoinsTheUnstableOneIsShown) {
 }
 
 // Algorithm 1 in double precision, until a spring is longer than sixteen times the longest rest length.
-struct Blamed {
+struct Expected {
   std::size_t spring;
   std::vector<double> positions;
 };
-Blamed blamed_in(const Robot& robot, double dt) {
+Expected expected_explosion(const Robot& robot, double dt) {
   std::vector<double> x, v(robot.masses.size());
   for (const Vec3 mass : robot.masses) x.push_back(static_cast<double>(mass.x));
   for (int step = 0; step < 200; ++step) {
@@ -118,27 +120,27 @@ Blamed blamed_in(const Robot& robot, double dt) {
   return {robot.springs.size(), x};
 }
 
-TEST(LiveExplosion, InAChainItIsTheSpringAndThePlaceThatASimpleLoopFinds) {
-  for (const std::size_t bad : {0u, 3u, 6u}) {
+TEST(LiveExplosion, SpringAndPlaceInAChainAreThoseOfASimpleLoop) {
+  for (const std::size_t unstable : {0u, 3u, 6u}) {
     LiveScene scene(in_space());
-    const Robot robot = chain(bad);
+    const Robot robot = chain(unstable);
     scene.add({robot});
     explode(scene);
     const auto exploded = scene.exploded();
     ASSERT_THAT(exploded, SizeIs(1));
     ASSERT_TRUE(exploded[0].spring);
-    const Blamed blamed = blamed_in(robot, scene.configuration().dt);
-    ASSERT_LT(blamed.spring, robot.springs.size());
+    const Expected loop = expected_explosion(robot, scene.configuration().dt);
+    ASSERT_LT(loop.spring, robot.springs.size());
     const CulpritSpring& spring = *exploded[0].spring;
-    EXPECT_EQ(spring.index, blamed.spring) << bad;
-    const float expected = static_cast<float>(blamed.positions[spring.b] - blamed.positions[spring.a]);
-    EXPECT_NEAR((spring.at_b - spring.at_a).x(), expected, 0.02f * std::abs(expected)) << bad;
+    EXPECT_EQ(spring.index, loop.spring) << unstable;
+    const float expected = static_cast<float>(loop.positions[spring.b] - loop.positions[spring.a]);
+    EXPECT_NEAR((spring.at_b - spring.at_a).x(), expected, 0.02f * std::abs(expected)) << unstable;
   }
 }
 
-TEST(LiveExplosion, EachOfSeveralIsShownInItsTileTheEarliestFirst) {
+TEST(LiveExplosion, SeveralExplosionsAreSortedByTime) {
   LiveScene scene(in_space());
-  // The less stiff one takes longer.
+  // The less stiff the spring, the later the explosion.
   scene.add({chain(2, 2.2e6f), chain(4, 1), chain(5, 2e7f), chain(1, 6e6f)});
   explode(scene);
   const auto exploded = scene.exploded();
@@ -158,7 +160,7 @@ TEST(LiveExplosion, EachOfSeveralIsShownInItsTileTheEarliestFirst) {
   EXPECT_THAT(scene.exploded(), SizeIs(2));
 }
 
-TEST(LiveExplosion, IsThereAtOnceWhenEditsAreTakenBackAndDoesNotPause) {
+TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   LiveScene scene(in_space());
   scene.pause_on_explosion(false);
   scene.add({chain(3), chain(1, 1)});
@@ -170,7 +172,7 @@ TEST(LiveExplosion, IsThereAtOnceWhenEditsAreTakenBackAndDoesNotPause) {
   scene.remove({ids[0]});
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), IsEmpty());
-  // A time step that had been changed in between does not move what has been.
+  // A change of the time step in between does not change the explosion.
   Configuration finer = scene.configuration();
   finer.dt /= 8;
   ASSERT_TRUE(scene.set_configuration(finer));
@@ -188,14 +190,14 @@ TEST(LiveExplosion, IsThereAtOnceWhenEditsAreTakenBackAndDoesNotPause) {
   EXPECT_EQ(after[0].spring->at_a, before[0].spring->at_a);
   EXPECT_TRUE(scene.picture().scene().placements[after[0].index].faulty);
   EXPECT_TRUE(scene.entries()[0].exploded);
-  EXPECT_EQ(stops, 0u) << "it exploded before, not now";
+  EXPECT_EQ(stops, 0u) << "it did not explode again";
   scene.redo();
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), IsEmpty());
   scene.undo();
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), SizeIs(1));
-  // A copy is a new robot at rest; a reset heals.
+  // A copy is a new robot at rest. A reset removes explosions.
   scene.duplicate({ids[0]});
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), SizeIs(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films made beside the window.
+// Videos that the window makes: screen recordings and videos of the group.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include <thread>
 
 #include "app/live/screen_recording.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 
 namespace mercury {
 namespace {
 
-class LiveFilm : public test::FolderTest {};
+class LiveVideo : public test::FolderTest {};
 
 render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
   render::Image image{width, height, render::PixelFormat::rgb, {}};
@@ -21,10 +21,10 @@ render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
   return image;
 }
 
-template <class Film>
-VideoStatus over(const Film& film) {
-  while (!film.status().over()) std::this_thread::yield();
-  return film.status();
+template <class Video>
+VideoStatus over(const Video& video) {
+  while (!video.status().over()) std::this_thread::yield();
+  return video.status();
 }
 
 TEST(Yuv420, FollowsBt709InLimitedRange) {
@@ -41,10 +41,10 @@ TEST(Yuv420, FollowsBt709InLimitedRange) {
   EXPECT_EQ(of({0, 0, 255}), (std::array{32, 240, 118}));
 }
 
-TEST_F(LiveFilm, ARecordingKeepsRealTime) {
+TEST_F(LiveVideo, RecordingRunsInRealTime) {
   const std::string file = path("screen.mp4");
   ScreenRecording recording(file, {65, 49}, 20);
-  // Frames at 0, 10 (too early), 60 ms and after a pause of a second: 0, 1 and 20..21.
+  // Frames at 0 ms, 10 ms (too early), 60 ms and after a pause of a second become the frames 0, 1 and 20 to 21.
   EXPECT_TRUE(recording.offer(5.00, plain(65, 49, {200, 0, 0})));
   EXPECT_FALSE(recording.wants(5.01));
   EXPECT_FALSE(recording.offer(5.01, plain(65, 49, {0, 0, 0})));
@@ -63,7 +63,7 @@ TEST_F(LiveFilm, ARecordingKeepsRealTime) {
   EXPECT_EQ(stream["height"], 48);
 }
 
-TEST_F(LiveFilm, ARecordingThatCannotBeMadeSaysSoAndACancelledOneLeavesNothing) {
+TEST_F(LiveVideo, FailedRecordingReportsWhyAndCancelledOneLeavesNoFile) {
   ScreenRecording wrong(path("screen.avi"), {64, 48});
   const VideoStatus status = over(wrong);
   EXPECT_EQ(status.state, VideoStatus::State::failed);
@@ -76,33 +76,33 @@ TEST_F(LiveFilm, ARecordingThatCannotBeMadeSaysSoAndACancelledOneLeavesNothing) 
   EXPECT_TRUE(listing().empty());
 }
 
-TEST_F(LiveFilm, AGroupFilmIsMadeWhileTheSceneGoesOn) {
+TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   scene.step(10);
-  const auto film = scene.export_video({.output = path("group.mp4"),
-                                        .size = {160, 90},
-                                        .frames_per_second = 10,
-                                        .seconds = 0.5,
-                                        .quality = render::Quality::low});
+  const auto video = scene.export_video({.output = path("group.mp4"),
+                                         .size = {160, 90},
+                                         .frames_per_second = 10,
+                                         .seconds = 0.5,
+                                         .quality = render::Quality::low});
   scene.play();
-  while (!film->status().over()) scene.frame();
-  const VideoStatus status = film->status();
+  while (!video->status().over()) scene.frame();
+  const VideoStatus status = video->status();
   ASSERT_EQ(status.state, VideoStatus::State::done) << status.error;
   EXPECT_EQ(status.frames, 5);
   EXPECT_EQ(status.total, 5);
   EXPECT_EQ(test::probe(path("group.mp4"))["nb_read_frames"], "5");
 }
 
-TEST_F(LiveFilm, ACancelledGroupFilmLeavesNothingAndAnEmptyOneSaysWhy) {
+TEST_F(LiveVideo, CancelledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {
   LiveScene scene(test::on_cpu());
   EXPECT_EQ(over(*scene.export_video({.output = path("none.mp4")})).state, VideoStatus::State::failed);
   test::make_robots(scene, 1);
-  const auto film = scene.export_video(
+  const auto video = scene.export_video(
       {.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
-  film->cancel();
-  film->wait();
-  EXPECT_EQ(film->status().state, VideoStatus::State::cancelled);
+  video->cancel();
+  video->wait();
+  EXPECT_EQ(video->status().state, VideoStatus::State::cancelled);
   EXPECT_TRUE(listing().empty());
 }
 

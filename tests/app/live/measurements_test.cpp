@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pace, series, ranking and tables.
+// Pace, time series, ranking and CSV tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,12 +8,13 @@
 #include <sstream>
 
 #include "app/live/pace.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
 namespace {
 
-TEST(Pace, DuesAreWallTimeTimesSpeedOverTheTimeStep) {
+TEST(Pace, DueStepsAreWallTimeTimesSpeedOverTimeStep) {
   Pace pace;
   pace.start(100, 2, 1e-3);
   EXPECT_EQ(pace.due(100), 0);
@@ -26,7 +27,7 @@ TEST(Pace, DuesAreWallTimeTimesSpeedOverTheTimeStep) {
 
 TEST(Pace, SlowMotionWaitsForWholeSteps) {
   Pace pace;
-  pace.start(0, 1e-3, 1e-3);  // a step a second
+  pace.start(0, 1e-3, 1e-3);  // one step per second
   EXPECT_EQ(pace.due(0.9), 0);
   EXPECT_EQ(pace.due(1.0), 1);
   pace.done(1);
@@ -35,21 +36,21 @@ TEST(Pace, SlowMotionWaitsForWholeSteps) {
   EXPECT_EQ(pace.due(2.01), 1);
 }
 
-TEST(Pace, WhatIsTooLateIsForgotten) {
+TEST(Pace, LateStepsAreForgotten) {
   Pace pace;
   pace.start(0, 1, 1e-3);
-  // Physics that does 10 steps in 50 ms, and always falls behind: never more than a tenth of a second is due.
+  // Physics that needs 50 ms for 10 steps falls behind; never more than a tenth of a second is due.
   for (double wall = 0; wall < 20; wall += 0.05) {
     EXPECT_LE(pace.due(wall), 101);
     pace.done(10);
   }
-  // The machine slept for an hour.
+  // After an hour of sleep.
   EXPECT_LE(pace.due(3600), 101);
   pace.start(0, unlimited_speed, 1e-3);
   EXPECT_EQ(pace.due(1), std::numeric_limits<std::int64_t>::max());
 }
 
-TEST(SpeedGauge, TellsSimulatedTimeOverWallTimeOfTheLastSecond) {
+TEST(SpeedGauge, IsSimulatedTimeOverWallTimeOfTheLastSecond) {
   SpeedGauge gauge;
   EXPECT_EQ(gauge.speed(), 0);
   for (int i = 0; i <= 100; ++i) gauge.mark(0.1 * i, 0.05 * i);
@@ -65,7 +66,7 @@ LiveRobots two_robots() {
   return robots;
 }
 
-// Robot k is at x = (k + 1) t and moves with k + 1.
+// Robot k moves along x at k + 1 m/s.
 std::vector<Telemetry> moving(double time) {
   std::vector<Telemetry> telemetry(2);
   for (int k = 0; k < 2; ++k) {
@@ -77,7 +78,7 @@ std::vector<Telemetry> moving(double time) {
 
 std::vector<Telemetry> first_of(const std::vector<Telemetry>& telemetry) { return {telemetry.front()}; }
 
-TEST(Measurements, LongRunsThinOutAndStayEvenlySpaced) {
+TEST(Measurements, SamplesOfLongRunsAreFewAndEvenlySpaced) {
   Measurements measurements(16);
   measurements.restart(two_robots(), 0, 0, 1e-3, moving(0));
   for (std::int64_t step = 0; step <= 100'000; step = measurements.next_step())
@@ -95,15 +96,15 @@ TEST(Measurements, LongRunsThinOutAndStayEvenlySpaced) {
   EXPECT_GT(series.times.back(), 90);
 }
 
-TEST(Measurements, ARobotThatCameLaterHasItsOwnStartAndOnlyItsOwnSamples) {
-  for (const std::int64_t arrival : {60, 80, 100, 120}) {
+TEST(Measurements, RobotAddedLaterHasItsOwnStartAndSamples) {
+  for (const std::int64_t added_at : {60, 80, 100, 120}) {
     Measurements measurements(8);
     const LiveRobots both = two_robots();
     const LiveRobots first{.robots = {both.robots[0]}, .mass_offsets = {0, 1}};
     measurements.restart(first, 0, 0, 1e-3, first_of(moving(0)));
     std::int64_t step = 0;
     const auto time = [&] { return 1e-3 * static_cast<double>(step); };
-    for (; step < arrival; step = measurements.next_step())
+    for (; step < added_at; step = measurements.next_step())
       measurements.observe(time(), step, first_of(moving(time())));
     const double came = time();
     measurements.set_robots(both, came, moving(came));
@@ -113,13 +114,13 @@ TEST(Measurements, ARobotThatCameLaterHasItsOwnStartAndOnlyItsOwnSamples) {
     ASSERT_FALSE(series.times.empty());
     EXPECT_GE(series.times.front(), came);
     for (std::size_t i = 0; i < series.times.size(); ++i)
-      EXPECT_NEAR(series.samples[i].distance, 2 * (series.times[i] - came), 1e-4) << arrival;
+      EXPECT_NEAR(series.samples[i].distance, 2 * (series.times[i] - came), 1e-4) << added_at;
     EXPECT_NEAR(measurements.series(4).samples.back().distance, measurements.series(4).times.back(), 1e-4);
     EXPECT_TRUE(measurements.series(5).times.empty());
   }
 }
 
-TEST(LiveMeasures, RankingAndTablesHoldWhatTheSimulationTells) {
+TEST(LiveMeasures, RankingAndTablesHoldTheValuesOfTheSimulation) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 3);
   scene.step(500);
@@ -137,7 +138,7 @@ TEST(LiveMeasures, RankingAndTablesHoldWhatTheSimulationTells) {
     EXPECT_NEAR(rows[i].kinetic_energy, end[i].kinetic_energy, 1e-9);
     EXPECT_GE(rows[i].largest_strain, end[i].largest_strain);
   }
-  // The CSV's last line is the 500th step: 20 ms is the first interval.
+  // The last line is that of step 500, because the first interval is 20 ms.
   std::istringstream csv(scene.csv(test::ids_of(scene)));
   std::string line, header, last;
   std::getline(csv, header);
@@ -156,7 +157,7 @@ TEST(LiveMeasures, RankingAndTablesHoldWhatTheSimulationTells) {
   EXPECT_NEAR(time, 0.5, 1e-9);
   EXPECT_NEAR(speed, length(end[0].velocity), 1e-6);
   EXPECT_NEAR(distance, rows[0].distance, 1e-6);
-  // Farthest first.
+  // The farthest robot comes first.
   std::istringstream ranking(scene.ranking_csv());
   std::getline(ranking, header);
   double before = INFINITY;

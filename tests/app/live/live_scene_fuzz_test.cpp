@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is asked for in whatever order: nothing throws, nothing hangs, and the snapshots hold together.
+// Random calls in random order: nothing throws, nothing hangs, and the snapshots stay consistent.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "mercury/random.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 
 namespace mercury {
@@ -185,7 +185,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, LiveFuzz, testing::Values(1, 2, 3));
 
-TEST_P(LiveFuzz, AnythingInAnyOrder) {
+TEST_P(LiveFuzz, RandomCallsLeaveAConsistentScene) {
   for (int i = 0; i < 1500; ++i) {
     ASSERT_NO_THROW(act()) << i;
     if (below(3) == 0) look();
@@ -193,7 +193,7 @@ TEST_P(LiveFuzz, AnythingInAnyOrder) {
   }
   scene.pause();
   scene.wait_until_done();
-  // What is left is the scene that was asked for.
+  // The snapshot shows the robots of the document.
   ASSERT_EQ(scene.snapshot().robots->size(), scene.document().robots.size());
   for (std::size_t i = 0; i < scene.document().robots.size(); ++i)
     EXPECT_EQ(scene.snapshot().robots->robots[i].id, scene.document().robots[i].body.id);

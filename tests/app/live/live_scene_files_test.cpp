@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of the window: robots opened and saved, commands that make the scene again, repro files, what is session
-// settings.
+// Files of the window: opening and saving robots, the command that makes the scene again, session settings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +13,9 @@
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
+#include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "tests/app/live/live_scene_bodies.h"
+#include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 
 namespace mercury {
@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// As the program writes hashes.
+// A hash as the program writes it.
 std::string hash_text(std::uint64_t hash) {
   std::ostringstream text;
   text << std::hex << std::setw(16) << std::setfill(static_cast<char>(48)) << hash;
@@ -35,7 +35,7 @@ std::string hash_text(std::uint64_t hash) {
 
 class LiveFiles : public test::FolderTest {
  protected:
-  // The words of a line as the shell takes them.
+  // The words that the shell makes of a line.
   static std::vector<std::string> words_of(const std::string& line) {
     const test::Outcome outcome = test::run_program("sh", {"-c", "printf '%s\\0' " + line});
     std::vector<std::string> words;
@@ -49,7 +49,7 @@ class LiveFiles : public test::FolderTest {
     Configuration configuration;
     ViewSettings view;
   };
-  // What the program's own options make of the words after `mercury view`.
+  // The robots and settings that the options of `mercury view` make of the line.
   static Parsed parsed(const std::string& line) {
     std::vector<std::string> words = words_of(line);
     EXPECT_THAT(std::vector(words.begin(), words.begin() + 2), ElementsAre("mercury", "view"));
@@ -66,7 +66,7 @@ class LiveFiles : public test::FolderTest {
   }
 };
 
-TEST_F(LiveFiles, OpensWhatCanBeReadAndTellsOfTheRest) {
+TEST_F(LiveFiles, OpensReadableFilesAndReportsTheOthers) {
   save_robot(path("b.json"), random_voxel_robot({}, 1, 0));
   save_robot(path("a.cbor"), random_voxel_robot({}, 1, 1));
   write("broken.json", "{");
@@ -100,8 +100,8 @@ TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
   EXPECT_THAT(messages[0].text, HasSubstr("2 robots, at rest"));
 }
 
-TEST_F(LiveFiles, WhatIsDroppedInOneGoLoadsWhereItCanAndTheRestIsTold) {
-  // As a drop hands it over: files of all kinds, folders, names with anything in them.
+TEST_F(LiveFiles, DroppedFilesAreOpenedOrReported) {
+  // A drop can hold files of all kinds, folders, and names with any character.
   save_robot(path("a b%20\xc3\xa9 '#?.json"), random_voxel_robot({}, 1, 0));
   std::filesystem::create_directories(folder_ / "many" / "inner");
   std::filesystem::create_directories(folder_ / "empty");
@@ -126,7 +126,7 @@ TEST_F(LiveFiles, WhatIsDroppedInOneGoLoadsWhereItCanAndTheRestIsTold) {
   EXPECT_THAT(scene.entries(), IsEmpty()) << "one drop is one edit";
 }
 
-TEST_F(LiveFiles, ManyFilesThatCannotBeUsedMakeFewMessages) {
+TEST_F(LiveFiles, ManyUnreadableFilesMakeFewMessages) {
   for (int i = 0; i < 30; ++i) write("broken-" + std::to_string(i) + ".json", "{");
   LiveScene scene(test::on_cpu());
   scene.open({folder_});
@@ -136,7 +136,7 @@ TEST_F(LiveFiles, ManyFilesThatCannotBeUsedMakeFewMessages) {
   EXPECT_EQ(messages[3].text, "and 27 more files cannot be used");
 }
 
-TEST_F(LiveFiles, SavesWhatIsThereAndNeverReplacesUnasked) {
+TEST_F(LiveFiles, SavesTheChangedRobotAndReplacesFilesOnlyOnRequest) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   const auto ids = test::ids_of(scene);
@@ -170,7 +170,7 @@ TEST_F(LiveFiles, SavesWhatIsThereAndNeverReplacesUnasked) {
   EXPECT_EQ(scene.save(99, path("x.json")).outcome, SaveResult::Outcome::failed);
 }
 
-TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
+TEST_F(LiveFiles, CommandMakesTheSameScene) {
   save_robot(path("it's $HOME.json"), random_voxel_robot({}, 1, 0));
   LiveSceneOptions options = test::on_cpu(Ocean{.density = 900.5f, .flow = {-0.1f, 0, 2}, .gravity = {0, 0, -1}});
   options.configuration.dt = 5e-4;
@@ -212,7 +212,7 @@ TEST_F(LiveFiles, TheCommandMakesTheSameScene) {
   EXPECT_THAT(scene.command("render").text, HasSubstr(" -o scene.mp4"));
 }
 
-TEST_F(LiveFiles, TheCommandSaysWhatItCannotSay) {
+TEST_F(LiveFiles, CommandNotesWhatItCannotExpress) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   scene.mutate({test::ids_of(scene)[0]}, {});
@@ -227,7 +227,7 @@ TEST_F(LiveFiles, TheCommandSaysWhatItCannotSay) {
   EXPECT_EQ(same.robots[1].materials[1].frequency, 2 * default_materials()[1].frequency);
 }
 
-TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
+TEST_F(LiveFiles, StepsGiveTheHashesOfTheRunCommand) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 2);
   scene.step(700);
@@ -243,7 +243,7 @@ TEST_F(LiveFiles, TheSameStepsGiveTheHashesOfRun) {
   }
 }
 
-TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
+TEST_F(LiveFiles, SettingsAreRestoredAndInvalidFilesAreRenamed) {
   Messages messages;
   const auto file = folder_ / "mercury" / "scene.toml";
   EXPECT_EQ(load_session_settings(file, messages).generation.count, RandomRobots{}.count);
@@ -277,7 +277,7 @@ TEST_F(LiveFiles, SettingsComeBackAndBrokenOnesArePutAside) {
   EXPECT_THAT(messages.take(), SizeIs(1));
 }
 
-TEST(FileName, HoldsNothingThatAFilesNameMayNot) {
+TEST(FileName, HasNoCharacterThatFileNamesMustNotHave) {
   EXPECT_EQ(file_name_of("a/b\\c"), "a_b_c");
   EXPECT_EQ(file_name_of("../.."), "_..");
   EXPECT_EQ(file_name_of(""), "robot");
