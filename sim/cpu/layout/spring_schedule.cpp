@@ -11,7 +11,7 @@
 namespace mercury::cpu {
 namespace {
 
-struct Link {
+struct ScheduledSpring {
   std::uint32_t owner, partner;  // slots
   std::uint32_t spring;
 };
@@ -46,19 +46,20 @@ class Scheduler {
 
   // Springs of one tile with the same distance from owner slot to partner slot could form a run.
   void find_runs() {
-    links_.reserve(robot_.springs.size());
+    scheduled_.reserve(robot_.springs.size());
     for (std::uint32_t s = 0; s < robot_.springs.size(); ++s) {
       const auto [low, high] = std::minmax(slots_.of_mass[robot_.springs[s].a], slots_.of_mass[robot_.springs[s].b]);
-      links_.push_back({low, high, s});
+      scheduled_.push_back({low, high, s});
     }
     // Two springs between the same masses cannot share a run.
-    const auto key = [&](const Link& link) { return std::tuple(tile_of(link.owner), link.partner - link.owner); };
-    std::ranges::sort(links_, {},
-                      [&](const Link& link) { return std::tuple_cat(key(link), std::tuple(link.owner, link.spring)); });
-    for (auto first = links_.begin(); first != links_.end();) {
-      const auto last = std::find_if(first, links_.end(), [&](const Link& link) { return key(link) != key(*first); });
-      const auto repeated = std::stable_partition(first, last, [&, before = ~0u](const Link& link) mutable {
-        return std::exchange(before, link.owner) != link.owner;
+    const auto key = [&](const ScheduledSpring& s) { return std::tuple(tile_of(s.owner), s.partner - s.owner); };
+    std::ranges::sort(scheduled_, {},
+                      [&](const ScheduledSpring& s) { return std::tuple_cat(key(s), std::tuple(s.owner, s.spring)); });
+    for (auto first = scheduled_.begin(); first != scheduled_.end();) {
+      const auto last =
+          std::find_if(first, scheduled_.end(), [&](const ScheduledSpring& s) { return key(s) != key(*first); });
+      const auto repeated = std::stable_partition(first, last, [&, before = ~0u](const ScheduledSpring& s) mutable {
+        return std::exchange(before, s.owner) != s.owner;
       });
       for (const auto& [begin, end] : {std::pair(first, repeated), std::pair(repeated, last)})
         if (begin != end) candidates_.push_back({begin, end});
@@ -75,7 +76,7 @@ class Scheduler {
         cheapest = c;
         min_springs = n;
       }
-    for (const std::span<const Link> candidate : candidates_) {
+    for (const std::span<const ScheduledSpring> candidate : candidates_) {
       if (candidate.size() >= min_springs)
         runs_.push_back(candidate);
       else
@@ -84,7 +85,7 @@ class Scheduler {
   }
   double cost(std::size_t min_springs_in_run) const {
     double runs = 0, rest = 0;
-    for (const std::span<const Link> candidate : candidates_)
+    for (const std::span<const ScheduledSpring> candidate : candidates_)
       (candidate.size() >= min_springs_in_run ? runs : rest) +=
           candidate.size() >= min_springs_in_run ? 1 : static_cast<double>(candidate.size());
     if (rest == 0) return runs;
@@ -95,17 +96,17 @@ class Scheduler {
   // The busiest lane of a tile sets its number of gathered rows: springs go to the end that owns fewer.
   void balance_owners() {
     std::vector<std::uint32_t> load(slots_.size_with_spare());
-    for (const Link& link : gathered_) ++load[link.owner];
+    for (const ScheduledSpring& s : gathered_) ++load[s.owner];
     constexpr int sweeps = 8;
     for (int sweep = 0; sweep < sweeps; ++sweep)
-      for (Link& link : gathered_) {
-        const std::uint32_t here = load[link.owner], there = load[link.partner] + 1;
+      for (ScheduledSpring& s : gathered_) {
+        const std::uint32_t here = load[s.owner], there = load[s.partner] + 1;
         if (there > here || (there == here && sweep % 2 == 0)) continue;
-        --load[link.owner];
-        std::swap(link.owner, link.partner);
-        ++load[link.owner];
+        --load[s.owner];
+        std::swap(s.owner, s.partner);
+        ++load[s.owner];
       }
-    std::ranges::stable_sort(gathered_, {}, [&](const Link& link) { return tile_of(link.owner); });
+    std::ranges::stable_sort(gathered_, {}, [&](const ScheduledSpring& s) { return tile_of(s.owner); });
   }
 
   // Appends a row of padding to a tile. Returns its first entry.
@@ -117,9 +118,9 @@ class Scheduler {
       schedule_.bias[tile * lanes_ + lane] += std::uint32_t{rounding_magic_bits};
     return first;
   }
-  void fill(std::size_t first_entry, const Link& link) {
-    schedule_.rest_length[first_entry + lane_of(link.owner)] = robot_.springs[link.spring].rest_length;
-    schedule_.spring[first_entry + lane_of(link.owner)] = link.spring;
+  void fill(std::size_t first_entry, const ScheduledSpring& s) {
+    schedule_.rest_length[first_entry + lane_of(s.owner)] = robot_.springs[s.spring].rest_length;
+    schedule_.spring[first_entry + lane_of(s.owner)] = s.spring;
   }
   // Each step, one entry's force will be added to this slot's sum.
   void expect_force_at(std::uint32_t slot) { schedule_.bias[slot] -= std::uint32_t{rounding_magic_bits}; }
@@ -127,20 +128,20 @@ class Scheduler {
   void append_runs(std::uint32_t tile) {
     const auto stride = static_cast<std::uint32_t>(slots_.size_with_spare());
     for (; next_run_ < runs_.size() && tile_of(runs_[next_run_].front().owner) == tile; ++next_run_) {
-      const Link& first = runs_[next_run_].front();
+      const ScheduledSpring& first = runs_[next_run_].front();
       const auto partner = static_cast<std::uint32_t>(tile * lanes_) + (first.partner - first.owner);
       const std::size_t first_entry = append_row(tile);
-      for (const Link& link : runs_[next_run_]) fill(first_entry, link);
+      for (const ScheduledSpring& s : runs_[next_run_]) fill(first_entry, s);
       for (std::uint32_t lane = 0; lane < lanes_; ++lane) expect_force_at(partner + lane);
       schedule_.runs.push_back({partner, schedule_.tiles[tile].runs++ % reaction_arrays * stride + partner});
     }
   }
 
   void append_gathered_rows(std::uint32_t tile) {
-    std::vector<std::vector<Link>> by_lane(lanes_);
+    std::vector<std::vector<ScheduledSpring>> by_lane(lanes_);
     for (; next_gathered_ < gathered_.size() && tile_of(gathered_[next_gathered_].owner) == tile; ++next_gathered_)
       by_lane[lane_of(gathered_[next_gathered_].owner)].push_back(gathered_[next_gathered_]);
-    const std::size_t rows = std::ranges::max(by_lane, {}, &std::vector<Link>::size).size();
+    const std::size_t rows = std::ranges::max(by_lane, {}, &std::vector<ScheduledSpring>::size).size();
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t first_entry = append_row(tile);
       for (std::uint32_t lane = 0; lane < lanes_; ++lane) {
@@ -159,9 +160,9 @@ class Scheduler {
   const Robot& robot_;
   const Slots& slots_;
   const std::size_t lanes_;
-  std::vector<Link> links_;
-  std::vector<std::span<const Link>> candidates_, runs_;
-  std::vector<Link> gathered_;
+  std::vector<ScheduledSpring> scheduled_;
+  std::vector<std::span<const ScheduledSpring>> candidates_, runs_;
+  std::vector<ScheduledSpring> gathered_;
   std::size_t next_run_ = 0, next_gathered_ = 0;
   SpringSchedule schedule_;
 };
