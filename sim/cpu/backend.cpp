@@ -143,7 +143,7 @@ class CpuBackend final : public Backend {
     arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
   }
 
-  // Has new batches made before the next step.
+  // Brings all states back to the bodies. The next step makes new batches.
   void ungroup() {
     cpu::store(batches_);
     batches_.clear();

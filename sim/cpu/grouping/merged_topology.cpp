@@ -33,8 +33,8 @@ void sort(std::vector<Item>& items) {
   }
 }
 
-// Numbers the items, those of different members between the same slots alike. Calls start(item) before each new number
-// and visit(item, number) for each item.
+// Numbers the items: those of different members between the same slots get the same number. Calls start(item) before
+// each new number and visit(item, number) for each item.
 template <class Start, class Visit>
 void number_items(std::vector<Item>& items, const Start& start, const Visit& visit) {
   sort(items);
