@@ -34,7 +34,7 @@ Delaunay triangulate(std::span<const Vec3> points) {
   return Delaunay(indexed.begin(), indexed.end());
 }
 
-// CGAL's cells have a positive volume; only even permutations are used, which keep it so.
+// CGAL's cells have a positive volume. Even permutations keep it positive.
 Tetrahedron lowest_first(AlphaShape::Cell_handle cell) {
   Tetrahedron t;
   for (int i = 0; i < 4; ++i) t[static_cast<std::size_t>(i)] = cell->vertex(i)->info();
@@ -66,7 +66,7 @@ struct Filtration {
     neighbours = neighbours_of(tetrahedra);
   }
 
-  // How many are inside the alpha shape.
+  // Number of tetrahedra inside the alpha shape.
   std::size_t inside(const SquaredRadius& squared_alpha) const {
     return static_cast<std::size_t>(std::upper_bound(squared_radii.begin(), squared_radii.end(), squared_alpha) -
                                     squared_radii.begin());
@@ -74,8 +74,8 @@ struct Filtration {
 
   SolidBody body(std::size_t count) const { return largest_body(tetrahedra, neighbours, count); }
 
-  // The smallest alpha at which a body holds so many points. Such a body only grows with alpha, so that it is found by
-  // halving.
+  // The smallest alpha at which a body holds that many points. Such a body only grows with alpha, so bisection finds
+  // it.
   SquaredRadius smallest_alpha(std::size_t points) const {
     std::size_t first = 0, last = squared_radii.size() - 1;
     while (first < last) {

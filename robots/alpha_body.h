@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solid body that a cloud of points stands for: its alpha shape (Edelsbrunner and Muecke 1994), as tetrahedra.
+// The solid body of a cloud of points: its alpha shape (Edelsbrunner and Muecke 1994), as tetrahedra.
 #pragma once
 
 #include <span>
@@ -16,10 +16,10 @@ struct AlphaBody {
 };
 
 // The interior tetrahedra of the regularized alpha shape of distinct points: those of the Delaunay triangulation whose
-// circumscribed sphere has a radius of at most alpha [m]; of the bodies that they form, joined face to face, the one
-// that holds most points. With alpha = 0 the smallest alpha is taken at which one body holds all points. Decisions are
-// exact (CGAL's exact predicates), so that the answer depends on the points alone. Throws InputError if there are fewer
-// than four points, if all lie in one plane, or if no tetrahedron is as small as alpha.
+// circumscribed sphere has a radius of at most alpha [m]. They form bodies, joined face to face; the one that holds
+// most points is returned. alpha = 0 stands for the smallest alpha at which one body holds all points. Decisions are
+// exact (CGAL's exact predicates), so the result depends on the points alone. Throws InputError if there are fewer than
+// four points, if all lie in one plane, or if no tetrahedron is as small as alpha.
 AlphaBody alpha_body(std::span<const Vec3> points, double alpha = 0);
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for alpha_body.cpp in a build without CGAL (-DMERCURY_NN=OFF).
+// Replaces alpha_body.cpp in a build without CGAL (-DMERCURY_NN=OFF).
 #include "robots/alpha_body.h"
 
 #include "mercury/error.h"

@@ -13,7 +13,7 @@ namespace {
 
 enum Major : unsigned { natural, negative, byte_string, text_string, array, map, tag, other };
 
-constexpr unsigned open_ended = 31;  // in the low bits of a head: the length is not announced
+constexpr unsigned open_ended = 31;  // in the low bits of a head: the length is unknown
 constexpr unsigned char stop = 0xff;
 
 double half_to_double(std::uint64_t bits) {
@@ -149,8 +149,8 @@ class Reader {
     if (open_.size() == max_depth) fail(head.place, "nested deeper than " + std::to_string(max_depth) + " levels");
     Container container{.is_map = head.major == map, .remaining = unknown_length};
     if (head.low != open_ended) {
-      // Each element takes a byte at least, so more than the rest of the document holds cannot be there. It is named
-      // to the receiver before it is refused here: the receiver knows the place and the limit.
+      // Each element takes at least a byte, so a document cannot announce more elements than it has bytes left. The
+      // receiver sees the number before it is refused here, because it knows the place and the limit.
       container.remaining = static_cast<std::size_t>(head.value);
       container.is_map ? events_.begin_object(container.remaining) : events_.begin_array(container.remaining);
       if (head.value > document_.size() - at_) fail(head.place, "the CBOR document breaks off");

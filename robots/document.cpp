@@ -10,7 +10,7 @@ namespace mercury {
 
 std::optional<float> to_float(const Number& number) {
   if (number.text.empty()) {
-    // A double beyond the largest float may still round to it, as it does in a JSON text.
+    // A double beyond the largest float may round to it, as it does in a JSON text.
     const auto value = static_cast<float>(std::abs(number.real) < 0x1.ffffffp127 ? number.real : HUGE_VAL);
     if (std::isfinite(number.real) && std::isfinite(value)) return value;
     return std::nullopt;
@@ -19,7 +19,7 @@ std::optional<float> to_float(const Number& number) {
   const char* end = number.text.data() + number.text.size();
   const auto [parsed, error] = std::from_chars(number.text.data(), end, value);
   if (error == std::errc{} && parsed == end && std::isfinite(value)) return value;
-  // from_chars says "out of range" for numbers that are too small, too.
+  // from_chars also reports "out of range" for numbers that are too small.
   if (error == std::errc::result_out_of_range && std::abs(number.real) < 1) return 0.f;
   return std::nullopt;
 }

@@ -63,7 +63,7 @@ void inspect_springs(const Robot& robot, Inspection& found) {
   found.longest_spring = longest->rest_length;
 }
 
-// An edge of a face; `way` is 1 where it runs from the lower mass to the higher, else -1.
+// An edge of a face. `way` is 1 if it runs from the lower mass to the higher, else -1.
 struct HalfEdge {
   std::uint16_t low, high;
   int way;
@@ -101,7 +101,7 @@ void inspect_skin(const Robot& robot, Inspection& found) {
   std::vector<bool> on_skin(robot.masses.size(), false);
   for (const Face& face : robot.faces) {
     on_skin[face.a] = on_skin[face.b] = on_skin[face.c] = true;
-    // From a corner of the box, which keeps the rounding small for a robot far from the origin.
+    // Relative to a corner of the box: small numbers round less if the robot is far from the origin.
     const Vec3 a = robot.masses[face.a] - found.lowest, b = robot.masses[face.b] - found.lowest,
                c = robot.masses[face.c] - found.lowest;
     found.volume += static_cast<double>(dot(a, cross(b, c))) / 6;

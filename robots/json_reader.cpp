@@ -21,7 +21,7 @@ std::string place_of(std::string_view document, std::size_t bytes) {
 }
 
 // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error while parsing value - invalid
-// literal; last read: 'xyz'; expected ']'" tells "invalid literal".
+// literal; last read: 'xyz'; expected ']'" becomes "invalid literal".
 std::string reason_of(const std::string& message) {
   std::size_t begin = message.find(" - ");
   begin = begin == std::string::npos ? message.find(": ") + 2 : begin + 3;
@@ -31,7 +31,7 @@ std::string reason_of(const std::string& message) {
   return reason;
 }
 
-// Hands nlohmann's events on; keeps count of the depth, which its parser does not limit.
+// Passes nlohmann's events on, and limits the depth, which its parser does not.
 class Adapter : public nlohmann::json_sax<Json> {
  public:
   Adapter(std::string_view document, DocumentEvents& events) : document_(document), events_(events) {}
@@ -57,7 +57,7 @@ class Adapter : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
     constexpr int number_overflow = 406;
-    // A number that no double holds ends the parse. The receiver knows the place to name, and throws.
+    // A number beyond the doubles ends the parse. The receiver knows its place in the document, and throws.
     if (error.id == number_overflow)
       events_.number({.kind = Number::Kind::real, .real = std::numeric_limits<double>::infinity(), .text = token});
     const bool overflow = error.id == number_overflow;
@@ -78,7 +78,7 @@ class Adapter : public nlohmann::json_sax<Json> {
 }  // namespace
 
 void read_json(std::string_view document, DocumentEvents& events) {
-  // The parser takes a NUL for the end, and would not look at what follows.
+  // The parser takes a NUL as the end and would ignore what follows.
   const std::size_t nul = document.find('\0');
   if (nul != std::string_view::npos) throw InputError(place_of(document, nul + 1), "not valid JSON: a NUL byte");
   Adapter adapter(document, events);

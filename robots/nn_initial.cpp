@@ -32,7 +32,7 @@ Plan random_plan(bool mirrored, Random& random) {
   return plan;
 }
 
-// Grows layers from the input on and knows how the place is read from the last one.
+// The hidden layers. `readout` turns the activations of the last of them into a place.
 class Trunk {
  public:
   static constexpr std::size_t carried = min_hidden_width;  // neurons that carry a place: max(0, x), max(0, -x), ...
@@ -61,7 +61,7 @@ class Trunk {
       f.twin += carried;
       add_neuron(f);
     }
-    while (next.size() < width) add_neuron({{}, 0, {}, next.size()});  // odd one out of pairs
+    while (next.size() < width) add_neuron({{}, 0, {}, next.size()});  // features of a mirrored body come in pairs
     layers.push_back(std::move(layer));
     readout = std::move(next);
   }
@@ -112,7 +112,7 @@ Activity activity_of(const Trunk& trunk) {
   return activity;
 }
 
-// Which materials a robot is likely to show: muscles of one frequency, two to four phases of it, so that they work
+// The materials that a robot is likely to have: muscles of one frequency and two to four phases, so that they work
 // together; often tissue or bone; sometimes a muscle of any frequency.
 std::array<bool, base_material_count> random_palette(Random& random) {
   std::array<bool, base_material_count> chosen{};
@@ -126,7 +126,7 @@ std::array<bool, base_material_count> random_palette(Random& random) {
   return chosen;
 }
 
-// The place is read from the trunk. A score is a slope across the body, some relief, and a handicap for materials
+// Reads the place from the trunk. A score is a slope across the body plus some relief, minus a handicap for materials
 // outside the palette.
 Layer last_layer(const Trunk& trunk, bool mirrored, Random& random) {
   const std::size_t inputs = trunk.readout.size();

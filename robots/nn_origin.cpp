@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a network robot's genome is kept in its origin.
+// The genome of a network robot as the JSON text of its origin.
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -15,14 +15,15 @@
 namespace mercury {
 namespace {
 
-// Real numbers are read as floats, from their text: by way of a double a shortest form could come back one bit off.
+// Real numbers are parsed as floats: parsed as doubles and rounded again, the shortest decimals of a float could come
+// back one bit off.
 using Json = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
 
 void write(std::string& out, float value) {
   std::array<char, 32> room;
   const auto end = std::to_chars(room.data(), room.data() + room.size(), value).ptr;
   out.append(room.data(), end);
-  if (value == 0 && std::signbit(value)) out += ".0";  // "-0" would be read as a whole number, without its sign
+  if (value == 0 && std::signbit(value)) out += ".0";  // "-0" would be read as a whole number and lose its sign
 }
 
 // [a, b, c], each written by `write_item`.

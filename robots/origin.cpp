@@ -8,7 +8,7 @@ namespace {
 
 std::string text_of(const Robot& robot, const char* key) {
   if (robot.origin.empty()) return {};
-  // Of the outermost object this key alone is kept: a network's weights are not worth a tree.
+  // Keeps this key of the outermost object only; a tree of all weights of a network would be large.
   const auto keep = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
     return event != nlohmann::json::parse_event_t::key || depth != 1 || value == key;
   };

@@ -42,7 +42,7 @@ double Random::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 double Random::uniform(double low, double high) { return low + (high - low) * uniform(); }
 
 std::uint64_t Random::below(std::uint64_t n) {
-  const std::uint64_t unfair = (0 - n) % n;  // 2^64 mod n numbers too many
+  const std::uint64_t unfair = (0 - n) % n;  // 2^64 mod n numbers would make some results more likely
   std::uint64_t r = bits();
   while (r < unfair) r = bits();
   return r % n;

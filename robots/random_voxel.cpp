@@ -74,7 +74,7 @@ class Palette {
   std::array<int, voxel_frequencies> frequencies_{};
 };
 
-// Regions of one material: each voxel takes that of the nearest of the sites, one a block of patch^3 voxels.
+// Regions of one material. Each block of patch^3 voxels has one site; a voxel takes the material of the nearest site.
 class Patches {
  public:
   Patches(Random& random, const Palette& palette, const VoxelGrid& grid, int patch)
@@ -122,7 +122,7 @@ class Patches {
   std::vector<Site> sites_;
 };
 
-// Which voxels of the drawn part become air: those far from the middle, with dents and bays where the noise is high.
+// The voxels of the drawn part that become air: those far from the middle, with dents and bays where the noise is high.
 std::vector<bool> carve(Random& random, const VoxelGrid& grid, const std::array<int, 3>& drawn,
                         const RandomVoxelOptions& options) {
   const Noise noise(random, grid, std::max(options.patch, 2));

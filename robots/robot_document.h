@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot as a document (design: "Files"): the one description of the format, for JSON and CBOR alike.
+// A robot as a document: the one description of the file format (docs/formats.md), for JSON and CBOR alike.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace mercury {
 void write_robot(const Robot& robot, DocumentEvents& events);
 
 // Builds a robot from the events of its document. Keys that the format does not know are ignored.
-// Its events throw InputError, the place a JSON pointer, as soon as one breaks a rule.
+// An event that breaks a rule throws InputError, with its place as a JSON pointer.
 class RobotReader : public DocumentEvents {
  public:
   void null() override;

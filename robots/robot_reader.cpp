@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view material_keys[] = {"name", "stiffness", "amplitude", "frequency", "phase"};
 constexpr unsigned unknown_key = 5;
 
-// The keys of hostile files are not worth more than a glance.
+// Hostile files may have keys of any length; messages show the beginning.
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string start(text.substr(0, longest));
@@ -56,7 +56,7 @@ void RobotReader::wrong_type(const std::string& given) const {
   refuse("must hold numbers, not " + given);
 }
 
-// True where an event is no concern of the robot's: within the origin, which is copied, or a key it does not know.
+// True where an event is not part of the robot: within the origin, which is copied, or under an unknown key.
 // `change_of_depth` is 1 for an event that opens, -1 for one that closes.
 bool RobotReader::passes_by(int change_of_depth) {
   const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
@@ -130,9 +130,9 @@ void RobotReader::number(const Number& value) {
 }
 
 std::uint16_t RobotReader::mass_index(const Number& value) const {
-  if (value.kind == Number::Kind::real) refuse("a mass is told by a whole number");
+  if (value.kind == Number::Kind::real) refuse("a mass is given by a whole number");
   if (value.kind == Number::Kind::natural && value.natural < max_masses)
-    return static_cast<std::uint16_t>(value.natural);  // validate() holds it against the number of masses
+    return static_cast<std::uint16_t>(value.natural);  // validate() compares it with the number of masses
   refuse("mass " + to_text(value) + " is out of range, " +
          (has(masses) ? "the robot has " + std::to_string(robot_.masses.size()) : "a robot has at most 65535"));
 }
@@ -148,7 +148,7 @@ void RobotReader::row_number(const Number& value) {
   } else if (column < 2) {
     (column == 0 ? spring_.a : spring_.b) = mass_index(value);
   } else if (column == 2) {
-    if (value.kind == Number::Kind::real) refuse("a material is told by a whole number");
+    if (value.kind == Number::Kind::real) refuse("a material is given by a whole number");
     if (value.kind == Number::Kind::negative || value.natural >= max_materials)
       refuse("material " + to_text(value) + " is out of range, the table has " +
              std::to_string(materials_of(robot_).size()));

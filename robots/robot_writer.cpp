@@ -8,7 +8,7 @@
 namespace mercury {
 namespace {
 
-// Copies an origin into the document that it is part of.
+// Copies an origin into the robot's document.
 class Copy : public DocumentEvents {
  public:
   explicit Copy(DocumentEvents& to) : to_(to) {}
@@ -59,7 +59,7 @@ class RobotWriter {
       events_.begin_array(3);
       real(x.x), real(x.y), real(x.z);
     });
-    // All springs with their lengths, or none: a file in which some have one would puzzle its reader.
+    // Lengths are written for all springs or for none; a mixture would confuse readers of the file.
     bool at_rest = true;
     for (const Spring& spring : robot_.springs)
       at_rest = at_rest && spring.rest_length == rest_distance(robot_, spring.a, spring.b);

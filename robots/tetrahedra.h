@@ -22,18 +22,18 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 // Every edge once, sorted.
 std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra);
 
-// The triangles that bound one tetrahedron only, sorted, each starting with its lowest point. As the boundary of a
-// solid they form a closed oriented surface: at every edge as many triangles run one way as the other. Where the solid
+// The triangles that bound only one tetrahedron, sorted, each starting with its lowest point. They bound a solid, so
+// they form a closed oriented surface: at every edge as many triangles run one way as the other. Where the solid
 // touches itself along an edge, that edge has four triangles.
 std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra);
 
-// For each tetrahedron the ones that share its sides, no_neighbour where there is none.
+// For each tetrahedron its neighbours across its sides; no_neighbour where there is none.
 inline constexpr std::uint32_t no_neighbour = 0xffffffff;
 using Neighbours = std::array<std::uint32_t, 4>;
 std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra);
 
-// Of the first `count` tetrahedra, joined side to side, the body that holds most points; of equals, the one that the
-// earliest tetrahedron is in.
+// The first `count` tetrahedra form bodies, joined side to side. Returns the body that holds most points; of equal
+// bodies, the one with the earliest tetrahedron.
 struct SolidBody {
   std::vector<std::uint32_t> tetrahedra;  // indices
   std::size_t points = 0;
@@ -41,7 +41,7 @@ struct SolidBody {
 SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
                        std::size_t count);
 
-// The part of a graph that each point is in, as the lowest point of that part; `count` points.
+// For each of `count` points, the lowest point of the connected part of the graph that it is in.
 std::vector<std::uint32_t> components(std::size_t count, std::span<const Edge> edges);
 
 }  // namespace mercury

@@ -14,13 +14,13 @@ namespace mercury {
 namespace {
 
 constexpr const char* place = "voxel grid";
-constexpr double longest = 2e6;  // [m], so that every mass lies within the 1e6 m that a robot may have
+constexpr double longest = 2e6;  // [m], so that no mass is farther than 1e6 m from the middle
 
 std::string shown_size(const VoxelGrid& grid) {
   return std::to_string(grid.nx) + "x" + std::to_string(grid.ny) + "x" + std::to_string(grid.nz);
 }
 
-// nx * ny * nz, or more than max_cells where that would not fit.
+// nx * ny * nz, or some number above max_cells if that would overflow.
 std::uint64_t cell_count(const VoxelGrid& grid) {
   const auto x = static_cast<std::uint64_t>(grid.nx), y = static_cast<std::uint64_t>(grid.ny),
              z = static_cast<std::uint64_t>(grid.nz);
@@ -36,7 +36,7 @@ void validate_size(const VoxelGrid& grid) {
                                 std::to_string(VoxelGrid::max_cells) + " voxels");
 }
 
-// The body with a rim of air around it, and numbers for its corners, so that no look needs a bounds check.
+// The body with a rim of air around it, and numbers for its corners. The rim saves bounds checks.
 class Lattice {
  public:
   explicit Lattice(const VoxelGrid& body)
@@ -54,7 +54,7 @@ class Lattice {
   std::size_t at(int x, int y, int z) const {
     return static_cast<std::size_t>(x) + row_ * static_cast<std::size_t>(y) + layer_ * static_cast<std::size_t>(z);
   }
-  // Its value may wrap around for a step backwards; added to an index it comes out right.
+  // Unsigned: a step backwards wraps around, and wraps back when it is added to an index.
   std::size_t step(int x, int y, int z) const { return at(x, y, z); }
 
   MaterialId voxel(std::size_t index) const { return voxels_[index]; }
@@ -98,7 +98,7 @@ class Lattice {
   std::vector<std::uint16_t> masses_;
 };
 
-// The way from one corner of a voxel to another, half of them: (x, y, z) > (0, 0, 0), z first.
+// The step from one corner of a voxel to another, for half of all pairs: (x, y, z) > (0, 0, 0), z first.
 struct Direction {
   std::size_t step = 0;                 // to the other mass
   std::array<std::size_t, 4> voxels{};  // the voxels that hold both masses, as steps from the first mass's corner

@@ -23,7 +23,7 @@ void for_each(const Place& size, Visit visit) {
       for (int x = 0; x < size[0]; ++x) visit(Place{x, y, z});
 }
 
-// The place in the lower half that this one mirrors.
+// The place in the lower half whose mirror image this is, or the place itself.
 Place folded(Place place, const Place& size, Mirror mirror) {
   const std::size_t axis = static_cast<std::size_t>(mirror) - 1;
   place[axis] = std::min(place[axis], size[axis] - 1 - place[axis]);
@@ -56,7 +56,7 @@ class MaterialSource {
   bool own_alone_;
 };
 
-// Two boxes of one size, anywhere in the grid, change their contents, voxel by voxel.
+// Swaps the contents of two boxes of one size, anywhere in the grid, voxel by voxel.
 void swap_patches(VoxelGrid& grid, Random& random, int largest) {
   const Place size = size_of(grid);
   Place box, a, b;
@@ -153,7 +153,7 @@ VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int 
         static_cast<std::size_t>(at[0] / patch + blocks[0] * (at[1] / patch + blocks[1] * (at[2] / patch)));
     if (!from_b[block]) return;
     Place in_b;
-    // Rounded down for negative halves as well, so that b lies in the middle of a.
+    // Rounds down, also below 0, so that b lies in the middle of a.
     for (std::size_t axis = 0; axis < 3; ++axis) in_b[axis] = at[axis] - ((size[axis] - other[axis]) >> 1);
     if (b.contains(in_b[0], in_b[1], in_b[2])) cell(child, at) = cell(b, in_b);
   });

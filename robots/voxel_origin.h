@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a voxel robot's grid is kept in its origin.
+// The grid of a voxel robot as the JSON text of its origin.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace mercury {
 
-// {"kind":"voxel","size":[nx,ny,nz],"edge":0.1,"environment":"ocean","seed":1,"index":2,"cells":[...]}: cells as in
-// VoxelGrid; environment, seed and index where they are known.
+// {"kind":"voxel","size":[nx,ny,nz],"edge":0.1,"environment":"ocean","seed":1,"index":2,"cells":[...]}. The cells are
+// in the order of VoxelGrid; environment, seed and index appear only if they are known.
 std::string voxel_origin(const VoxelGrid& grid, const VoxelRobotOptions& options);
 
 }  // namespace mercury

@@ -29,7 +29,7 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return descriptor_; }
   bool is_open() const { return descriptor_ >= 0; }
-  // Some file systems tell of a full disk only now. Returns 0, or the error.
+  // Some file systems report a full disk only now. Returns 0, or the error.
   int close() {
     const int result = ::close(descriptor_);
     descriptor_ = -1;
@@ -51,7 +51,7 @@ int write_all(int descriptor, std::string_view content) {
   return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-// Where a chain of links leads, even if nothing is there yet.
+// The end of a chain of links, even if no file exists there yet.
 std::filesystem::path follow_links(std::filesystem::path path) {
   constexpr int longest_chain = 40;  // as the system's own limit
   std::error_code error;
@@ -60,7 +60,7 @@ std::filesystem::path follow_links(std::filesystem::path path) {
   return path;
 }
 
-// A name that no other writer has, in the folder of `path`.
+// A name in the folder of `path` that no other writer uses.
 std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt) {
   std::string name(".");
   name.append(path.filename().string()).append(".").append(std::to_string(::getpid()));
@@ -70,7 +70,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& path, int atte
 }  // namespace
 
 std::string read_whole_file(const std::filesystem::path& path) {
-  // A FIFO would block the opening until someone writes.
+  // Opening a FIFO would block until someone writes.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) fail(path, errno);
   struct stat status {};

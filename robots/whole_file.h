@@ -8,12 +8,13 @@
 
 namespace mercury {
 
-// Throws InputError("eel.json: No such file or directory") for what cannot be read or is not a regular file.
+// The content of a file. Throws InputError("eel.json: No such file or directory") for a file that cannot be read or is
+// not a regular file.
 std::string read_whole_file(const std::filesystem::path& path);
 
-// Writes under a temporary name in the same folder, then renames: whoever looks finds the old file or the new one,
-// whole. A link is followed. On failure (a missing folder, no permission, a full disk) throws InputError with the
-// path and the system's reason, and nothing is left behind.
+// Writes under a temporary name in the same folder, then renames, so readers find the whole old file or the whole new
+// one. Follows links. On failure (a missing folder, no permission, a full disk) throws InputError with the path and the
+// system's reason, and leaves nothing behind.
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace mercury

@@ -11,13 +11,13 @@ namespace {
 
 constexpr float turn = 2 * std::numbers::pi_v<float>;
 
-// A leg's front and back muscles work a quarter turn apart, so that it stretches and swings, and its foot runs round
+// A leg's front and back muscles work a quarter turn apart, so the leg stretches and swings, and its foot runs around
 // an ellipse: back along the ground while the leg is long.
 struct Gait {
   float stiffness = 60;  // [N/m], times 200 on land
   float amplitude = 0.25f;
   float frequency = 6;     // [rad/s]
-  float split = turn / 8;  // half of what the two muscles are apart [rad]
+  float split = turn / 8;  // half the difference of the two muscles' phases [rad]
 };
 
 MaterialId leg_muscle(Body& body, const Gait& gait, bool front, float phase) {
@@ -118,7 +118,7 @@ Robot sea_star() {
   return body.robot();
 }
 
-// Tuned by simulation: what carries each farthest in 20 s, straight ahead.
+// Tuned by simulation to get far in 20 s, straight ahead.
 Robot quadruped() { return quadruped_of({.stiffness = 120, .frequency = 10}, turn / 2); }
 Robot hopper() { return hopper_of({.stiffness = 120, .frequency = 10, .split = turn / 6}, 0); }
 

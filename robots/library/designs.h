@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample robots. Each says in its origin where it lives.
+// The sample robots. Each records in its origin where it belongs.
 #pragma once
 
 #include <vector>
@@ -27,8 +27,8 @@ Robot hopper();
 
 std::vector<Robot> all_designs();
 
-// Not designed but found, the farthest among thousands of random ones. Those grown by networks are missing in a build
-// without them.
+// Found by searches: those of thousands of random robots that got farthest. A build without network robots has none of
+// the latter.
 std::vector<Robot> found_voxel_robots();
 std::vector<Robot> found_network_robots();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for found_networks.cpp in a build that grows no network robots.
+// Replaces found_networks.cpp in a build that grows no network robots.
 #include "robots/library/designs.h"
 
 namespace mercury::library {

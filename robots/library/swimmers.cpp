@@ -16,12 +16,11 @@ struct Wave {
   float stiffness = 6000;  // [N/m]
   float amplitude = 0.3f;  // at its strongest
   float frequency = 5;     // [rad/s]
-  float waves = 1;         // wavelengths on the way
-  int segments = 10;       // muscles on the way; each and its antagonist count, so at most 10
+  float waves = 1;         // wavelengths along the body
+  int segments = 10;       // muscles along the wave; at most 10, since antagonists count too
 };
 
-// The muscle at `way` (0 to 1) of the wave; `strength` scales the amplitude, and turns the muscle into its antagonist
-// where it is negative.
+// The muscle at `way` (0 to 1) of the wave. `strength` scales the amplitude; a negative one makes the antagonist.
 MaterialId muscle_of(Body& body, const Wave& wave, float way, float strength) {
   const int segment = std::clamp(static_cast<int>(way * static_cast<float>(wave.segments)), 0, wave.segments - 1);
   const float middle = (static_cast<float>(segment) + 0.5f) / static_cast<float>(wave.segments);
@@ -141,7 +140,7 @@ Robot squid_of(const Wave& wave) {
   return body.robot();
 }
 
-// The fore flippers flap, and draw the turtle the way that they point.
+// The fore flippers flap and pull the turtle in the direction that they point in.
 Robot turtle_of(const Wave& wave) {
   Body body("turtle", "ocean", 20, 19, 4);
   body.set_bone_stiffness(2 * wave.stiffness);
@@ -166,7 +165,7 @@ Robot turtle_of(const Wave& wave) {
 
 }  // namespace
 
-// Tuned by simulation: what carries each farthest in 20 s.
+// Tuned by simulation to get far in 20 s.
 Robot eel() { return eel_of({.waves = 1.4f}); }
 Robot fish() { return fish_of({.stiffness = 12000, .frequency = 7, .waves = 0.7f}); }
 Robot ray() { return ray_of({.stiffness = 12000, .amplitude = 0.4f, .frequency = 6, .waves = 1.2f}); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robot documents that break a rule: one line each that says where and why.
+// Robot documents that break a rule are refused in one line that says where and why.
 #include <gtest/gtest.h>
 
 #include "mercury/error.h"
@@ -19,7 +19,7 @@ std::string refusal(std::string_view document, RobotFormat format) {
 
 std::string refusal_of_json(std::string_view document) { return refusal(document, RobotFormat::json); }
 
-// A sound document whose parts can be replaced.
+// A valid document whose parts can be replaced.
 struct Parts {
   std::string head = R"("format":"mercury-robot","version":1)";
   std::string masses = "[[0,0,0],[1,0,0],[0,1,0]]";
@@ -33,7 +33,7 @@ std::string refusal_of(const Parts& parts) {
                          ",\"faces\":" + parts.faces + parts.rest + "}");
 }
 
-TEST(BadRobotFiles, TheSoundDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), "no error"); }
+TEST(BadRobotFiles, TheValidDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), "no error"); }
 
 TEST(BadRobotFiles, NotJson) {
   const std::string sound = R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})"
@@ -100,8 +100,8 @@ TEST(BadRobotFiles, Springs) {
   EXPECT_EQ(refusal_of({.springs = "[[0,70000,1]]"}), "/springs/0: mass 70000 is out of range, the robot has 3");
   EXPECT_EQ(refusal_of_json(R"({"springs":[[0,70000,1]]})"),
             "/springs/0: mass 70000 is out of range, a robot has at most 65535");
-  EXPECT_EQ(refusal_of({.springs = "[[0,1.5,1]]"}), "/springs/0: a mass is told by a whole number");
-  EXPECT_EQ(refusal_of({.springs = "[[0,18446744073709551616,1]]"}), "/springs/0: a mass is told by a whole number");
+  EXPECT_EQ(refusal_of({.springs = "[[0,1.5,1]]"}), "/springs/0: a mass is given by a whole number");
+  EXPECT_EQ(refusal_of({.springs = "[[0,18446744073709551616,1]]"}), "/springs/0: a mass is given by a whole number");
   EXPECT_EQ(refusal_of({.springs = "[[1,1,1]]"}), "/springs/0: joins mass 1 to itself");
   EXPECT_EQ(refusal_of({.springs = "[[0,1,0]]"}), "/springs/0: material 0 is air, a spring needs another");
   EXPECT_EQ(refusal_of({.springs = "[[0,1,254]]"}), "/springs/0: material 254 is out of range, the table has 254");

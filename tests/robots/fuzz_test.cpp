@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every reader against damaged documents: a robot that validate() accepts or an InputError of one line, nothing else.
+// Every reader, given a damaged document, returns a robot that validate() accepts or throws an InputError of one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>

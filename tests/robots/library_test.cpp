@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample robots: each lives, and gets somewhere, where it says it lives.
+// The sample robots: each stays whole and gets somewhere in the environment that its origin names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(RobotLibrary, TheFilesAreWhatTheGeneratorMakes) {
   }
 }
 
-TEST(RobotLibrary, HasTenRobotsOrMoreOfBothEnvironmentsInSmallFiles) {
+TEST(RobotLibrary, HasAtLeastTenRobotsOfEachEnvironmentInSmallFiles) {
   std::map<std::string, int> count;
   for (const Robot& robot : library_files()) ++count[environment_of(robot)];
   EXPECT_GE(count["ocean"] + count["land"], 10);
@@ -53,7 +53,7 @@ TEST(RobotLibrary, BodiesAreClosedAndInOnePiece) {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr double seconds = 0.5;  // the sanitizers are 30 times slower; here it is their eyes that count
+constexpr double seconds = 0.5;  // sanitizers are 30 times slower; a short run is enough to find errors
 #else
 constexpr double seconds = 20;
 #endif

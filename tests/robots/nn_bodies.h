@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every robot grown by a network must be, and networks simple enough to know what they grow.
+// What must hold for every robot grown by a network, and networks so simple that their bodies are known.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ inline int check_closed_and_oriented(const Robot& robot) {
   return pinched;
 }
 
-// All that holds for every such body; the number of its edges with more than two faces.
+// Checks everything that holds for such a body. Returns the number of its edges with more than two faces.
 inline int check_body(const Robot& robot) {
   EXPECT_NO_THROW(validate(robot));
   EXPECT_GE(robot.faces.size(), 4u);

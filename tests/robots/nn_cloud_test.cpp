@@ -22,7 +22,7 @@ std::string reason_not_to_grow(const NnGenome& genome) {
   return "";
 }
 
-TEST(NnCloud, CloudsThatSpanNoBodyAreRefusedWithTheReason) {
+TEST(NnCloud, RefusesCloudsThatSpanNoBodyWithTheReason) {
   EXPECT_EQ(reason_not_to_grow(simple_genome(nothing, nothing)), "cloud: the network puts all its points on one place");
   EXPECT_EQ(reason_not_to_grow(simple_genome({{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, {{-1, 0, 0}, {0, -1, 0}, {0, 0, 0}})),
             "cloud: its points lie in one plane, they span no body");

@@ -107,7 +107,7 @@ TEST(Network, SumsInTheOrderOfItsInputsAndRoundsAfterEachStep) {
   }
 }
 
-TEST(Network, ANumberThatIsNoneReachesTheResult) {
+TEST(Network, NaNReachesTheResult) {
   Network network = random_network({3, 8, 8, 25}, 5);
   network.layers[0].weights[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(std::isnan(evaluate(network, random_points(3, 6))[0]));
@@ -175,7 +175,7 @@ TEST(Mutation, DependsOnItsSeedAlone) {
   EXPECT_NE(mutate(network, 0.5, 1, 14), mutate(network, 0.5, 1, 15));
 }
 
-TEST(Mutation, RefusesSharesAndSizesThatAreNone) {
+TEST(Mutation, RefusesSharesAndSizesOutOfRange) {
   const Network network = random_network({3, 25}, 16);
   for (const double rate : {-0.1, 1.1, std::nan("")}) EXPECT_THROW(mutate(network, rate, 1, 1), InputError);
   for (const double size : {-1., std::nan(""), HUGE_VAL}) EXPECT_THROW(mutate(network, 1, size, 1), InputError);

@@ -47,7 +47,7 @@ TEST(NnPopulation, OneOfAPopulationDoesNotDependOnTheOthers) {
   EXPECT_NE(many[0].masses, random_nn_robots(options, 6, 1)[0].masses);
 }
 
-TEST(NnPopulation, AFailureIsToldAndTheOthersGoOn) {
+TEST(NnPopulation, AFailureIsReportedAndTheOthersAreGrown) {
   std::vector<FailedRobot> failed;
   EXPECT_TRUE(random_nn_robots({.points = 64, .alpha = 1e-6f}, 1, 5, 10, &failed).empty());
   ASSERT_EQ(failed.size(), 5u);
@@ -100,7 +100,7 @@ TEST(NnPopulation, APopulationDiffersInShapeAndMaterials) {
     std::sort(values.begin(), values.end());
     return values[of_64];
   };
-  // A population of one shape has all at one value.
+  // In a population of one shape all values are equal.
   EXPECT_LT(quantile(flatness, 8), 0.7 * quantile(flatness, 56));
   EXPECT_LT(quantile(slenderness, 8), 0.7 * quantile(slenderness, 56));
   EXPECT_GE(fewest, 2);

@@ -24,7 +24,7 @@ TEST(NnRobot, SpringsCombineTheMaterialsThatTheNetworkGivesTheirMasses) {
   const Robot robot = grow(genome);
   check_body(robot);
   EXPECT_EQ(robot.masses.size(), 200u);
-  // The centre moved by the mean only: the mass's side is told by any of its springs that are pure.
+  // The centre moved by the mean only: any spring of one base material shows the side of its mass.
   std::map<std::uint16_t, std::set<MaterialId>> of_mass;
   std::set<MaterialId> materials;
   for (const Spring& s : robot.springs) {
@@ -66,7 +66,7 @@ TEST(NnRobot, NeighboursInSpaceAreNearInMemory) {
   const Robot robot = grow(random_nn_genome({}, 4));
   double distance = 0;
   for (const Spring& s : robot.springs) distance += std::abs(s.a - s.b);
-  // Two of 512 numbers drawn at random are 171 apart.
+  // Two of 512 random numbers are 171 apart on average.
   EXPECT_LT(distance / static_cast<double>(robot.springs.size()), 85);
 }
 
@@ -84,7 +84,7 @@ std::uint64_t hash_of(const Robot& robot) {
   return hash;
 }
 
-// Not what is right but that it is the same: these hashes hold for every compiler, optimization and machine.
+// These hashes do not say what is right; they hold for every compiler, optimization and machine.
 TEST(NnRobot, ASeedGrowsTheSameBitsEverywhere) {
   EXPECT_EQ(hash_of(grow(random_nn_genome({}, 1))), 15080024903124239027u);
   EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .mirrored = 1}, 2))),

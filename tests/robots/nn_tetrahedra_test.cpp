@@ -17,7 +17,7 @@ TEST(Tetrahedra, SkinOfOneLooksOutward) {
               UnorderedElementsAre(Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}));
 }
 
-TEST(Tetrahedra, ASideBetweenTwoIsNoSkin) {
+TEST(Tetrahedra, ASideBetweenTwoIsNotSkin) {
   // Point 4 lies beyond the side 1-2-3.
   const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {1, 2, 3, 4}};
   const auto skin = skin_of(two);

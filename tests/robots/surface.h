@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts about a robot's skin and springs, worked out by plain counting.
+// Facts about a robot's skin and springs, found by plain counting.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace mercury {
 
-// Whether each directed edge of a face is met by one in the other direction: closed and oriented alike.
+// Whether each directed edge of a face has a partner in the other direction: the skin is closed and oriented alike.
 inline bool half_edges_cancel(const Robot& robot) {
   std::map<std::pair<int, int>, int> balance;
   for (const Face& face : robot.faces)
@@ -40,7 +40,7 @@ inline bool every_spring_is_there_once(const Robot& robot) {
   return true;
 }
 
-// Parts that no spring joins.
+// Number of parts that springs do not join to each other.
 inline std::size_t spring_components(const Robot& robot) {
   std::vector<std::size_t> root(robot.masses.size());
   std::iota(root.begin(), root.end(), std::size_t{0});

@@ -43,7 +43,7 @@ TEST(VoxelMutation, TheSameSeedGivesTheSameChild) {
 
 TEST(VoxelMutation, FlipsAsManyVoxelsAsItsChanceSays) {
   const VoxelGrid parent(20, 20, 20, 1);
-  // No voxel can be drawn as it was, so each one drawn shows. 8,000 voxels: a standard deviation of 0.0034.
+  // No voxel can be drawn with its old material, so every draw shows. 8,000 voxels: a standard deviation of 0.0034.
   const VoxelGrid child = mutate(parent, {.flip = 0.1, .air = 0.25, .swaps = 0, .materials = {7, 22}}, 3);
   EXPECT_NEAR(static_cast<double>(differences(parent, child)) / 8000, 0.1, 0.015);
   const auto count = [&](MaterialId m) { return std::count(child.cells.begin(), child.cells.end(), m); };
@@ -63,14 +63,14 @@ TEST(VoxelMutation, ASwapMovesVoxelsButMakesNone) {
   }
 }
 
-TEST(VoxelMutation, SwapsAreNotAllInVain) {
+TEST(VoxelMutation, SwapsChangeGrids) {
   int changed = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed)
     changed += mutate(parent_of(seed), {.flip = 0, .swaps = 1}, seed) != parent_of(seed) ? 1 : 0;
   EXPECT_GT(changed, 50);
 }
 
-TEST(VoxelMutation, KeepsTheHalvesAlikeIfTold) {
+TEST(VoxelMutation, KeepsTheHalvesAlikeOnRequest) {
   for (std::uint64_t seed = 0; seed < 50; ++seed)
     ASSERT_TRUE(is_mirrored_along_y(mutate(parent_of(seed), {.flip = 0.3, .swaps = 4, .mirror = Mirror::y}, seed)));
 }
@@ -118,7 +118,7 @@ TEST(VoxelCrossover, OfMirroredParentsIsMirrored) {
     ASSERT_TRUE(is_mirrored_along_y(cross(parent_of(seed), random_voxel_grid({}, seed), seed, 2, Mirror::y)));
 }
 
-TEST(VoxelEvolution, RobotsKeepWhatIsTheirs) {
+TEST(VoxelEvolution, ChildrenKeepMaterialsAndEnvironment) {
   const auto defaults = default_materials();
   std::vector<Material> table(defaults.begin(), defaults.end());
   table[1].frequency = 9;
@@ -171,7 +171,7 @@ TEST(VoxelEvolution, RefusesWhatItCannotUse) {
             "robot blob: not a voxel robot, its origin holds no grid");
 }
 
-TEST(Origin, TellsKindAndEnvironmentOfTheOutermostObjectAlone) {
+TEST(Origin, ReturnsKindAndEnvironmentOfTheOutermostObjectOnly) {
   const Robot robot{.origin = R"({"weights":[[1,2],{"kind":"no"}],"kind":"nn","environment":"land"})"};
   EXPECT_EQ(kind_of(robot), "nn");
   EXPECT_EQ(environment_of(robot), "land");

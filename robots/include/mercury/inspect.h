@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures of a robot: what `mercury info` tells about it.
+// Measures of a robot: sizes, materials, and whether its skin is closed. `mercury info` prints them.
 #pragma once
 
 #include <cstddef>
@@ -13,35 +13,35 @@ namespace mercury {
 
 struct MaterialUse {
   MaterialId id = 0;
-  std::string name;  // the robot's own, else that of the default material, else "material 7"
+  std::string name;  // of the robot's own table, else of the default material, else "material 7"
   Material material;
-  std::size_t springs = 0;  // of this material
+  std::size_t springs = 0;  // made of this material
 };
 
 struct Inspection {
   std::size_t masses = 0, springs = 0, faces = 0;
-  std::vector<MaterialUse> materials;  // those that a spring is of, by id
-  std::size_t muscles = 0;             // springs whose length changes by itself
+  std::vector<MaterialUse> materials;  // those with at least one spring, by id
+  std::size_t muscles = 0;             // springs with an amplitude other than 0
 
   Vec3 lowest, highest;                           // corners of the box around the masses at rest [m]
-  Vec3 extent;                                    // of that box [m]
-  float length = 0;                               // the largest of the three [m]
+  Vec3 extent;                                    // sides of that box [m]
+  float length = 0;                               // the longest side [m]
   float shortest_spring = 0, longest_spring = 0;  // rest lengths [m]
-  double springs_a_mass = 0;                      // how many springs end at a mass, on average
-  std::size_t components = 0;                     // parts that no spring joins
+  double springs_a_mass = 0;                      // mean number of springs at a mass
+  std::size_t components = 0;                     // parts that springs do not join to each other
   std::size_t loose_masses = 0;                   // masses without a spring
 
-  // The skin. Closed: there are faces, and at each edge as many run one way as the other, so that their half-edges
-  // cancel and the skin encloses a volume, oriented alike.
+  // The skin. It is closed if it has faces and, at each edge, as many faces run one way as the other. Then it encloses
+  // a volume, and its faces are oriented alike.
   bool closed = false;
-  std::size_t open_edges = 0;     // edges whose half-edges do not cancel
-  std::size_t crowded_edges = 0;  // edges of more than two faces
-  long euler_characteristic = 0;  // masses on the skin - its edges + its faces; 2 for a ball, 0 for a ring
+  std::size_t open_edges = 0;     // edges where more faces run one way than the other
+  std::size_t crowded_edges = 0;  // edges shared by more than two faces
+  long euler_characteristic = 0;  // of the skin: masses - edges + faces; 2 for a ball, 0 for a ring
   double area = 0;                // [m2]
-  double volume = 0;              // enclosed, by the divergence theorem; below 0 if the skin is inside out [m3]
+  double volume = 0;              // enclosed, by the divergence theorem; negative if the skin is inside out [m3]
 };
 
-// The robot must be valid.
+// Measures a robot, which must be valid (see validate in robot.h).
 Inspection inspect(const Robot& robot);
 
 }  // namespace mercury

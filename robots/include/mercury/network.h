@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The network that a robot is grown from (paper, III.B): a multilayer perceptron from a random point to a place in
-// space and a score for each base material.
+// The network that grows a robot (paper, III.B): a multilayer perceptron that takes a random point to a place in space
+// and a score for each base material.
 #pragma once
 
 #include <cstddef>
@@ -23,40 +23,41 @@ struct Layer {
   friend bool operator==(const Layer&, const Layer&) = default;
 };
 
-// Layers one after the other with max(0, .) between them; the last one gives 3 + 22 numbers.
+// Layers with max(0, .) between them. The last one has 3 + 22 outputs.
 struct Network {
   std::vector<Layer> layers;
   friend bool operator==(const Network&, const Network&) = default;
 };
 
-// Sizes from the input to the output: {3, 64, 64, 25}.
+// Numbers of neurons from the input to the output, as in {3, 64, 64, 25}.
 std::vector<int> sizes_of(const Network& network);
 
-// Throws InputError("<where>...") unless there are 1 to 16 layers of 1 to 4,096 inputs, each fitting the next, the
-// last with 25 outputs, with as many weights and biases as that needs. The values may be anything.
+// Throws InputError("<where>...") unless there are 1 to 16 layers of 1 to 4,096 inputs and outputs, each layer takes
+// the outputs of the one before, the last one has 25 outputs, and the weights and biases match these sizes. Does not
+// check their values.
 void validate(const Network& network, const std::string& where = "network");
 
-// The network's outputs for `count` points; `points` holds count x inputs floats, point after point, the result
-// count x 25. Every output is a sum in the order bias, input 0, input 1, ..., rounded after each step: the same bits on
-// every machine.
+// The network's outputs for some points: `points` holds points x inputs floats, point after point, the result
+// points x 25. Each output is summed in the order bias, input 0, input 1, ... and rounded after each step, so it has
+// the same bits on every machine. Throws InputError if the number of floats is not a multiple of the inputs.
 std::vector<float> evaluate(const Network& network, std::span<const float> points);
 
-// The same for layers alone, whatever the last one gives; count x its outputs.
+// The same for layers that need not form a whole network. Returns points x outputs of the last layer.
 std::vector<float> evaluate(std::span<const Layer> layers, std::span<const float> points);
 
 // exp(score) / sum of exp(scores), computed without overflow.
 std::vector<double> softmax(std::span<const float> scores);
 
-// Index of the most probable one, ties to the lower index. Softmax keeps the order, so that the scores themselves are
-// compared and no rounding of exp can change a robot.
+// Index of the most probable material; ties go to the lower index. Softmax keeps the order, so this compares the scores
+// themselves, and the rounding of exp cannot change a robot.
 std::size_t most_probable(std::span<const float> scores);
 
-// A network whose weights and biases change: each with probability `rate` by a normal number times `size`. The same
-// seed gives the same change. Throws InputError unless 0 <= rate <= 1 and size >= 0 is finite.
+// A changed network: each weight and bias changes with probability `rate`, by a normal number times `size`. The same
+// seed gives the same change. Throws InputError unless 0 <= rate <= 1 and size is finite and at least 0.
 Network mutate(const Network& network, double rate, double size, std::uint64_t seed);
 
-// A child of two networks of equal sizes. Neurons are inherited whole (all weights into it and its bias) from either
-// parent, each with probability 1/2: a neuron's weights mean something together, single weights do not. Throws
+// A child of two networks of equal sizes. It inherits each neuron whole, its bias and all weights into it, from either
+// parent with probability 1/2: the weights of a neuron have a meaning together, single weights do not. Throws
 // InputError if the sizes differ.
 Network crossover(const Network& a, const Network& b, std::uint64_t seed);
 

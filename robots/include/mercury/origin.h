@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot's origin says, whatever its kind.
+// What every robot's origin may say, whatever its kind. The origin (Robot::origin) is a JSON object that records how
+// the robot was made.
 #pragma once
 
 #include <string>
@@ -8,11 +9,11 @@
 
 namespace mercury {
 
-// Origin key "kind": "voxel", "nn", ...; empty where it is not said.
+// The key "kind": "voxel", "nn", ..., usually a generator (generator.h). Empty if the origin has no such text.
 std::string kind_of(const Robot& robot);
 
-// Origin key "environment", where the robot is meant to live: "ocean", "ocean-simple", "land"; empty where it is not
-// said. The text is the file's; environment_named() judges it.
+// The key "environment", where the robot belongs: "ocean", "ocean-simple", "land". Empty if the origin has no such
+// text. It is not checked here; environment_named() checks it.
 std::string environment_of(const Robot& robot);
 
 }  // namespace mercury

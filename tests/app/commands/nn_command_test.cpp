@@ -62,7 +62,7 @@ TEST_F(NnCommand, WhatCannotBeUsedIsTold) {
   };
   EXPECT_EQ(message({"--points", "10"}), "mercury: --points: 10 is not accepted; give 64 to 65535\n");
   EXPECT_EQ(message({"--hidden", "64,x"}), "mercury: --hidden: \"x\" is not accepted; give a whole number\n");
-  EXPECT_EQ(message({"--hidden", "64,2"}), "mercury: --hidden: 2 is not accepted; give 6 to 4096 neurons a layer\n");
+  EXPECT_EQ(message({"--hidden", "64,2"}), "mercury: --hidden: 2 is not accepted; give 6 to 4096\n");
   EXPECT_EQ(
       message({"--alpha", "1e-6"}),
       "mercury: --random: none could be grown: alpha: no tetrahedron of the cloud is as small as the given radius\n");

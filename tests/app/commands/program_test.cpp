@@ -44,10 +44,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownOption", with({"--secnds", "2"}),
                  "--secnds: not an option of mercury run; did you mean --seconds?; see mercury run --help"},
         BadInput{"NoValue", with({"--dt"}), "--dt: needs a value; see mercury run --help"},
-        BadInput{"NoRobots", {"run"}, "no robots given; name files or folders, or use --random voxel:12 or nn:12"},
+        BadInput{
+            "NoRobots", {"run"}, "no robots given; name files or folders, or use --random voxel:12, nn:12 or shell:12"},
         BadInput{"UnknownKind",
                  {"run", "--random", "fish:2"},
-                 "--random: \"fish\" is not a kind of robot; give voxel:N or nn:N"},
+                 "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N or shell:N"},
         BadInput{"NoCount",
                  {"run", "--random", "voxel:0"},
                  "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
@@ -86,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NegativeThreads", with({"--threads", "-1"}), "--threads: -1 is not accepted; give 0 or more"},
         BadInput{"NegativeSeed", with({"--seed", "-1"}),
                  "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
-        BadInput{"AllAir", with({"--air", "1"}), "--air: give a share of at least 0 and below 1"},
+        BadInput{"AllAir", with({"--air", "1"}), "--air: 1 is not accepted; give at least 0 and below 1"},
         BadInput{"FlatVoxels", with({"--voxels", "3x3x0"}),
                  "--voxels: \"3x3x0\" is not accepted; give XxYxZ, or a range as in 4x3x3..7x5x4, in whole numbers "
                  "above 0"}),
