@@ -11,15 +11,15 @@
 namespace mercury::window {
 namespace {
 
-constexpr double pause = 0.2;            // between frames that are told of [s]
-constexpr std::size_t most_places = 20;  // of robots
+constexpr double interval = 0.2;        // between frames that are written [s]
+constexpr std::size_t max_robots = 20;  // whose positions are written
 
-// The middles of the robots, in the window.
+// The centres of the robots, in window coordinates.
 std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& picture) {
   const ViewportArea& area = picture.area;
   std::vector<std::array<float, 2>> places;
   for (const render::Bounds& box : scene.picture().bounds()) {
-    if (places.size() == most_places) break;
+    if (places.size() == max_robots) break;
     const Eigen::Vector3f p =
         picture.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
     places.push_back({area.low.x + p.x(), area.low.y + p.y()});
@@ -29,10 +29,10 @@ std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& p
 
 }  // namespace
 
-void FrameReport::write_gl_messages(PanelContext& context, Window& window) {
-  for (const std::string& complaint : window.gl_context().take_messages()) {
-    context.log.write("gl", {{"text", complaint}});
-    fmt::print(stderr, "mercury: OpenGL: {}\n", complaint);
+void FrameReport::write_gl_messages(PanelContext& context) {
+  for (const std::string& message : context.window.gl_context().take_messages()) {
+    context.log.write("gl", {{"text", message}});
+    fmt::print(stderr, "mercury: OpenGL: {}\n", message);
   }
 }
 
@@ -45,18 +45,17 @@ void FrameReport::write_robots(PanelContext& context) {
   context.log.write("robots", {{"count", robots_}, {"names", names}});
 }
 
-void FrameReport::write(PanelContext& context, Window& window, const ShownPicture& picture, const FrameTimes& cost,
-                        double dt) {
+void FrameReport::write(PanelContext& context, const ShownPicture& picture, const FrameTimes& cost, double dt) {
   EventLog& log = context.log;
   log.end_frame();
-  write_gl_messages(context, window);
-  if (frames_++ == 0) log.write("ready", {{"seconds", seconds()}, {"context", window.gl_context().describe()}});
+  write_gl_messages(context);
+  if (frames_++ == 0) log.write("ready", {{"seconds", seconds()}, {"context", context.window.gl_context().describe()}});
   if (!log) return;
   write_robots(context);
-  // When all that was pressed was taken, too.
-  const bool caught_up = !window.input().has_backlog() && window.input().taken() != input_;
-  if (seconds() - written_at_ < pause && !caught_up) return;
-  input_ = window.input().taken();
+  // Also write as soon as all input has been handled.
+  const bool caught_up = !context.window.input().has_backlog() && context.window.input().taken() != input_;
+  if (seconds() - written_at_ < interval && !caught_up) return;
+  input_ = context.window.input().taken();
   written_at_ = seconds();
   LiveScene& scene = context.scene;
   log.write("frame", {{"number", frames_},

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program that watches the window is told of every frame (docs/window.md).
+// Writes an event per frame to the event log, for programs that watch the window (docs/window.md).
 #pragma once
 
 #include <chrono>
 
 #include "app/window/panels/panel_context.h"
-#include "app/window/panels/performance_panel.h"
 #include "app/window/toolkit/window.h"
 #include "app/window/viewport/viewport_area.h"
 
@@ -14,23 +13,23 @@ namespace mercury::window {
 struct ShownPicture {
   ViewportArea area;
   render::Camera camera;
-  double time;  // of the robots in it [s]
+  double time;  // simulated [s]
 };
 
 class FrameReport {
  public:
-  // `dt`: since the last frame [s].
-  void write(PanelContext& context, Window& window, const ShownPicture& picture, const FrameTimes& cost, double dt);
+  // Call once at the end of each frame. `dt`: time since the last frame [s].
+  void write(PanelContext& context, const ShownPicture& picture, const FrameTimes& cost, double dt);
 
  private:
-  void write_gl_messages(PanelContext& context, Window& window);
+  void write_gl_messages(PanelContext& context);
   void write_robots(PanelContext& context);
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::int64_t frames_ = 0;
-  std::uint64_t input_ = 0;  // told of last
-  double written_at_ = -1;   // when a frame was told of last [s]
+  std::uint64_t input_ = 0;  // as last written
+  double written_at_ = -1;   // when a frame was last written [s]
   std::size_t robots_ = 0;
 };
 

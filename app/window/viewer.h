@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interactive window, from its opening to its end.
+// The interactive window: opens it, runs its loop, closes it.
 #pragma once
 
 #include <filesystem>
@@ -16,20 +16,20 @@
 namespace mercury::window {
 
 struct ViewerOptions {
-  std::vector<Robot> robots;                 // that come from no file
-  std::vector<std::filesystem::path> files;  // read when the window is open
-  std::vector<RandomRobots> generations;       // made when the window is open
+  std::vector<Robot> robots;                 // that do not come from files
+  std::vector<std::filesystem::path> files;  // read once the window is open
+  std::vector<RandomRobots> generations;     // made once the window is open
   Configuration configuration;
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;
-  WindowSize size{0, 0};           // 0 = of the last time
-  std::filesystem::path report;    // where to tell what happens (log.h); empty = nowhere
-  bool playing = true;             // from the start
-  bool remember = true;            // settings of earlier windows are used, and kept for later ones
-  std::vector<std::string> notes;  // shown at the start
+  WindowSize size{0, 0};           // 0 = as last time
+  std::filesystem::path report;    // where to write the event log (toolkit/event_log.h); empty = nowhere
+  bool playing = true;             // start playing
+  bool remember = true;            // load the saved settings, and save them at the end
+  std::vector<std::string> notes;  // messages to show first
 };
 
-// Returns the exit status when the window is closed. Throws NoDisplay.
+// Returns the exit status when the window is closed. Throws NoDisplay if no window can be opened.
 int run_viewer(ViewerOptions options);
 
 }  // namespace mercury::window

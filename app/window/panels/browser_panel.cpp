@@ -15,12 +15,12 @@
 namespace mercury::window {
 namespace {
 
-std::string figures_of(const RobotFolderEntry& entry) {
+std::string size_of(const RobotFolderEntry& entry) {
   return fmt::format("{} springs\n{:.2g} \xc3\x97 {:.2g} \xc3\x97 {:.2g} m", entry.figures.springs,
                      entry.figures.extent.x, entry.figures.extent.y, entry.figures.extent.z);
 }
 
-void tooltip(const RobotFolderEntry& entry) {
+void show_details(const RobotFolderEntry& entry) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(26 * ImGui::GetFontSize());
   ImGui::TextUnformatted(entry.path.filename().string().c_str());
@@ -29,7 +29,7 @@ void tooltip(const RobotFolderEntry& entry) {
     const std::string kind = kind_of(*entry.robot), environment = environment_of(*entry.robot);
     ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
     ImGui::TextUnformatted(
-        fmt::format("{} masses, {} springs, {} faces\n{} % muscle, {} materials\n{}{}{}click: add it to the scene",
+        fmt::format("{} masses, {} springs, {} faces\n{} % muscle, {} materials\n{}{}{}click to add it to the scene",
                     f.masses, f.springs, f.faces, f.springs ? 100 * f.muscles / f.springs : 0, f.materials.size(),
                     kind.empty() ? "" : kind + " robot", environment.empty() ? "" : " for " + environment,
                     kind.empty() && environment.empty() ? "" : "\n")
@@ -49,8 +49,8 @@ void tooltip(const RobotFolderEntry& entry) {
 void BrowserPanel::show_folder(const std::filesystem::path& folder) {
   entries_.clear();
   thumbnails_.clear();
-  waiting_ = 0;
-  typed_ = folder.string();
+  pending_ = 0;
+  folder_text_ = folder.string();
   reader_.reset();
   if (!folder.empty()) {
     reader_ = std::make_unique<RobotFolderReader>(folder);
@@ -67,7 +67,7 @@ void BrowserPanel::draw_bar(PanelContext& context) {
   std::string& folder = context.preferences.folder;
   if (ImGui::Button("Samples")) folder.clear();
   context.log.item("browser.samples");
-  tooltip("the robots that come with the program");
+  tooltip("the sample robots of the program");
   ImGui::SameLine();
   if (ImGui::Button("Folder...")) {
     context.dialogs.ask_files(
@@ -81,11 +81,11 @@ void BrowserPanel::draw_bar(PanelContext& context) {
         [&context](const FileChoice& answer) { context.preferences.folder = answer.paths.front().string(); });
   }
   context.log.item("browser.choose");
-  tooltip("shows the robots of a folder");
+  tooltip("choose a folder of robots");
   ImGui::SetNextItemWidth(-1);
-  if (text_field("##folder", typed_, "sample robots; or a folder") && !typed_.empty()) folder = typed_;
+  if (text_field("##folder", folder_text_, "sample robots") && !folder_text_.empty()) folder = folder_text_;
   context.log.item("browser.folder");
-  tooltip("type a folder's name, then Enter");
+  tooltip("type a folder, then Enter");
   if (!reader_) return;
   if (!reader_->error().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
@@ -105,13 +105,12 @@ void BrowserPanel::draw_bar(PanelContext& context) {
 }
 
 void BrowserPanel::draw(PanelContext& context) {
-  theme_ = context.scene.view().theme;
   draw_bar(context);
   const bool shown = reader_ ? reader_->folder() == std::filesystem::path(context.preferences.folder).lexically_normal()
                              : !entries_.empty() && context.preferences.folder.empty();
   if (!shown) show_folder(context.preferences.folder);
   const std::size_t total = reader_ ? reader_->files() : entries_.size();
-  note(total == 0 ? "no robots here"
+  note(total == 0 ? "no robots in this folder"
                   : fmt::format("{} of {} robots; click one to add it", entries_.size(), total).c_str());
   ImGui::BeginDisabled(entries_.empty());
   if (ImGui::Button("Add all", {-1, 0})) {
@@ -148,7 +147,7 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
   const ImVec2 end{corner.x + size.x, corner.y + size.y};
   list.AddRectFilled(corner, end, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
   const ImVec2 below{corner.x + width, corner.y + picture};
-  // Pictures have their lower row first.
+  // OpenGL textures start with the lowest row.
   if (const ImTextureID texture = thumbnails_.find(entry.path.string()))
     list.AddImageRounded(texture, corner, below, {0, 1}, {1, 0}, IM_COL32_WHITE, rounding, ImDrawFlags_RoundCornersTop);
   else
@@ -159,20 +158,21 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
       entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
   list.AddText({corner.x + margin, below.y + 0.15f * line}, ImGui::GetColorU32(ImGuiCol_Text),
                shortened(name, width - 2 * margin).c_str());
-  if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, figures_of(entry).c_str());
-  if (hovered && pointer_rests()) tooltip(entry);
+  if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, size_of(entry).c_str());
+  if (hovered && pointer_rests()) show_details(entry);
   if (clicked && entry.robot) context.scene.add({*entry.robot});
   if (clicked && !entry.robot) context.toasts.show(Tone::error, entry.error);
 }
 
-void BrowserPanel::work(double seconds, render::Theme theme) {
+void BrowserPanel::work(PanelContext& context, double seconds) {
+  const render::Theme theme = context.scene.view().theme;
   if (reader_) {
     std::vector<RobotFolderEntry> fresh = reader_->take();
     entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
   }
   const auto begin = std::chrono::steady_clock::now();
-  while (waiting_ < entries_.size()) {
-    const RobotFolderEntry& entry = entries_[waiting_++];
+  while (pending_ < entries_.size()) {
+    const RobotFolderEntry& entry = entries_[pending_++];
     if (entry.robot) thumbnails_.draw(entry.path.string(), *entry.robot, theme);
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) return;
   }

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of robots as pictures with key figures.
+// The robots of a folder, each with a picture and its size.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 #include "app/window/panels/robot_folder_reader.h"
 #include "app/window/viewport/thumbnails.h"
 
 namespace mercury::window {
 
-class BrowserPanel {
+class BrowserPanel : public Panel {
  public:
-  explicit BrowserPanel(render::Context& gl_context) : thumbnails_(gl_context) {}
-  void draw(PanelContext& context);
-  // Draws thumbnails that are missing, for at most so long [s].
-  void work(double seconds, render::Theme theme);
-  bool busy() const { return waiting_ < entries_.size(); }
+  explicit BrowserPanel(PanelContext& context) : thumbnails_(context.window.gl_context()) {}
+  void draw(PanelContext& context) override;
+  // Draws missing thumbnails.
+  void work(PanelContext& context, double seconds) override;
+  bool busy() const override { return pending_ < entries_.size(); }
 
  private:
   void show_folder(const std::filesystem::path& folder);
@@ -27,9 +27,8 @@ class BrowserPanel {
   Thumbnails thumbnails_;
   std::unique_ptr<RobotFolderReader> reader_;
   std::vector<RobotFolderEntry> entries_;
-  std::size_t waiting_ = 0;  // the first without a picture
-  std::string typed_;
-  render::Theme theme_ = render::Theme::dark;
+  std::size_t pending_ = 0;  // index of the first entry without a picture
+  std::string folder_text_;
 };
 
 }  // namespace mercury::window

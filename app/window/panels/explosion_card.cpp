@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/saving.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "app/window/viewport/explosion_marks.h"
@@ -16,15 +18,15 @@ namespace {
 
 std::string advice_for(const ExplodedRobot& robot) {
   const std::string advice = "A smaller time step, or XPBD, may help.";
-  if (!robot.spring) return "It is frozen; no spring is to blame. " + advice;
-  return fmt::format("Spring {} went first (masses {} and {}, {}). It is frozen, the others go on. {}",
+  if (!robot.spring) return "It is frozen; no single spring is the culprit. " + advice;
+  return fmt::format("Spring {} exploded first (masses {} and {}, {}). The robot is frozen; the others go on. {}",
                      robot.spring->index, robot.spring->a, robot.spring->b, robot.spring->figures.material_name,
                      advice);
 }
 
 void ask_for_repro(PanelContext& context, const ExplodedRobot& robot) {
   context.dialogs.ask_files({.kind = FileRequest::Kind::folder,
-                             .title = "Save what explodes, to see it again",
+                             .title = "Save a file that reproduces the explosion",
                              .button = "Save here",
                              .extensions = {".repro"},
                              .folder = context.preferences.save_folder,
@@ -45,13 +47,13 @@ const ExplodedRobot* ExplosionCard::chosen() const {
   return found == robots_.end() ? nullptr : &*found;
 }
 
-void ExplosionCard::choose(int places) {
+void ExplosionCard::choose(int steps) {
   const auto count = static_cast<int>(robots_.size());
-  const auto place = static_cast<int>(chosen() - robots_.data());
-  chosen_ = robots_[static_cast<std::size_t>((place + places + count) % count)].robot;
+  const auto index = static_cast<int>(chosen() - robots_.data());
+  chosen_ = robots_[static_cast<std::size_t>((index + steps + count) % count)].robot;
 }
 
-void ExplosionCard::follow(PanelContext& context, const ViewportArea& area, const render::Camera& camera) {
+void ExplosionCard::update(PanelContext& context, const ViewportArea& area, const render::Camera& camera) {
   context.scene.pause_on_explosion(context.preferences.pause_on_explosion);
   for (const Explosion& explosion : context.scene.take_explosions())
     context.log.write("exploded",
@@ -69,10 +71,10 @@ void ExplosionCard::follow(PanelContext& context, const ViewportArea& area, cons
 
 void ExplosionCard::draw(PanelContext& context, const ViewportArea& area) {
   low_ = high_ = {0, 0};
-  const bool news = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) {
+  const bool any_left = std::ranges::any_of(robots_, [&](const ExplodedRobot& robot) {
     return !dismissed_.contains({robot.robot, robot.time});
   });
-  if (!news) return;
+  if (!any_left) return;
   const ExplodedRobot robot = *chosen();
   const float text = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({area.low.x + text, area.high.y - text}, ImGuiCond_Always, {0, 1});
@@ -121,7 +123,7 @@ void ExplosionCard::draw_buttons(PanelContext& context, const ExplodedRobot& rob
     if (robot.spring)
       context.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
     else
-      frame_robots(context, {robot.robot}, area.aspect());
+      frame_robots(context, {robot.robot});
   }
   context.log.item("explosion.show");
   ImGui::SameLine();

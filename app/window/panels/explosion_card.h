@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What robots that have exploded are told with: which and when, the spring that went first, and what can be done.
+// A card over the picture for robots that exploded: which robot and when, its culprit spring, and what to do about it.
 #pragma once
 
 #include <optional>
@@ -14,22 +14,22 @@ namespace mercury::window {
 
 class ExplosionCard {
  public:
-  // Takes note of explosions and marks their springs in the picture that `camera` was used for; call once a frame,
-  // before what lies over the picture.
-  void follow(PanelContext& context, const ViewportArea& area, const render::Camera& camera);
-  // Over the lower left of the picture, while there is one to tell of.
+  // Takes over new explosions and marks the culprit springs in the picture. `camera` is the one the picture was drawn
+  // with. Call once per frame, before draw().
+  void update(PanelContext& context, const ViewportArea& area, const render::Camera& camera);
+  // Draws the card at the lower left of the picture, if there is an explosion that was not dismissed.
   void draw(PanelContext& context, const ViewportArea& area);
 
  private:
   const ExplodedRobot* chosen() const;
-  void choose(int places);
+  void choose(int steps);  // moves on to another robot
   void draw_heading(PanelContext& context, const ExplodedRobot& robot);
   void draw_buttons(PanelContext& context, const ExplodedRobot& robot, const ViewportArea& area);
 
   std::vector<ExplodedRobot> robots_;
   std::optional<RobotId> chosen_;
-  ImVec2 low_{0, 0}, high_{0, 0};                   // of the card; empty = it is not shown
-  std::set<std::pair<RobotId, double>> dismissed_;  // explosions that need not be told of any more
+  ImVec2 low_{0, 0}, high_{0, 0};                   // the card's rectangle; empty = not shown
+  std::set<std::pair<RobotId, double>> dismissed_;  // explosions that the user dismissed
 };
 
 }  // namespace mercury::window

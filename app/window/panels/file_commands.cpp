@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/saving.h"
+
 namespace mercury::window {
 namespace {
 
@@ -53,7 +56,7 @@ void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
                             });
 }
 
-// Random robots come again from their seed, those of a file from it.
+// Robots that neither a seed nor a file can bring back.
 std::vector<RobotId> robots_to_lose(const LiveScene& scene) {
   std::vector<RobotId> lost;
   for (const RobotEntry& robot : scene.entries()) {
@@ -94,23 +97,6 @@ void save_robots(PanelContext& context) {
     if (entry.id == robots.front()) save_one(context, entry);
 }
 
-void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make) {
-  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
-                             .title = "Save " + what,
-                             .button = "Save",
-                             .extensions = {".csv"},
-                             .folder = context.preferences.save_folder,
-                             .name = what + ".csv",
-                             .formats = {}},
-                            [&context, what, make = std::move(make)](const FileChoice& answer) {
-                              const fs::path path = answer.paths.front();
-                              context.preferences.save_folder = path.parent_path().string();
-                              save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
-                                return context.scene.save_text(path, text, overwrite);
-                              });
-                            });
-}
-
 void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
   const std::vector<RobotId> lost = robots_to_lose(context.scene);
   if (lost.empty()) {
@@ -118,9 +104,8 @@ void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
     return;
   }
   context.log.write("asks", {{"what", "quit"}});
-  const std::string question = lost.size() == 1
-                                   ? "One robot was made or changed here and is not saved."
-                                   : fmt::format("{} robots were made or changed here and are not saved.", lost.size());
+  const std::string question =
+      lost.size() == 1 ? "One robot has unsaved changes." : fmt::format("{} robots have unsaved changes.", lost.size());
   context.dialogs.ask({.title = "Quit without saving?",
                        .text = question,
                        .button = "Quit",

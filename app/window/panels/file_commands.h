@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots from files and into files, as the user asks for it.
+// Opens and saves robots through the file dialog.
 #pragma once
+
+#include <functional>
 
 #include "app/window/panels/panel_context.h"
 
 namespace mercury::window {
 
-// Asks what, and opens it.
+// Asks for files and opens them.
 void open_robots(PanelContext& context);
-// Asks where to, for the selected robots, or all.
+// Asks where to save the selected robots, or all robots if none is selected.
 void save_robots(PanelContext& context);
-// Asks for a file, and saves the text that `make` gives then. `what` as in "ranking".
-void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make);
-// Calls `quit`; where robots would be lost that cannot be made again, asks first.
+// Calls `quit`, after asking the user if changes to robots would be lost.
 void quit_with_confirmation(PanelContext& context, std::function<void()> quit);
 
 }  // namespace mercury::window

@@ -9,18 +9,32 @@
 
 namespace mercury::window {
 
+PanelColumn::PanelColumn(Side side, PanelContext& context)
+    : id_(side == Side::left ? "##left" : "##right"), right_(side == Side::right) {
+  for (const PanelEntry& entry : panel_table())
+    if (entry.side == side) tabs_.push_back({&entry, entry.make(context)});
+}
+
+void PanelColumn::work(PanelContext& context, double seconds) {
+  for (const Tab& tab : tabs_) tab.panel->work(context, seconds);
+}
+
+bool PanelColumn::busy() const {
+  return std::ranges::any_of(tabs_, [](const Tab& tab) { return tab.panel->busy(); });
+}
+
 float PanelColumn::pixels(float width) {
   const float text = ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
   const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 20.0f, 30.0f);
   return std::min(lines * text, 0.38f * screen);
 }
 
-bool PanelColumn::has(const std::string& name) const {
-  return std::any_of(panels_.begin(), panels_.end(), [&](const Panel& panel) { return panel.name == name; });
+bool PanelColumn::has(const std::string& title) const {
+  return std::ranges::any_of(tabs_, [&](const Tab& tab) { return tab.entry->title == title; });
 }
 
 void PanelColumn::draw(PanelContext& context, float top, float bottom, std::string& open, float& width) {
-  if (!has(open)) open = panels_.front().name;
+  if (!has(open)) open = tabs_.front().entry->title;
   const float screen = ImGui::GetIO().DisplaySize.x, size = pixels(width);
   ImGui::SetNextWindowPos({right_ ? screen - size : 0, top});
   ImGui::SetNextWindowSize({size, bottom - top});
@@ -31,12 +45,11 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, std::stri
   ImGui::PopStyleVar();
   draw_tabs(context, open);
   ImGui::Separator();
-  const auto panel =
-      std::find_if(panels_.begin(), panels_.end(), [&](const Panel& other) { return other.name == open; });
-  // Every panel keeps its own place where it is scrolled.
-  if (ImGui::BeginChild(panel->name, {0, 0})) panel->draw();
+  const auto tab = std::ranges::find_if(tabs_, [&](const Tab& other) { return other.entry->title == open; });
+  // Each panel has an ImGui child of its own, which keeps its scroll position.
+  if (ImGui::BeginChild(tab->entry->title, {0, 0})) tab->panel->draw(context);
   ImGui::EndChild();
-  context.log.item(std::string("panel.") + panel->name);
+  context.log.item(std::string("panel.") + tab->entry->title);
   ImGui::End();
   draw_edge(top, bottom, width);
 }
@@ -44,32 +57,33 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, std::stri
 void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
   const float spacing = 0.25f * ImGui::GetFontSize(), end = ImGui::GetWindowContentRegionMax().x;
   bool first = true;
-  for (const Panel& panel : panels_) {
-    const float width = ImGui::CalcTextSize(panel.name).x + 2 * ImGui::GetStyle().FramePadding.x;
+  for (const Tab& tab : tabs_) {
+    const PanelEntry& entry = *tab.entry;
+    const float width = ImGui::CalcTextSize(entry.title).x + 2 * ImGui::GetStyle().FramePadding.x;
     if (!first) {
       ImGui::SameLine(0, spacing);
       if (ImGui::GetCursorPosX() + width > end) ImGui::NewLine();
     }
     first = false;
-    const bool on = open == panel.name;
+    const bool on = open == entry.title;
     ImGui::PushStyleColor(ImGuiCol_Button, on ? ImGui::GetColorU32(ImGuiCol_Header) : IM_COL32_BLACK_TRANS);
-    if (ImGui::Button(panel.name) && !on) {
-      open = panel.name;
+    if (ImGui::Button(entry.title) && !on) {
+      open = entry.title;
       context.log.write("panel", {{"name", open}});
     }
     ImGui::PopStyleColor();
-    // Below the tabs, so that it hides none; the open panel explains itself.
+    // The tooltip appears below the tabs, so that it covers none.
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (!on && ImGui::IsItemHovered()) {
       ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
                               {right_ ? 1.0f : 0.0f, 0});
-      tooltip(panel.meaning);
+      tooltip(entry.tooltip);
     }
-    context.log.item(std::string("tab.") + panel.name);
+    context.log.item(std::string("tab.") + entry.title);
   }
 }
 
-// The inner edge can be dragged.
+// The user drags the inner edge to change the width.
 void PanelColumn::draw_edge(float top, float bottom, float& width) {
   const float grip = 0.4f * ImGui::GetFontSize(), size = pixels(width), screen = ImGui::GetIO().DisplaySize.x;
   const float edge = right_ ? screen - size : size;

@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which part of the window is whose: columns of panels left and right, the play bar below, the picture between them.
+// A column of panels at one side of the window: tabs at the top, one panel open below, an edge that can be dragged.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
 
-// A panel by its name, as it is written on its tab.
-struct Panel {
-  const char* name;
-  const char* meaning;  // shown when the mouse rests on the tab
-  std::function<void()> draw;
-};
-
-// A column of panels at a side of the window, one of them open.
 class PanelColumn {
  public:
-  PanelColumn(const char* id, bool right, std::vector<Panel> panels)
-      : id_(id), right_(right), panels_(std::move(panels)) {}
+  // Makes the panels of panel_table() that belong to this side.
+  PanelColumn(Side side, PanelContext& context);
 
-  // Between two heights of the window. `open` and `width` [lines of text] are changed by the user.
+  // Draws the column between two heights of the window. The user changes `open`, the title of the open panel, and
+  // `width` [lines of text].
   void draw(PanelContext& context, float top, float bottom, std::string& open, float& width);
-  // Its width now [pixels]; one of 0 lines is as the window suggests.
+  // Converts a width to pixels; 0 lines = automatic.
   static float pixels(float width);
-  const std::vector<Panel>& panels() const { return panels_; }
-  bool has(const std::string& name) const;
+  bool has(const std::string& title) const;
+
+  // Passes the call on to each panel (panel.h).
+  void work(PanelContext& context, double seconds);
+  bool busy() const;
 
  private:
   void draw_tabs(PanelContext& context, std::string& open);
   void draw_edge(float top, float bottom, float& width);
 
+  struct Tab {
+    const PanelEntry* entry;
+    std::unique_ptr<Panel> panel;
+  };
+
   const char* id_;
   bool right_;
-  std::vector<Panel> panels_;
+  std::vector<Tab> tabs_;
 };
 
 }  // namespace mercury::window

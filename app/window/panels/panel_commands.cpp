@@ -1,72 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// What keys and menus do.
+// The part of Panels that executes the commands of menus and keys.
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <nlohmann/json.hpp>
-
+#include "app/window/panels/color_section.h"
 #include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
-#include "app/window/panels/view_panel.h"
+#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/scene_commands.h"
+#include "app/window/panels/video_recorder.h"
 
 namespace mercury::window {
 
 void Panels::execute(const Command& command) {
-  LiveScene& scene = context_.scene;
-  const std::vector<RobotId> selection = scene.selection();
   switch (command.action) {
     case Action::play_pause:
-      scene.toggle();
-      break;
     case Action::step:
-      scene.step();
-      break;
     case Action::faster:
-      scene.change_speed(1);
-      break;
     case Action::slower:
-      scene.change_speed(-1);
-      break;
     case Action::real_time:
-      scene.set_speed(1);
-      break;
     case Action::fastest:
-      scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed);
-      break;
     case Action::reset:
-      scene.reset();
+      change_time(command.action);
       break;
     case Action::new_random:
-      robots_.random.generate(context_);
-      break;
     case Action::duplicate:
-      scene.duplicate(selection);
-      break;
     case Action::remove:
-      scene.remove(selection);
-      break;
     case Action::mutate:
-      robots_.mutate(context_);
-      break;
     case Action::select_all:
-      scene.select_all();
-      break;
-    case Action::deselect:
-      escape();
-      break;
     case Action::undo:
-      if (scene.can_undo()) context_.toasts.show(Tone::info, "undone: " + scene.undo_name());
-      scene.undo();
-      break;
     case Action::redo:
-      if (scene.can_redo()) context_.toasts.show(Tone::info, "done again: " + scene.redo_name());
-      scene.redo();
-      break;
     case Action::open:
-      open_robots(context_);
-      break;
     case Action::save:
-      save_robots(context_);
+      change_robots(command.action);
       break;
     case Action::frame:
     case Action::follow:
@@ -86,16 +52,19 @@ void Panels::execute(const Command& command) {
       context_.preferences.panels = !context_.preferences.panels;
       break;
     case Action::full_screen:
-      window_.toggle_full_screen();
+      context_.window.toggle_full_screen();
       break;
     case Action::screenshot:
-      screenshot_requested_ = true;
+      context_.screenshot_requested = true;
       break;
     case Action::record:
-      film_.toggle(context_);
+      context_.recorder.toggle(context_);
+      break;
+    case Action::deselect:
+      escape();
       break;
     case Action::help:
-      help_ = !help_;
+      help_open_ = !help_open_;
       break;
     case Action::quit:
       quit();
@@ -103,16 +72,43 @@ void Panels::execute(const Command& command) {
   }
 }
 
+void Panels::change_time(Action action) {
+  LiveScene& scene = context_.scene;
+  if (action == Action::play_pause) scene.toggle();
+  if (action == Action::step) scene.step();
+  if (action == Action::faster) scene.change_speed(1);
+  if (action == Action::slower) scene.change_speed(-1);
+  if (action == Action::real_time) scene.set_speed(1);
+  if (action == Action::fastest) scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed);
+  if (action == Action::reset) scene.reset();
+}
+
+void Panels::change_robots(Action action) {
+  LiveScene& scene = context_.scene;
+  if (action == Action::new_random) generate_robots(context_);
+  if (action == Action::duplicate) scene.duplicate(scene.selection());
+  if (action == Action::remove) scene.remove(scene.selection());
+  if (action == Action::mutate) mutate_selected(context_);
+  if (action == Action::select_all) scene.select_all();
+  if (action == Action::open) open_robots(context_);
+  if (action == Action::save) save_robots(context_);
+  if (action == Action::undo) {
+    if (scene.can_undo()) context_.toasts.show(Tone::info, "undone: " + scene.undo_name());
+    scene.undo();
+  }
+  if (action == Action::redo) {
+    if (scene.can_redo()) context_.toasts.show(Tone::info, "redone: " + scene.redo_name());
+    scene.redo();
+  }
+}
+
 void Panels::change_view(Action action, int number) {
   ViewSettings view = context_.scene.view();
   const Environment& environment = context_.scene.configuration().environment;
-  const bool ocean = std::holds_alternative<Ocean>(environment);
   switch (action) {
     case Action::drag_arrows:
-      toggle_drag_arrows(view);
-      if (view.shown.arrows.drag && !ocean) context_.toasts.show(Tone::info, "drag arrows are there in the ocean only");
-      context_.log.write("view", {{"drag", view.shown.arrows.drag}});
-      break;
+      toggle_drag_arrows(context_);
+      return;
     case Action::color:
       if (!color_by_number(view, number, environment)) return;
       context_.toasts.show(Tone::info, fmt::format("coloured by {}", view.color->key));
@@ -139,7 +135,7 @@ void Panels::change_view(Action action, int number) {
 void Panels::change_camera(Action action) {
   OrbitController& camera = context_.camera;
   const auto toggle_mode = [&](CameraMode mode) { camera.set_mode(camera.mode() == mode ? CameraMode::still : mode); };
-  if (action == Action::frame) frame_robots(context_, context_.scene.selection(), aspect_);
+  if (action == Action::frame) frame_robots(context_, context_.scene.selection());
   if (action == Action::turntable) toggle_mode(CameraMode::turntable);
   if (action == Action::top_view) toggle_mode(CameraMode::top);
   if (action != Action::follow) return;
@@ -152,14 +148,14 @@ void Panels::change_camera(Action action) {
 }
 
 void Panels::quit() {
-  quit_with_confirmation(context_, [this] { quits_ = true; });
+  quit_with_confirmation(context_, [this] { quit_confirmed_ = true; });
 }
 
 void Panels::escape() {
   if (context_.dialogs.open())
     context_.dialogs.close();
-  else if (help_)
-    help_ = false;
+  else if (help_open_)
+    help_open_ = false;
   else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
     ImGui::SetWindowFocus(nullptr);  // closes menus and lists
   else

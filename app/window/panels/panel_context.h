@@ -1,43 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every panel works on.
+// What a panel may read and change. The viewer owns all of it and passes it to each panel in each frame.
 #pragma once
-
-#include <filesystem>
-#include <functional>
-#include <string>
 
 #include "app/live/live_scene.h"
 #include "app/window/dialogs/dialogs.h"
+#include "app/window/panels/frame_history.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/preferences.h"
 #include "app/window/toolkit/toasts.h"
+#include "app/window/toolkit/window.h"
 #include "app/window/viewport/orbit_controller.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 
-struct PanelContext {
-  LiveScene& scene;
-  OrbitController& camera;
-  Preferences& preferences;
-  EventLog& log;
-  Toasts& toasts;
-  Dialogs& dialogs;
+class VideoRecorder;
+
+// The settings with which the window makes new robots.
+struct RobotCreation {
+  RandomRobots generation{.count = 6};  // random robots
+  bool replace = true;                  // random robots replace the robots of the scene
+  MutationRequest mutation;
 };
 
-// The selected robots; all where none is selected.
-std::vector<RobotId> selected_or_all(const LiveScene& scene);
-
-// Looks at these robots; all where there are none.
-void frame_robots(PanelContext& context, const std::vector<RobotId>& robots, float aspect);
-
-// The boxes of these robots in the picture, as far as they are there.
-std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId>& robots);
-
-// Does something while the scene's camera is the one in the user's hand.
-void with_window_camera(PanelContext& context, const std::function<void()>& act);
-
-// Saves by `save(overwrite)`; where files exist, asks first. Tells how it went.
-void save_with_confirmation(PanelContext& context, const std::string& what,
-                            std::function<SaveResult(bool overwrite)> save);
+struct PanelContext {
+  LiveScene& scene;          // robots, physics, undo, colours
+  OrbitController& camera;   // the camera of the viewport
+  Preferences& preferences;  // window settings, kept for the next start
+  EventLog& log;             // names items for tests and logs events
+  Toasts& toasts;            // short messages
+  Dialogs& dialogs;          // modal dialogs
+  Window& window;
+  const Viewport& viewport;
+  VideoRecorder& recorder;
+  FrameHistory& frame_history;
+  RobotCreation creation = {};
+  float aspect = 16.0f / 9;           // width / height of the viewport in this frame
+  bool screenshot_requested = false;  // set it to take one at the end of the frame
+};
 
 }  // namespace mercury::window

@@ -1,66 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-// All panels of the window, and what keys and menus do with them.
+// Everything that ImGui draws: menu, panel columns, play bar, overlays. Executes the commands of menus and keys.
+//
+//   +----------------------------------------+
+//   | menu                                   |  main_menu.cpp
+//   +--------+----------------------+--------+
+//   | panel  |                      | panel  |
+//   | column |       viewport       | column |  panel_column.cpp, panel_table.cpp
+//   |        |                      |        |
+//   +--------+----------------------+--------+
+//   | play bar                               |  play_bar.cpp
+//   +----------------------------------------+
 #pragma once
 
-#include "app/window/panels/browser_panel.h"
+#include <string>
+
 #include "app/window/panels/explosion_card.h"
-#include "app/window/panels/materials_panel.h"
-#include "app/window/panels/measure_panel.h"
 #include "app/window/panels/panel_column.h"
 #include "app/window/panels/panel_context.h"
-#include "app/window/panels/performance_panel.h"
-#include "app/window/panels/robots_panel.h"
-#include "app/window/panels/video_panel.h"
 #include "app/window/toolkit/key_bindings.h"
-#include "app/window/viewport/viewport.h"
+#include "app/window/viewport/viewport_area.h"
 
 namespace mercury::window {
 
 class Panels {
  public:
-  Panels(PanelContext& context, Window& window, Viewport& picture);
+  explicit Panels(PanelContext& context)
+      : context_(context), left_(Side::left, context), right_(Side::right, context) {}
 
-  // Menu, columns and play bar; returns the place that is left for the picture.
+  // Draws menu, columns and play bar; returns the area that is left for the picture.
   ViewportArea draw_frame();
-  // What lies over the picture.
+  // Draws what lies over the picture: explosions, help, dialogs, messages.
   void draw_over(const ViewportArea& area, const render::Camera& camera, double dt);
+  // Executes a command of a key or menu.
   void execute(const Command& command);
-  // Closes the window; where something would be lost, asks first.
-  void quit();
-  bool quits() const { return quits_; }
-  void note(const FrameTimes& cost) { performance_.note(cost); }
-  // Background work of panels, for at most so long [s]; takes what it took.
-  void work(double seconds);
-  bool busy() const { return browser_.busy(); }
-  // Opens a panel by its name.
+  // Opens a panel by its title.
   void show(const std::string& panel);
+  // Background work of panels, for about `seconds` (panel.h).
+  void work(double seconds);
+  bool busy() const { return left_.busy() || right_.busy(); }
 
-  bool take_screenshot_request() { return std::exchange(screenshot_requested_, false); }
-  RandomRobots& generation() { return robots_.random.generation; }
-  VideoPanel& film() { return film_; }
-  const VideoPanel& film() const { return film_; }
+  // Quits, after asking the user if changes would be lost.
+  void quit();
+  bool quit_confirmed() const { return quit_confirmed_; }
 
  private:
   void draw_menu();
+  void draw_file_menu();
+  void draw_edit_menu();
+  void draw_view_menu();
   void menu_item(const char* name, Action action, bool enabled = true, bool checked = false);
+  void change_time(Action action);
+  void change_robots(Action action);
   void change_view(Action action, int number);
   void change_camera(Action action);
   void escape();
 
   PanelContext& context_;
-  Window& window_;
-  Viewport& picture_;
-  RobotsPanel robots_;
-  BrowserPanel browser_;
-  MaterialsPanel materials_;
-  MeasurePanel measure_;
-  RankingPanel ranking_;
-  PerformancePanel performance_;
-  VideoPanel film_;
   ExplosionCard explosions_;
   PanelColumn left_, right_;
-  bool help_ = false, screenshot_requested_ = false, quits_ = false;
-  float aspect_ = 16.0f / 9;
+  bool help_open_ = false, quit_confirmed_ = false;
 };
 
 }  // namespace mercury::window

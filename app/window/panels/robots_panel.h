@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robots of the scene: list, changes, and the making of random ones.
+// The robots of the scene: a list, commands on the selected robots, and new random robots.
 #pragma once
 
-#include <string>
-
-#include "app/window/panels/panel_context.h"
-#include "app/window/panels/random_panel.h"
+#include "app/window/panels/panel.h"
+#include "app/window/panels/random_section.h"
 
 namespace mercury::window {
 
-class RobotsPanel {
+class RobotsPanel : public Panel {
  public:
-  void draw(PanelContext& context, float aspect);
-  void mutate(PanelContext& context);
-
-  RandomPanel random;
+  void draw(PanelContext& context) override;
 
  private:
-  void draw_list(PanelContext& context, float aspect);
-  void draw_row(PanelContext& context, const RobotEntry& entry, float aspect);
-  void choose(PanelContext& context, const RobotEntry& entry);
-  void draw_changes(PanelContext& context);
+  void draw_list(PanelContext& context);
+  void draw_row(PanelContext& context, const RobotEntry& entry);
+  void select(PanelContext& context, const RobotEntry& entry);
+  void draw_commands(PanelContext& context);
 
-  MutationRequest mutation_;
-  RobotId anchor_ = 0;  // where a range of selected rows begins
+  RandomSection random_;
+  RobotId anchor_ = 0;  // the robot at which a Shift-click range starts; 0 = none
 };
 
 }  // namespace mercury::window

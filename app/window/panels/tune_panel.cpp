@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
@@ -115,8 +116,7 @@ bool environment_section(Configuration& configuration, EventLog& log) {
   return changed;
 }
 
-}  // namespace
-
+// Returns true when the configuration changed. It stays one that validate() accepts.
 bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
   Configuration edited = configuration;
   bool changed = solver_section(edited, log);
@@ -134,10 +134,24 @@ bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
   try {
     validate(edited);
   } catch (const std::exception&) {
-    return false;  // typed in by hand, and out of what is accepted
+    return false;  // the user typed a value that is not allowed
   }
   configuration = edited;
   return true;
+}
+
+}  // namespace
+
+void TunePanel::draw(PanelContext& context) {
+  Configuration configuration = context.scene.configuration();
+  if (draw_physics_sliders(configuration, context.log)) context.scene.set_configuration(configuration);
+  ImGui::SameLine();
+  if (ImGui::Button("Copy as command")) copy_as_command(context, "view");
+  context.log.item("tune.copy");
+  tooltip("copy the command line that makes this scene");
+  materials_.draw(context);
+  // All changes until the mouse button is released are one undo step.
+  if (ImGui::IsMouseReleased(0)) context.scene.end_edit();
 }
 
 }  // namespace mercury::window

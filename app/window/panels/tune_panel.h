@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solver, environment and their parameters, as sliders that act at once.
+// Solver, environment and materials, as sliders that act at once.
 #pragma once
 
-#include "app/window/toolkit/event_log.h"
-#include "mercury/configuration.h"
+#include "app/window/panels/materials_section.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
 
-// True when the configuration changed; it stays one that validate() accepts.
-bool draw_physics_sliders(Configuration& configuration, EventLog& log);
+class TunePanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  MaterialsSection materials_;
+};
 
 }  // namespace mercury::window

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/saving.h"
 
 #include <fmt/format.h>
 
@@ -27,38 +27,6 @@ void report(PanelContext& context, const std::string& what, const SaveResult& re
 
 }  // namespace
 
-std::vector<RobotId> selected_or_all(const LiveScene& scene) {
-  std::vector<RobotId> chosen = scene.selection();
-  if (chosen.empty())
-    for (const RobotEntry& entry : scene.entries()) chosen.push_back(entry.id);
-  return chosen;
-}
-
-std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId>& robots) {
-  const std::span<const render::Bounds> bounds = scene.picture().bounds();
-  std::vector<render::Bounds> boxes;
-  for (const RobotId robot : robots)
-    if (const auto index = scene.snapshot().robots->index_of(robot);
-        index && *index < bounds.size() && !bounds[*index].empty())
-      boxes.push_back(bounds[*index]);
-  return boxes;
-}
-
-void frame_robots(PanelContext& context, const std::vector<RobotId>& robots, float aspect) {
-  std::vector<render::Bounds> boxes = boxes_of(context.scene, robots);
-  if (boxes.empty()) boxes = boxes_of(context.scene, selected_or_all(context.scene));
-  context.camera.frame(boxes, aspect);
-}
-
-void with_window_camera(PanelContext& context, const std::function<void()>& act) {
-  const ViewSettings before = context.scene.view();
-  ViewSettings view = before;
-  view.camera = context.camera.plan();
-  context.scene.set_view(view);
-  act();
-  context.scene.set_view(before);
-}
-
 void save_with_confirmation(PanelContext& context, const std::string& what,
                             std::function<SaveResult(bool overwrite)> save) {
   const SaveResult result = save(false);
@@ -68,14 +36,30 @@ void save_with_confirmation(PanelContext& context, const std::string& what,
   }
   context.log.write("asks", {{"what", "overwrite"}});
   const std::string question =
-      result.files.size() == 1
-          ? fmt::format("{} is there already.", result.files.front().string())
-          : fmt::format("{} files are there already: {}", result.files.size(), list_of(result.files));
+      result.files.size() == 1 ? fmt::format("{} exists already.", result.files.front().string())
+                               : fmt::format("{} files exist already: {}", result.files.size(), list_of(result.files));
   context.dialogs.ask({.title = "Replace?",
                        .text = question,
                        .button = "Replace",
                        .on_accept = [&context, what, save] { report(context, what, save(true)); },
                        .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
+}
+
+void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make) {
+  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
+                             .title = "Save " + what,
+                             .button = "Save",
+                             .extensions = {".csv"},
+                             .folder = context.preferences.save_folder,
+                             .name = what + ".csv",
+                             .formats = {}},
+                            [&context, what, make = std::move(make)](const FileChoice& answer) {
+                              const fs::path path = answer.paths.front();
+                              context.preferences.save_folder = path.parent_path().string();
+                              save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
+                                return context.scene.save_text(path, text, overwrite);
+                              });
+                            });
 }
 
 }  // namespace mercury::window

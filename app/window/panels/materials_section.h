@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of the chosen robots, as sliders that act at once.
+// The part of the Tune panel that changes the materials of the selected robots, or of all.
 #pragma once
 
 #include "app/window/panels/panel_context.h"
 
 namespace mercury::window {
 
-class MaterialsPanel {
+class MaterialsSection {
  public:
   void draw(PanelContext& context);
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// All keys and gestures.
+// A floating window that lists all keys and mouse gestures.
 #pragma once
 
 #include "app/window/toolkit/event_log.h"
 
 namespace mercury::window {
 
+// The user may close it, which sets `open` to false.
 void draw_help(bool& open, EventLog& log);
 
 }  // namespace mercury::window

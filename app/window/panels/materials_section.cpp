@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/materials_panel.h"
+#include "app/window/panels/materials_section.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-// The materials that a robot's springs are of.
+// The materials that the springs of a robot use.
 std::vector<int> used_materials(const Robot& robot) {
   std::set<int> used;
   for (const Spring& spring : robot.springs) used.insert(spring.material);
@@ -30,7 +31,7 @@ std::string name_of_material(const Robot& robot, int id) {
 
 }  // namespace
 
-void MaterialsPanel::draw(PanelContext& context) {
+void MaterialsSection::draw(PanelContext& context) {
   heading("Materials");
   const std::vector<RobotId> robots = selected_or_all(context.scene);
   if (robots.empty()) {
@@ -50,12 +51,12 @@ void MaterialsPanel::draw(PanelContext& context) {
     context.scene.end_edit();
   }
   context.log.item("materials.reset");
-  tooltip("the materials that the robots were made with");
+  tooltip("restore the materials of the robot files");
   draw_one(context, robots);
 }
 
-void MaterialsPanel::draw_factors(PanelContext& context, const std::vector<RobotId>& robots) {
-  bool changed = slider("all stiffness", "factor on the stiffness of every material", scale_.stiffness, 1,
+void MaterialsSection::draw_factors(PanelContext& context, const std::vector<RobotId>& robots) {
+  bool changed = slider("all stiffness", "factor on the stiffness of all materials", scale_.stiffness, 1,
                         {0.1f, 10, "\xc3\x97 %.2f", true});
   context.log.item("materials.stiffness");
   changed |=
@@ -65,7 +66,7 @@ void MaterialsPanel::draw_factors(PanelContext& context, const std::vector<Robot
   if (changed) context.scene.scale_materials(robots, scale_);
 }
 
-void MaterialsPanel::draw_one(PanelContext& context, const std::vector<RobotId>& robots) {
+void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId>& robots) {
   const RobotId shown = context.scene.current().value_or(robots.front());
   const DocumentRobot* document = context.scene.document().find(shown);
   if (!document || !ImGui::CollapsingHeader("One material")) return;
@@ -73,7 +74,7 @@ void MaterialsPanel::draw_one(PanelContext& context, const std::vector<RobotId>&
   const std::vector<int> used = used_materials(robot);
   if (used.empty()) return;
   if (std::find(used.begin(), used.end(), material_) == used.end()) material_ = used.front();
-  row("material", fmt::format("those that {} is made of", document->body.name).c_str());
+  row("material", fmt::format("the materials of {}", document->body.name).c_str());
   if (ImGui::BeginCombo("##material", name_of_material(robot, material_).c_str())) {
     for (const int id : used)
       if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_))
@@ -84,12 +85,12 @@ void MaterialsPanel::draw_one(PanelContext& context, const std::vector<RobotId>&
   if (static_cast<std::size_t>(material_) >= table.size()) return;
   const auto id = static_cast<std::size_t>(material_);
   Material material = table[id];
-  const Material made = materials_of(robot)[id];
-  bool changed = slider("stiffness", "k of a spring", material.stiffness, made.stiffness, {0, 500, "%.1f N/m"});
-  changed |= slider("amplitude", "relative change of length, 0 = does not move", material.amplitude, made.amplitude,
+  const Material original = materials_of(robot)[id];
+  bool changed = slider("stiffness", "k of a spring", material.stiffness, original.stiffness, {0, 500, "%.1f N/m"});
+  changed |= slider("amplitude", "relative change of length; 0 = passive", material.amplitude, original.amplitude,
                     {0, 0.6f, "%.3f"});
-  changed |= slider("frequency", "omega", material.frequency, made.frequency, {0, 25, "%.2f rad/s"});
-  changed |= slider("phase", "phi", material.phase, made.phase, {-pi, 2 * pi, "%.2f rad"});
+  changed |= slider("frequency", "omega", material.frequency, original.frequency, {0, 25, "%.2f rad/s"});
+  changed |= slider("phase", "phi", material.phase, original.phase, {-pi, 2 * pi, "%.2f rad"});
   if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
 }
 

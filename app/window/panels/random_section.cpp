@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/random_panel.h"
+#include "app/window/panels/random_section.h"
 
 #include <algorithm>
 
 #include "app/options/generator_options.h"
+#include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
 
 namespace mercury::window {
 namespace {
 
-bool whole_number(const char* name, const char* explanation, int& value, int low, int high, PanelContext& context,
+bool whole_number(const char* name, const char* help, int& value, int low, int high, PanelContext& context,
                   const std::string& item) {
   ImGui::PushID(name);
-  row(name, explanation);
+  row(name, help);
   const bool changed = ImGui::InputInt("##value", &value, 1, 10);
   context.log.item(item);
   ImGui::PopID();
@@ -45,9 +46,9 @@ struct Control {
     const double scale = percent ? 100 : 1;
     const std::string format = percent ? "%.0f %%" : "%.3g " + parameter.unit;
     auto shown = static_cast<float>(scale * static_cast<double>(value));
-    const auto standard = static_cast<float>(scale * static_cast<double>(std::get<Number>(parameter.initial)));
+    const auto default_value = static_cast<float>(scale * static_cast<double>(std::get<Number>(parameter.initial)));
     const bool changed =
-        slider(name(), help(), shown, standard,
+        slider(name(), help(), shown, default_value,
                {static_cast<float>(scale * parameter.lowest), static_cast<float>(scale * highest()), format.c_str()});
     context.log.item(item());
     if (changed)
@@ -104,16 +105,17 @@ const Generator& generator_in(const RandomRobots& generation) {
 
 }  // namespace
 
-void RandomPanel::draw(PanelContext& context) {
+void RandomSection::draw(PanelContext& context) {
+  RandomRobots& generation = context.creation.generation;
   heading("Random robots");
   std::vector<const char*> kinds;
-  std::string explanation;
+  std::string help;
   for (const Generator& generator : generators()) {
     kinds.push_back(generator.kind.c_str());
-    explanation += (explanation.empty() ? "" : "\n") + generator.kind + ": " + generator.help;
+    help += (help.empty() ? "" : "\n") + generator.kind + ": " + generator.help;
   }
   auto kind = static_cast<int>(&generator_in(generation) - generators().data());
-  if (combo("kind", explanation.c_str(), kind, kinds)) generation.kind = kinds[static_cast<std::size_t>(kind)];
+  if (combo("kind", help.c_str(), kind, kinds)) generation.kind = kinds[static_cast<std::size_t>(kind)];
   context.log.item("generate.kind");
   auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
   whole_number("count", "how many robots", count, 1, 4096, context, "generate.count");
@@ -125,27 +127,22 @@ void RandomPanel::draw(PanelContext& context) {
     ParameterValue value = value_of(generation.values, parameter);
     if (std::visit(Control{parameter, context}, value)) generation.values[parameter.name] = value;
   }
-  ImGui::Checkbox("Replace", &replace_);
+  ImGui::Checkbox("Replace", &context.creation.replace);
   context.log.item("generate.replace");
-  tooltip("the new robots take the place of those in the scene; otherwise they come beside them");
+  tooltip("the new robots replace those in the scene; otherwise they are added");
   ImGui::SameLine();
   ImGui::Checkbox("More", &advanced_);
   context.log.item("generate.more");
   tooltip("show all settings of these robots");
   ImGui::SameLine();
-  if (ImGui::Button("Generate", {-1, 0})) generate(context);
+  if (ImGui::Button("Generate", {-1, 0})) generate_robots(context);
   context.log.item("generate");
-  tooltip("and count the seed up (key N)");
+  tooltip("make the robots, and increment the seed (key N)");
 }
 
-void RandomPanel::generate(PanelContext& context) {
-  context.scene.generate(generation, replace_);
-  ++generation.seed;
-}
-
-float RandomPanel::height() const {
+float RandomSection::height(const PanelContext& context) const {
   int rows = 4;  // kind, count, seed, buttons
-  for (const GeneratorParameter& parameter : generator_in(generation).parameters)
+  for (const GeneratorParameter& parameter : generator_in(context.creation.generation).parameters)
     if (advanced_ || !parameter.advanced) rows += rows_of(parameter);
   return static_cast<float>(rows) * ImGui::GetFrameHeightWithSpacing() + 2.2f * ImGui::GetFontSize();
 }

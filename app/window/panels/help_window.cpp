@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/help_panel.h"
+#include "app/window/panels/help_window.h"
 
 #include <algorithm>
 #include <string>
@@ -49,7 +49,7 @@ void draw_help(bool& open, EventLog& log) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
   const ImVec2 size{std::min(0.96f * screen.x, 58 * text), std::min(0.96f * screen.y, 41.5f * text)};
-  // The menu's line keeps windows from its place.
+  // Stay below the menu bar.
   const float top = std::max((screen.y - size.y) / 2, ImGui::GetFrameHeight() + 0.2f * text);
   ImGui::SetNextWindowPos({(screen.x - size.x) / 2, top}, ImGuiCond_Appearing);
   ImGui::SetNextWindowSize({size.x, std::min(size.y, screen.y - top - 0.2f * text)}, ImGuiCond_Appearing);

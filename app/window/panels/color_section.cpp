@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/color_section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+// Shows the legend for quantities with values, as the command line does.
+void color(ViewSettings& view, const ColorQuantity& quantity) {
+  view.color = &quantity;
+  view.scale.reset();
+  view.shown.legend = quantity.has_values();
+}
+
+bool draw_scale(ViewSettings& view) {
+  bool changed = false;
+  bool fixed = view.scale.has_value();
+  if (ImGui::Checkbox("Fixed scale", &fixed)) {
+    view.scale = fixed ? std::optional(std::pair(0.0f, 1.0f)) : std::nullopt;
+    changed = true;
+  }
+  tooltip("off: the scale grows with the values seen so far");
+  if (view.scale) {
+    float ends[2] = {view.scale->first, view.scale->second};
+    row("from, to", "the values at the ends of the colour map");
+    if (ImGui::InputFloat2("##scale", ends, "%.4g") && std::isfinite(ends[0]) && std::isfinite(ends[1]) &&
+        ends[0] < ends[1]) {
+      view.scale = std::pair(ends[0], ends[1]);
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool draw_color_section(ViewSettings& view, const Environment& environment, EventLog& log) {
+  heading("Colour by");
+  bool changed = false;
+  const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
+  int number = 0;
+  for (const ColorQuantity& quantity : color_quantities()) {
+    if (number++ % 4 != 0) ImGui::SameLine(0, gap);
+    const bool offered = quantity.exists_in(environment), on = view.color == &quantity;
+    ImGui::BeginDisabled(!offered);
+    if (on) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
+    if (on) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
+    if (ImGui::Button(std::string(quantity.name).c_str(), {width, 0}) && !on) {
+      color(view, quantity);
+      changed = true;
+    }
+    if (on) ImGui::PopStyleColor(2);
+    ImGui::EndDisabled();
+    log.item(fmt::format("color.{}", quantity.key));
+    std::string text(quantity.help);
+    if (number <= 9) text += fmt::format(" (key {})", number);
+    if (!offered) text += fmt::format("; only in: {}", environments_of(quantity));
+    tooltip(text.c_str());
+  }
+  if (view.color->has_values()) changed |= draw_scale(view);
+  return changed;
+}
+
+bool color_by_number(ViewSettings& view, int number, const Environment& environment) {
+  const auto quantities = color_quantities();
+  if (number < 1 || number > static_cast<int>(quantities.size())) return false;
+  const ColorQuantity& quantity = quantities[static_cast<std::size_t>(number - 1)];
+  if (!quantity.exists_in(environment)) return false;
+  color(view, quantity);
+  return true;
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands on robots that panels, menus and keys share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/window/panels/panel_context.h"
+
+namespace mercury::window {
+
+// The selected robots; all robots if none is selected.
+std::vector<RobotId> selected_or_all(const LiveScene& scene);
+
+// The name of a robot; "?" if it does not exist.
+std::string name_of_robot(const LiveScene& scene, RobotId robot);
+
+// Moves the camera so that it shows these robots; all robots if the list is empty.
+void frame_robots(PanelContext& context, const std::vector<RobotId>& robots);
+
+// Makes random robots with the settings of context.creation, and increments the seed for the next time.
+void generate_robots(PanelContext& context);
+
+// Adds a mutated copy of each selected robot.
+void mutate_selected(PanelContext& context);
+
+}  // namespace mercury::window

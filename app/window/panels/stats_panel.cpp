@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/stats_panel.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "app/window/toolkit/plot.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+void figure(const char* name, const std::string& value, const char* help) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(name);
+  tooltip(help);
+  ImGui::TableNextColumn();
+  right_aligned(value);
+}
+
+std::string milliseconds(double seconds) { return fmt::format("{:.2f} ms", 1000 * seconds); }
+
+bool begin_figures(const char* id) {
+  return ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg);
+}
+
+void draw_physics(PanelContext& context) {
+  heading("Physics");
+  const Snapshot& snapshot = context.scene.snapshot();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(context.scene.device_name().c_str());
+  ImGui::PopTextWrapPos();
+  if (!begin_figures("physics")) return;
+  figure("springs evaluated", short_number(snapshot.springs_per_second) + "/s", "while stepping");
+  figure("one step of all robots", milliseconds(snapshot.step_seconds), "wall time of one time step");
+  figure("reading results", milliseconds(snapshot.gathering_seconds),
+         "time that the physics thread takes to read positions and colour values");
+  figure("springs", short_number(static_cast<double>(snapshot.robots->springs)), "of all robots");
+  figure("masses", short_number(static_cast<double>(snapshot.positions.size())), "of all robots");
+  ImGui::EndTable();
+}
+
+void draw_frame_times(PanelContext& context) {
+  heading("A frame of the window");
+  const FrameTimes mean = context.frame_history.mean();
+  const Viewport& viewport = context.viewport;
+  if (!begin_figures("frame")) return;
+  figure("frames", fmt::format("{:.0f}/s", mean.whole > 0 ? 1 / mean.whole : 0), "mean of the last 240 frames");
+  figure("scene", milliseconds(mean.scene), "taking over the newest state from the physics");
+  figure("picture", milliseconds(mean.picture), "drawing the robots, including the wait for the GPU");
+  figure("panels", milliseconds(mean.panels), "drawing the panels");
+  figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
+  figure("picture size",
+         fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
+                     100 * viewport.share()),
+         "reduced during motion if drawing is slow");
+  ImGui::EndTable();
+}
+
+void draw_frame_plot(const FrameHistory& history) {
+  std::vector<double> number, whole, drawn;
+  for (const FrameTimes& times : history.frames()) {
+    number.push_back(static_cast<double>(number.size()) - static_cast<double>(history.frames().size()));
+    whole.push_back(1000 * times.whole);
+    drawn.push_back(1000 * times.picture);
+  }
+  const PlotLine lines[] = {{"frame", render::category_color(0), number, whole},
+                            {"picture", render::category_color(1), number, drawn}};
+  plot("costs",
+       {.title = "frame and picture",
+        .unit = "ms",
+        .x_title = "frame, 0 = now",
+        .x_unit = "",
+        .height = 8 * ImGui::GetFontSize()},
+       lines);
+  plot_legend(lines);
+}
+
+}  // namespace
+
+void StatsPanel::draw(PanelContext& context) {
+  draw_physics(context);
+  draw_frame_times(context);
+  draw_frame_plot(context.frame_history);
+  const auto& passes = context.viewport.renderer().times();
+  if (!passes.empty() && ImGui::CollapsingHeader("Parts of the picture") && begin_figures("passes")) {
+    for (const render::PassTime& pass : passes)
+      figure(std::string(pass.name).c_str(), fmt::format("{:.2f} ms", pass.milliseconds), nullptr);
+    ImGui::EndTable();
+  }
+  note(context.window.gl_context().describe().c_str());
+}
+
+}  // namespace mercury::window
