@@ -18,7 +18,7 @@ namespace {
 
 std::string advice_for(const ExplodedRobot& robot) {
   const std::string advice = "A smaller time step, or XPBD, may help.";
-  if (!robot.spring) return "It is frozen; no single spring is the culprit. " + advice;
+  if (!robot.spring) return "It is frozen; no single spring caused it. " + advice;
   return fmt::format("Spring {} exploded first (masses {} and {}, {}). The robot is frozen; the others go on. {}",
                      robot.spring->index, robot.spring->a, robot.spring->b, robot.spring->figures.material_name,
                      advice);

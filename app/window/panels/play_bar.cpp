@@ -15,33 +15,33 @@
 namespace mercury::window {
 namespace {
 
-enum class Sign { play, pause, step, reset };
+enum class Icon { play, pause, step, reset };
 
-// A button with a drawn sign, so that it needs no font of signs.
-bool sign_button(const char* id, Sign sign, const char* explanation, bool lit = false) {
+// A button with a drawn icon, since the font has none.
+bool icon_button(const char* id, Icon icon, const char* help, bool lit = false) {
   const float side = 1.15f * ImGui::GetFrameHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   if (lit) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
   const bool clicked = ImGui::Button(id, {side, side});
   if (lit) ImGui::PopStyleColor();
-  tooltip(explanation);
+  tooltip(help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 color = lit ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text);
   const ImVec2 c{corner.x + side / 2, corner.y + side / 2};
   const float r = 0.24f * side;
-  switch (sign) {
-    case Sign::play:
+  switch (icon) {
+    case Icon::play:
       list.AddTriangleFilled({c.x - 0.7f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.7f * r, c.y + r}, color);
       break;
-    case Sign::pause:
+    case Icon::pause:
       list.AddRectFilled({c.x - 0.8f * r, c.y - r}, {c.x - 0.2f * r, c.y + r}, color);
       list.AddRectFilled({c.x + 0.25f * r, c.y - r}, {c.x + 0.85f * r, c.y + r}, color);
       break;
-    case Sign::step:
+    case Icon::step:
       list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
       list.AddTriangleFilled({c.x - 0.3f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.3f * r, c.y + r}, color);
       break;
-    case Sign::reset:
+    case Icon::reset:
       list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
       list.AddTriangleFilled({c.x + 0.9f * r, c.y - r}, {c.x - 0.5f * r, c.y}, {c.x + 0.9f * r, c.y + r}, color);
       break;
@@ -57,6 +57,15 @@ std::string time_text(double seconds, int digits) {
 
 std::string factor_text(double factor) {
   return factor >= 100 ? fmt::format("{:.0f}", factor) : fmt::format("{:.3g}", factor);
+}
+
+void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
+  const double achieved = scene.snapshot().achieved_speed;
+  const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
+  ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
+  ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
+  ImGui::PopStyleColor();
+  tooltip(late ? "the computer is too slow for this speed" : "the speed over the last second");
 }
 
 void draw_speed(PanelContext& context) {
@@ -76,7 +85,7 @@ void draw_speed(PanelContext& context) {
     scene.set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
   context.log.item("speed");
-  tooltip("simulated seconds a second, 1/1000 to 100 (keys + and -)");
+  tooltip("simulated seconds per second, 1/1000 to 100 (keys + and -)");
   ImGui::SameLine();
   if (toggle_button("\xc3\x97"
                     "1",
@@ -87,14 +96,48 @@ void draw_speed(PanelContext& context) {
   ImGui::SameLine();
   if (toggle_button("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
   context.log.item("speed.fastest");
-  tooltip("as fast as it goes (key *)");
+  tooltip("as fast as possible (key *)");
   ImGui::SameLine();
-  const double achieved = scene.snapshot().achieved_speed;
-  const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
-  ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
-  ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
+  draw_achieved_speed(scene, unlimited);
+}
+
+void draw_buttons(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  if (icon_button("##reset", Icon::reset, "reset to the start (key R)")) scene.reset();
+  context.log.item("reset");
+  ImGui::SameLine();
+  if (icon_button("##toggle", scene.playing() ? Icon::pause : Icon::play,
+                  scene.playing() ? "pause (Space)" : "play (Space)", true))
+    scene.toggle();
+  context.log.item("play");
+  ImGui::SameLine();
+  if (icon_button("##step", Icon::step, "one time step (right arrow or .)")) scene.step();
+  context.log.item("step");
+}
+
+// `middle`: the height at which the text is centred.
+void draw_time(const LiveScene& scene, float middle) {
+  const Snapshot& snapshot = scene.snapshot();
+  ImGui::PushFont(large_font());
+  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 - ImGui::GetStyle().FramePadding.y);  // ImGui adds the padding
+  ImGui::TextUnformatted(time_text(snapshot.time, scene.speed() < 0.05 ? 3 : 2).c_str());
+  ImGui::PopFont();
+  tooltip(
+      fmt::format("simulated time, {} steps of {:.4g} ms", snapshot.steps, 1000 * snapshot.configuration.dt).c_str());
+}
+
+// At the right end, if there is room.
+void draw_rate(const LiveScene& scene) {
+  const std::string rate = short_number(scene.snapshot().springs_per_second) + " springs/s";
+  const std::string text =
+      fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+  if (room <= ImGui::GetFontSize()) return;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopStyleColor();
-  tooltip(late ? "the computer is too slow for the speed asked for" : "what the physics manages, over the last second");
+  tooltip(scene.device_name().c_str());
 }
 
 }  // namespace
@@ -107,45 +150,17 @@ void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  LiveScene& scene = context.scene;
   const float text = ImGui::GetFontSize();
-  if (sign_button("##reset", Sign::reset, "back to the start (key R)")) scene.reset();
-  context.log.item("reset");
-  ImGui::SameLine();
-  if (sign_button("##toggle", scene.playing() ? Sign::pause : Sign::play,
-                  scene.playing() ? "pause (Space)" : "play (Space)", true))
-    scene.toggle();
-  context.log.item("play");
-  ImGui::SameLine();
-  if (sign_button("##step", Sign::step, "one step of time (right arrow or .)")) scene.step();
-  context.log.item("step");
+  draw_buttons(context);
   ImGui::SameLine(0, 1.2f * text);
-  // All of the line in the middle of the buttons' height.
+  // Centre the line on the buttons.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
-  ImGui::PushFont(large_font());
-  ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 -
-                       ImGui::GetStyle().FramePadding.y);  // ImGui puts it so far below
-  ImGui::TextUnformatted(time_text(scene.snapshot().time, scene.speed() < 0.05 ? 3 : 2).c_str());
-  ImGui::PopFont();
-  tooltip(fmt::format("simulated time, {} steps of {:.4g} ms", scene.snapshot().steps,
-                      1000 * scene.snapshot().configuration.dt)
-              .c_str());
+  draw_time(context.scene, middle);
   ImGui::SameLine();
   ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
   draw_speed(context);
-  const std::string rate = short_number(scene.snapshot().springs_per_second) + " springs/s";
-  const std::string where =
-      fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
-  const float width = ImGui::CalcTextSize(where.c_str()).x;
   ImGui::SameLine();
-  const float room = ImGui::GetContentRegionAvail().x - width;
-  if (room > text) {
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
-    ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-    ImGui::TextUnformatted(where.c_str());
-    ImGui::PopStyleColor();
-    tooltip(scene.device_name().c_str());
-  }
+  draw_rate(context.scene);
   ImGui::End();
 }
 

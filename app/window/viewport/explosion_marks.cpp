@@ -13,10 +13,10 @@
 namespace mercury::window {
 namespace {
 
-// The part of a spring in front of the eye, in the window.
+// The part of a spring in front of the camera, in window coordinates.
 struct Line {
   ImVec2 a, b;
-  bool sees_a = true, sees_b = true;  // its ends
+  bool sees_a = true, sees_b = true;  // whether the ends are in front of the camera
 };
 
 std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& area, const render::Camera& camera) {
@@ -40,15 +40,15 @@ bool inside(const ViewportArea& area, ImVec2 p) {
   return p.x >= area.low.x && p.x <= area.high.x && p.y >= area.low.y && p.y <= area.high.y;
 }
 
-// A bar and two rings, each on a darker or lighter ground, so that they stand out from whatever is behind.
+// A bar and two rings with an outline, so that they stand out from any background.
 void draw_mark(const Line& line, bool chosen) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text,
               edge = 0.14f * text;
-  const ImU32 mark = palette().mark, ground = palette().mark_outline;
-  list.AddLine(line.a, line.b, ground, bar + 2 * edge);
+  const ImU32 mark = palette().mark, outline = palette().mark_outline;
+  list.AddLine(line.a, line.b, outline, bar + 2 * edge);
   for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
-    if (sees) list.AddCircle(at, ring, ground, 0, bar + 2 * edge);
+    if (sees) list.AddCircle(at, ring, outline, 0, bar + 2 * edge);
   list.AddLine(line.a, line.b, mark, bar);
   for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
     if (sees) list.AddCircle(at, ring, mark, 0, bar);
@@ -60,7 +60,7 @@ std::string length_text(float metres) {
 
 std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
   const CulpritSpring& spring = *robot.spring;
-  std::vector<std::string> lines{fmt::format("{}: spring {} went first", robot.name, spring.index)};
+  std::vector<std::string> lines{fmt::format("{}: spring {} exploded first", robot.name, spring.index)};
   if (!all) return lines;
   lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));
   lines.push_back(
@@ -75,7 +75,8 @@ struct Box {
   }
 };
 
-// Beside the ends, or above or below the middle: in the picture, where it covers nothing that is taken.
+// Finds room for text beside the ends of the line, or above or below its middle. Returns nothing if all positions are
+// taken.
 std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& line, const ViewportArea& area,
                             std::span<const Box> taken) {
   const float text = ImGui::GetFontSize(), margin = 0.5f * text, away = 0.9f * text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first bad spring of each robot that has exploded, drawn over the picture so that nothing hides it.
+// Marks the culprit spring of each robot that exploded. Drawn over the picture, so that nothing hides it.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@
 namespace mercury::window {
 
 struct ExplosionMarks {
-  std::optional<RobotId> chosen;  // its figures are written; of the others the names, where there is room
-  ImVec2 covered_low{0, 0}, covered_high{0, 0};  // nothing is written there
+  std::optional<RobotId> chosen;                 // shown with details; the others only with their names
+  ImVec2 covered_low{0, 0}, covered_high{0, 0};  // no text in this rectangle
 };
 
-// Call between begin_frame() and end_frame(). `camera`: that of the picture.
+// Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the picture was drawn with.
 void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,
                           const ViewportArea& area, const render::Camera& camera);
 

@@ -11,8 +11,8 @@
 namespace mercury::window {
 namespace {
 
-constexpr double rest = 0.25;   // before figures are shown [s]
-constexpr float wheel = 0.88f;  // of the distance, a notch
+constexpr double details_delay = 0.25;  // the pointer rests this long before details appear [s]
+constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
 
 bool inside(const ViewportArea& area, ImVec2 p) {
   return p.x >= area.low.x && p.x < area.high.x && p.y >= area.low.y && p.y < area.high.y;
@@ -53,7 +53,7 @@ void MouseController::update(const ViewportArea& area, const render::Camera& cam
     drag(area, camera);
     if (!ImGui::IsMouseDown(button_)) release(area, camera);
   }
-  if (free && io.MouseWheel != 0) camera_.zoom(std::pow(wheel, io.MouseWheel));
+  if (free && io.MouseWheel != 0) camera_.zoom(std::pow(wheel_factor, io.MouseWheel));
   if (drag_ == Drag::none && free)
     hover(area, camera);
   else
@@ -85,8 +85,8 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
 
 void MouseController::drag(const ViewportArea& area, const render::Camera& camera) {
   const ImGuiIO& io = ImGui::GetIO();
-  const float far = std::abs(io.MousePos.x - pressed_at_.x) + std::abs(io.MousePos.y - pressed_at_.y);
-  if (far > 4) dragged_ = true;
+  const float moved = std::abs(io.MousePos.x - pressed_at_.x) + std::abs(io.MousePos.y - pressed_at_.y);
+  if (moved > 4) dragged_ = true;
   if (drag_ == Drag::pull) {
     if (!scene_.perturbation()) return;
     const render::Ray ray = ray_at(area, camera, io.MousePos);
@@ -122,17 +122,22 @@ void MouseController::release(const ViewportArea& area, const render::Camera& ca
 
 void MouseController::hover(const ViewportArea& area, const render::Camera& camera) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.MousePos.x != rests_at_.x || io.MousePos.y != rests_at_.y) {
-    rests_at_ = io.MousePos;
-    rested_ = 0;
+  if (io.MousePos.x != last_position_.x || io.MousePos.y != last_position_.y) {
+    last_position_ = io.MousePos;
+    rest_time_ = 0;
     hovered_.reset();
     return;
   }
-  rested_ += static_cast<double>(io.DeltaTime);
-  if (rested_ >= rest) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+  rest_time_ += static_cast<double>(io.DeltaTime);
+  if (rest_time_ >= details_delay) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
+  draw_pull(area, camera);
+  draw_details(area);
+}
+
+void MouseController::draw_pull(const ViewportArea& area, const render::Camera& camera) const {
   if (const auto pull = scene_.perturbation()) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 at = on_screen(area, camera, pull->at), target = on_screen(area, camera, pull->target);
@@ -142,6 +147,9 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
     list.AddCircle(target, 0.4f * text, palette().warning, 0, 0.12f * text);
     label({target.x + text, target.y - 0.5f * text}, force_text(pull->force));
   }
+}
+
+void MouseController::draw_details(const ViewportArea& area) const {
   if (!hovered_) return;
   const HitDetails figures = scene_.describe(*hovered_);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -161,7 +169,7 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
     ImGui::Text("spring: %s", figures.spring->material_name.c_str());
     ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
                 static_cast<double>(figures.spring->force));
-    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+    ImGui::Text("%.4g m, at details_delay %.4g m", static_cast<double>(figures.spring->length),
                 static_cast<double>(figures.spring->rest_length));
   }
   ImGui::PopStyleColor();

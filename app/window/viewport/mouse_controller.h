@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mouse on the picture: camera, selection, pulling, figures of what is under it.
+// The mouse on the viewport: turns and moves the camera, selects robots, pulls on masses, shows details of what is
+// under the pointer.
 #pragma once
 
 #include <optional>
@@ -17,11 +18,12 @@ class MouseController {
   MouseController(LiveScene& scene, OrbitController& camera, EventLog& log, Toasts& toasts)
       : scene_(scene), camera_(camera), log_(log), toasts_(toasts) {}
 
-  // Takes the mouse where no panel has it. Call between begin_frame() and end_frame(); `camera` is the one the picture
-  // was drawn with last.
+  // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
+  // one the last picture was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
-  // Force and figures, over the picture.
+  // Draws the force of a pull and the details under the pointer.
   void draw(const ViewportArea& area, const render::Camera& camera);
+  // True while a button is held.
   bool busy() const { return drag_ != Drag::none; }
 
  private:
@@ -31,6 +33,9 @@ class MouseController {
   void release(const ViewportArea& area, const render::Camera& camera);
   void hover(const ViewportArea& area, const render::Camera& camera);
 
+  void draw_pull(const ViewportArea& area, const render::Camera& camera) const;
+  void draw_details(const ViewportArea& area) const;
+
   LiveScene& scene_;
   OrbitController& camera_;
   EventLog& log_;
@@ -39,11 +44,11 @@ class MouseController {
   int button_ = 0;
   bool dragged_ = false;
   ImVec2 pressed_at_{0, 0};
-  float pull_depth_ = 0;  // of the pulled place along the line of sight [m]
+  float pull_depth_ = 0;  // of the pulled point along the line of sight [m]
   bool follows_ = false;  // the press was a double click
   std::optional<Hit> hovered_;
-  ImVec2 rests_at_{-1, -1};
-  double rested_ = 0;  // how long the mouse has not moved [s]
+  ImVec2 last_position_{-1, -1};
+  double rest_time_ = 0;  // since the mouse last moved [s]
 };
 
 }  // namespace mercury::window

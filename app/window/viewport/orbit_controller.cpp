@@ -10,8 +10,8 @@ namespace mercury::window {
 namespace {
 
 constexpr double glide_time = 0.45;  // [s]
-constexpr float turn_speed = 3.6f;   // of a drag across the picture's height [rad]
-constexpr float margin = 1.1f;
+constexpr float turn_speed = 3.6f;   // angle of a drag over the picture's height [rad]
+constexpr float margin = 1.1f;       // around framed robots
 
 render::Bounds all_of(std::span<const render::Bounds> boxes) {
   render::Bounds all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera in the user's hand: orbit, pan, zoom, frame, follow, and the moves that go by themselves.
+// The camera of the window: the user orbits, pans and zooms it, and it moves by itself in some modes.
 #pragma once
 
 #include <cstddef>
@@ -11,37 +11,40 @@
 
 namespace mercury::window {
 
-// Modes are those of a video (app/scene/camera_plan.h); CameraMode::still is the free camera.
+// The modes are those of videos (app/scene/camera_plan.h). CameraMode::still is the free camera, which only the user
+// moves.
 class OrbitController {
  public:
-  // A mode given by the user or a settings file begins at the next at().
+  // Takes effect in the next at().
   void set_mode(CameraMode mode);
   CameraMode mode() const { return mode_; }
-  // Goes along with one robot; nothing = with the middle of the group.
+  // Follows a robot, by its index; without a value, the centre of the group.
   void follow(std::optional<std::size_t> robot);
   std::optional<std::size_t> followed() const { return robot_; }
 
-  // Drags, in shares of the picture's height. Turning by hand ends the modes that turn or look straight down.
+  // Mouse drags, as fractions of the picture's height. Turning ends the modes turntable and top; panning ends all modes
+  // but still.
   void turn(float right, float up);
   void pan(float right, float up);
-  // Moves closer for a factor < 1.
+  // Multiplies the distance to the target.
   void zoom(float factor);
-  // Looks at the robots of these boxes, all of them in the picture; glides there.
+  // Glides to a position that shows all of these boxes.
   void frame(std::span<const render::Bounds> robots, float aspect);
-  // The same at once.
+  // The same without a glide.
   void start(std::span<const render::Bounds> robots, float aspect);
 
-  // The camera now; call once a picture with the time since the last one [s].
+  // Advances the camera by `dt` seconds and returns it. Call once per picture. `robots`: one box per robot, which may
+  // be empty.
   render::Camera at(std::span<const render::Bounds> robots, float aspect, double dt);
   const render::Orbit& orbit() const { return orbit_; }
   void set_orbit(const render::Orbit& orbit);
 
-  // For a video that is to look alike.
+  // The plan for a video that starts with this camera.
   CameraPlan plan() const;
 
-  float turn_period = 20;      // of the turntable [s]
+  float turn_period = 20;      // of mode turntable [s]
   float field_of_view = 0.6f;  // [rad]
-  // Whether it still moves by itself.
+  // True during a glide.
   bool gliding() const { return glide_ > 0; }
 
  private:
@@ -50,8 +53,8 @@ class OrbitController {
   CameraMode mode_ = CameraMode::still;
   std::optional<std::size_t> robot_;
   render::Orbit orbit_;
-  render::Orbit aim_;  // where a glide ends
-  double glide_ = 0;   // time that is left of it [s]
+  render::Orbit aim_;  // the end of the glide
+  double glide_ = 0;   // remaining time of the glide [s]
 };
 
 }  // namespace mercury::window

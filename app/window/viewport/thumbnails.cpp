@@ -35,7 +35,7 @@ void Thumbnails::draw(const std::string& name, const Robot& robot, render::Theme
   const render::Bounds bounds = rest_bounds(robot);
   orbit.frame(std::span(&bounds, 1), static_cast<float>(width) / height, 1.1f);
   renderer_->draw(scene, orbit.camera());
-  // An ordinary texture: one in sRGB would be made darker when ImGui samples it.
+  // Not an sRGB texture, which would look darker when ImGui samples it.
   render::Texture texture = render::make_texture(GL_RGBA8, width, height);
   const render::Framebuffer target = render::make_framebuffer({texture.get()});
   renderer_->present(target.get(), 0, 0, width, height);

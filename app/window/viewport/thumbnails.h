@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures of robots, drawn a few a frame by the renderer of the window's context.
+// Small pictures of robots, drawn with the OpenGL context of the window.
 #pragma once
 
 #include <imgui.h>
@@ -17,9 +17,9 @@ class Thumbnails {
  public:
   explicit Thumbnails(render::Context& gl_context) : gl_context_(gl_context) {}
 
-  // The picture that goes by this name; nothing until it is drawn.
+  // The picture with this name; 0 until it is drawn.
   ImTextureID find(const std::string& name) const;
-  // Draws one; an earlier one of that name is replaced.
+  // Draws a picture; replaces an earlier one with this name.
   void draw(const std::string& name, const Robot& robot, render::Theme theme);
   void clear() { pictures_.clear(); }
 
@@ -27,7 +27,7 @@ class Thumbnails {
 
  private:
   render::Context& gl_context_;
-  std::unique_ptr<render::Renderer> renderer_;  // made with the first picture
+  std::unique_ptr<render::Renderer> renderer_;  // created with the first picture
   std::map<std::string, render::Texture> pictures_;
 };
 

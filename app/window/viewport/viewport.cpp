@@ -11,7 +11,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr double slow = 0.045, quick = 0.015;  // a picture [s]
+constexpr double slow = 0.045, fast = 0.015;  // time per picture [s]
 constexpr std::array<float, 3> shares{1, 0.75f, 0.5f};
 
 }  // namespace
@@ -28,7 +28,7 @@ void Viewport::place(int x, int y, int width, int height) {
   height_ = std::max(16, height);
 }
 
-// Between pictures of a movement, steps to a coarser or finer size when the last one was too slow or quick.
+// During motion, steps to a lower or higher resolution if the last picture was too slow or fast.
 void Viewport::adapt(bool moving) {
   if (!moving) {
     share_ = 1;
@@ -37,7 +37,7 @@ void Viewport::adapt(bool moving) {
   if (share_ == moving_share_ && draw_seconds_ > 0) {
     const auto now = std::find(shares.begin(), shares.end(), moving_share_);
     if (draw_seconds_ > slow && now + 1 != shares.end()) moving_share_ = *(now + 1);
-    if (draw_seconds_ < quick && now != shares.begin()) moving_share_ = *(now - 1);
+    if (draw_seconds_ < fast && now != shares.begin()) moving_share_ = *(now - 1);
   }
   share_ = moving_share_;
 }

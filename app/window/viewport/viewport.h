@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 3D picture in its part of the window, drawn so that the window stays quick whatever a picture costs.
+// The 3D picture of the robots, in its part of the window.
+//
+// The window must react quickly even if drawing is slow, as in software rendering. While the picture moves, it is
+// therefore drawn with fewer pixels if the last one took too long, and enlarged to its area; once it rests, it is drawn
+// with all pixels.
 #pragma once
 
 #include <imgui.h>
@@ -12,20 +16,20 @@ class Viewport {
  public:
   Viewport(render::Context& gl_context, render::Quality quality);
 
-  // Where it is to be, in the framebuffer's pixels from the upper left corner.
+  // Sets the area, in pixels of the framebuffer from the upper left corner.
   void place(int x, int y, int width, int height);
   float aspect() const { return static_cast<float>(width_) / static_cast<float>(height_); }
 
-  // Draws the scene; `moving` = more pictures follow at once, so that a slow one may be coarser.
+  // Draws the scene. `moving`: the next picture follows at once, so this one may be coarse.
   void draw(const render::Scene& scene, const render::Camera& camera, bool moving);
-  // Copies the last picture into the window's framebuffer of that height.
+  // Copies the last picture into the window's framebuffer, which has this height [pixels].
   void present(int framebuffer_height) const;
 
   render::Renderer& renderer() { return renderer_; }
   const render::Renderer& renderer() const { return renderer_; }
-  double draw_seconds() const { return draw_seconds_; }  // of the last picture, waiting for the card included
-  float share() const { return share_; }                 // of the pixels across and down that were drawn
-  // Whether a finer picture can be had now that nothing moves.
+  double draw_seconds() const { return draw_seconds_; }  // of the last picture, including the wait for the GPU
+  float share() const { return share_; }                 // of the area's width and height that was drawn, 0.5 to 1
+  // True if the last picture had reduced resolution.
   bool coarse() const { return share_ < 1; }
 
  private:

@@ -20,7 +20,7 @@ void backing(ImVec2 low, ImVec2 high) {
   ImGui::GetBackgroundDrawList()->AddRectFilled(low, high, palette().on_picture, 0.35f * ImGui::GetFontSize());
 }
 
-// A line on a ground of its own; its upper left corner.
+// A line of text with a background; `at` is its upper left corner.
 void line(ImVec2 at, const std::string& text) {
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float margin = 0.4f * ImGui::GetFontSize();
@@ -43,7 +43,8 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
     const Eigen::Vector3f p = camera.project(top, static_cast<int>(area.width()), static_cast<int>(area.height()));
     if (p.z() > camera.near) placed.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
   }
-  // Near ones first; those behind go above what they would cover, where there is room, or under it.
+  // Place near labels first. A label that would cover an earlier one moves above it if there is room; otherwise it
+  // stays and is drawn behind it.
   std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
   const float text = ImGui::GetFontSize(), margin = 0.5f * text;
   struct Box {
@@ -56,7 +57,7 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
     Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
             {label.at.x + size.x / 2, label.at.y - margin},
             label.text};
-    // Not over an edge, for a robot that is seen.
+    // Keep labels of visible robots inside the picture.
     if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
     if (label.at.x > area.low.x && label.at.x < area.high.x)
       box.low.x =
@@ -123,11 +124,12 @@ void draw_legend(const render::Legend& legend, const ViewportArea& area) {
   }
 }
 
-// A round length at the distance of the camera's target.
-void draw_length(const ViewportArea& area, const render::Camera& camera) {
+// The scale bar: a round length, to scale at the distance of the camera's target.
+void draw_scale_bar(const ViewportArea& area, const render::Camera& camera) {
   const float depth = (camera.target - camera.eye).norm();
-  const float pixels_a_metre = area.height() / (2 * depth * std::tan(camera.field_of_view / 2));
-  const float metres = render::round_length(0.22f * area.width() / pixels_a_metre), across = metres * pixels_a_metre;
+  const float pixels_per_metre = area.height() / (2 * depth * std::tan(camera.field_of_view / 2));
+  const float metres = render::round_length(0.22f * area.width() / pixels_per_metre),
+              across = metres * pixels_per_metre;
   const float text = ImGui::GetFontSize();
   const std::string name = metres < 0.01f ? fmt::format("{:g} mm", 1000 * metres)
                            : metres < 1   ? fmt::format("{:g} cm", 100 * metres)
@@ -161,7 +163,7 @@ void draw_viewport_text(const render::Scene& scene, std::span<const render::Boun
   if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
   if (clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.legend) draw_legend(*scene.legend, area);
-  if (scene.scale_bar) draw_length(area, camera);
+  if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();
 }
 

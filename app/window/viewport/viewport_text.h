@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written on the picture: names, legend, clock, lengths; by ImGui, so that it is sharp however coarse the
-// picture.
+// The text on the picture: names, legend, clock, scale bar. ImGui draws it, so that it is sharp even if the picture is
+// coarse.
 #pragma once
 
 #include <span>
@@ -11,10 +11,11 @@
 
 namespace mercury::window {
 
-// The scene without its texts.
+// A copy of the scene without its text.
 render::Scene without_text(const render::Scene& scene);
 
-// The texts of the scene, over its picture, the clock where it is wanted. `bounds`: one box a body, in the picture.
+// Draws the text of the scene over the picture; the clock only if `clock`. `bounds`: one box per body, in the
+// coordinates of the picture.
 void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
                         const render::Camera& camera, bool clock);
 
