@@ -69,7 +69,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"playing", scene.playing()},
                       {"selected", scene.selection().size()},
                       {"panels", context.preferences.panels},
-                      {"color", name_of(scene.view().color)},
+                      {"color", scene.view().color->key},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
                       {"seconds", dt},

@@ -54,7 +54,7 @@ void save_csv(PanelContext& context, const std::string& what, std::function<std:
                              .name = what + ".csv",
                              .formats = {}},
                             [&context, what, make = std::move(make)](const FileChoice& answer) {
-                              const fs::path path = answer.paths.front();
+                              const std::filesystem::path path = answer.paths.front();
                               context.preferences.save_folder = path.parent_path().string();
                               save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
                                 return context.scene.save_text(path, text, overwrite);
