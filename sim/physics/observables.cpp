@@ -28,6 +28,10 @@ std::vector<MaterialNow> materials_at(std::span<const Material> table, const Env
   return materials_at(table, environment, Clock{.base_time = time});
 }
 
+float contraction(const Material& material, double time) {
+  return -material.amplitude * sine_of_phase(muscle_phase(material, Clock{.base_time = time}).at_base);
+}
+
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
                                 std::span<const Vec3> positions) {
   std::vector<Vec3> forces(robot.masses.size());

@@ -9,6 +9,7 @@
 //       |<---- L0 ------>|            L0 = Spring::rest_length
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,14 @@ struct MaterialNow {
   float length_factor = 1;  // L / L0 [1]
   float length_rate = 0;    // d(L / L0) / dt [1/s]
 };
-// By id, as many as the table has. The phase is exact at any time, see sim/physics/muscle.h.
+// By id, one per material of the table. The phase is exact on runs of any length (sim/physics/muscle.h).
 std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment,
                                       const Clock& clock);
-// `time` in s since the start; exact only while dt has not changed, or nearly so.
+// The same at a time in s since the start.
 std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment, double time);
+
+// How far a muscle is contracted, (L0 - L) / L0 = -dL0 sin(omega t + phi) [1]. `time` as above.
+float contraction(const Material& material, double time);
 
 // |d| [m]
 inline float spring_length(const Spring& spring, std::span<const Vec3> positions) {
