@@ -27,12 +27,15 @@ PLACES = {
     "app/video": (660, 6, 170, VIOLET, "simulate, draw, encode"),
     "app/base": (445, 7, 150, VIOLET, "Ctrl-C, progress, queues"),
     "app/scene": (650, 7, 176, VIOLET, "appearance, arrows, cameras"),
-    "sim": (98, 8, 112, CORAL, "Simulation"),
-    "sim/cpu": (222, 8, 112, CORAL, "vector kernels"),
-    "sim/cuda": (346, 8, 112, CORAL, "kernels on the chip"),
+    "sim/cpu": (170, 6, 170, CORAL, "the CPU backend"),
+    "sim/cpu/kernels": (101, 7, 126, CORAL, "steps in vectors"),
+    "sim/cpu/grouping": (243, 7, 134, CORAL, "lockstep groups"),
+    "sim/cpu/layout": (126, 8, 176, CORAL, "slots, tiles, schedules"),
+    "sim/cuda": (268, 8, 92, CORAL, "on the chip"),
+    "sim": (366, 8, 92, CORAL, "Simulation"),
     "robots": (560, 8, 104, TEAL, "files, generators"),
     "robots/library": (680, 8, 108, TEAL, "sample robots"),
-    "sim/physics": (222, 9, 300, CORAL, "the equations, one source for host and device"),
+    "sim/physics": (225, 9, 374, CORAL, "the equations, one source for host and device"),
     "robots/api": (650, 9, 294, TEAL, "public headers: <mercury/voxel.h>, ..."),
     "sim/api": (418, 10, 776, CORAL, "public headers: <mercury/simulation.h>, <mercury/robot.h>, ..."),
     "render": (890, 10, 132, WATER, "OpenGL"),
@@ -92,7 +95,8 @@ def drawing(root=ROOT):
     if folders != set(PLACES):
         raise ValueError(f"docs/drawings/includes.py: give a place to {sorted(folders ^ set(PLACES))}, or remove it")
     d = Drawing(980, top_of_row(11) - 6)
-    for x, row, width, rows, name in [(330, 0, 630, 8, "app/"), (24, 8, 396, 2, "sim/"), (470, 8, 340, 2, "robots/")]:
+    for x, row, width, rows, name in [
+            (330, 0, 630, 8, "app/"), (24, 6, 296, 4, "sim/"), (24, 8, 400, 2, ""), (470, 8, 340, 2, "robots/")]:
         top = top_of_row(row) - 32
         d.box((x, top), (width, top_of_row(row + rows - 1) + HEIGHT + 14 - top), PALE, "none", 12, 0)
         d.text((x + 14, top + 21), name, 15, GREY, anchor="start", bold=True)
