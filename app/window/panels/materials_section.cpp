@@ -45,7 +45,7 @@ void MaterialsSection::draw(PanelContext& context) {
                        : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected)))
            .c_str());
   draw_factors(context, robots);
-  if (ImGui::Button("As in the file", {-1, 0})) {
+  if (ImGui::Button("Reset materials", {-1, 0})) {
     scale_ = {};
     context.scene.reset_materials(robots);
     context.scene.end_edit();

@@ -106,7 +106,7 @@ void RobotsPanel::draw_row(PanelContext& context, const RobotEntry& entry) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
   if (ImGui::Checkbox("##shown", &shown)) context.scene.set_hidden(entry.id, !shown);
   ImGui::PopStyleVar();
-  tooltip("draw this robot; the physics go on either way");
+  tooltip("draw this robot; physics goes on either way");
 }
 
 // A plain click selects one robot, Ctrl-click adds or removes it, Shift-click adds a range.

@@ -44,7 +44,7 @@ void draw_physics(PanelContext& context) {
 }
 
 void draw_frame_times(PanelContext& context) {
-  heading("A frame of the window");
+  heading("Frame times");
   const FrameTimes mean = context.frame_history.mean();
   const Viewport& viewport = context.viewport;
   if (!begin_figures("frame")) return;

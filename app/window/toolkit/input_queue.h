@@ -8,8 +8,8 @@
 //   2. turns of the wheel: the pointer must not move on before they act;
 //   3. typed characters, up to the first key that types nothing (Enter, Esc, Ctrl S), for the reason of 1.
 //
-//   queue:   move  press | release | move  wheel wheel | 'a' 'b' Enter | move ...
-//   frames:  1             2         3                   4               5
+//   queue:  move press | release | move wheel wheel | 'a' 'b' Enter | move ...
+//   frame:       1     |    2    |        3         |       4       |   5
 #pragma once
 
 #include <cstdint>
