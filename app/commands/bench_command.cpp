@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury bench: springs evaluated per second, the paper's figure of merit.
+// mercury bench: springs evaluated per second, the measure that the paper uses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,9 +22,9 @@ namespace {
 struct BenchOptions {
   SimulationOptions simulation;
   std::vector<int> size{10, 10, 10};
-  std::size_t count = 0;  // 0 = chosen
+  std::size_t count = 0;  // 0 = chosen by choose_count()
   std::uint64_t seed = 1;
-  double least_seconds = 1;
+  double least_seconds = 1;  // of device time to measure
   bool json = false, sweep = false;
   std::string csv, config;
 };
@@ -33,24 +33,24 @@ struct Measurement {
   std::size_t robots = 0, masses = 0, springs = 0;  // of the whole batch
   std::int64_t steps = 0;
   double seconds = 0;              // on the device
-  double making = 0, loading = 0;  // of the robots, and of the batch up to its first step [s]
-  double limit = 0;
-  std::uint64_t hash = 0;  // of the first robot, after `steps_hashed` steps
+  double making = 0, loading = 0;  // time to make the robots; to load the batch and make its first step [s]
+  double limit = 0;                // springs per second that the device can reach at most, 0 = unknown
+  std::uint64_t hash = 0;          // of the first robot, after `steps_hashed` steps
   std::string device;
   Configuration configuration;
 
   std::int64_t longest_call = 0;  // steps
 
   double evaluated() const { return static_cast<double>(springs) * static_cast<double>(steps); }
-  double springs_a_second() const { return evaluated() / seconds; }
+  double springs_per_second() const { return evaluated() / seconds; }
 };
 
 constexpr std::int64_t steps_hashed = 100;
-constexpr std::int64_t sweep_steps = 1000;  // of one call of a sweep
+constexpr std::int64_t sweep_steps = 1000;  // per call in a sweep
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Full boxes in which every voxel has a random material.
+// Boxes without air, with a random material per voxel.
 std::vector<Robot> make_robots(const BenchOptions& options, std::size_t count) {
   RandomVoxelOptions voxel;
   voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
@@ -61,7 +61,7 @@ std::vector<Robot> make_robots(const BenchOptions& options, std::size_t count) {
   return random_voxel_robots(voxel, options.seed, count);
 }
 
-// Enough robots to keep the device busy for several rounds of as many as it steps at once.
+// Chooses a number of robots that keeps the device busy: several times what it steps at once.
 std::size_t choose_count(const BenchOptions& options, const Configuration& configuration) {
   if (options.count > 0) return options.count;
   const std::vector<Robot> one = make_robots(options, 1);
@@ -73,7 +73,7 @@ std::size_t choose_count(const BenchOptions& options, const Configuration& confi
   return at_once * static_cast<std::size_t>(std::max(2.0, std::round(rounds)));
 }
 
-// Steps until at least `least_seconds` of device time are measured, after a first call that warms up.
+// Warms up, then steps until at least `least_seconds` of device time are measured.
 Measurement measure(const BenchOptions& options, const Configuration& configuration, std::size_t count) {
   Measurement result;
   double start = now();
@@ -102,15 +102,15 @@ Measurement measure(const BenchOptions& options, const Configuration& configurat
     result.longest_call = std::max(result.longest_call, steps);
     before = after;
     if (options.sweep) continue;
-    const double a_step = result.seconds / static_cast<double>(result.steps);
-    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / a_step), std::int64_t{1},
+    const double seconds_per_step = result.seconds / static_cast<double>(result.steps);
+    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / seconds_per_step), std::int64_t{1},
                        std::int64_t{1000000});
   }
   return result;
 }
 
 std::string share_of_limit(const Measurement& m) {
-  return m.limit > 0 ? fmt::format("{:.0f} %", 100 * m.springs_a_second() / m.limit) : "unknown";
+  return m.limit > 0 ? fmt::format("{:.0f} %", 100 * m.springs_per_second() / m.limit) : "unknown";
 }
 
 std::string table_of(const Measurement& m) {
@@ -121,7 +121,7 @@ std::string table_of(const Measurement& m) {
       fmt::format("{}, {}", name_of(m.configuration.solver), name_of(m.configuration.environment)));
   row("robots", fmt::format("{} of {} masses, {} springs", m.robots, m.masses / m.robots, m.springs / m.robots));
   row("steps", fmt::format("{} in {:.3f} s on the device", m.steps, m.seconds));
-  row("springs per second", fmt::format("{:.3e}", m.springs_a_second()));
+  row("springs per second", fmt::format("{:.3e}", m.springs_per_second()));
   row("share of the limit", share_of_limit(m));
   row("robots made, loaded", fmt::format("{:.2f} s, {:.2f} s", m.making, m.loading));
   row("state hash", fmt::format("{:016x} (robot 0 after {} steps)", m.hash, steps_hashed));
@@ -136,7 +136,7 @@ nlohmann::ordered_json json_of(const Measurement& m) {
                               {"springs_per_robot", m.springs / m.robots},
                               {"steps", m.steps},
                               {"device_seconds", m.seconds},
-                              {"springs_per_second", m.springs_a_second()},
+                              {"springs_per_second", m.springs_per_second()},
                               {"making_seconds", m.making},
                               {"loading_seconds", m.loading},
                               {"hash", fmt::format("{:016x}", m.hash)},
@@ -145,7 +145,7 @@ nlohmann::ordered_json json_of(const Measurement& m) {
   return json;
 }
 
-// springs_evaluated is what one call evaluates: 1000 steps in a sweep.
+// springs_evaluated: in one call of step(), which makes 1000 steps in a sweep.
 constexpr const char* csv_head =
     "device,solver,environment,robots,masses_per_robot,springs_per_robot,steps,device_seconds,springs_evaluated,"
     "springs_per_second\n";
@@ -154,10 +154,10 @@ std::string csv_row(const Measurement& m) {
   return fmt::format("\"{}\",{},{},{},{},{},{},{:.6g},{:.6g},{:.6g}\n", m.device, name_of(m.configuration.solver),
                      name_of(m.configuration.environment), m.robots, m.masses / m.robots, m.springs / m.robots, m.steps,
                      m.seconds, static_cast<double>(m.springs) * static_cast<double>(m.longest_call),
-                     m.springs_a_second());
+                     m.springs_per_second());
 }
 
-// From one robot upwards, doubling, until the device's memory is full (paper, figure 4).
+// Measures 1, 2, 4, ... robots until the memory of the device is full (paper, figure 4).
 std::vector<Measurement> sweep(const BenchOptions& options, const Configuration& configuration) {
   std::vector<Measurement> all;
   const std::size_t most = options.count > 0 ? options.count : std::size_t{1} << 20;
@@ -166,10 +166,10 @@ std::vector<Measurement> sweep(const BenchOptions& options, const Configuration&
       all.push_back(measure(options, configuration, count));
     } catch (const DeviceError& error) {
       if (all.empty()) throw;
-      fmt::print(stderr, "mercury: the sweep ends before {} robots: {}\n", count, error.what());
+      fmt::print(stderr, "mercury: the sweep stops before {} robots: {}\n", count, error.what());
       break;
     }
-    fmt::print(stderr, "{:>8} robots  {:.3e} springs/s\n", count, all.back().springs_a_second());
+    fmt::print(stderr, "{:>8} robots  {:.3e} springs/s\n", count, all.back().springs_per_second());
   }
   return all;
 }
@@ -200,23 +200,24 @@ int bench(const BenchOptions& options) {
 void add_bench_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = program.add_subcommand("bench", "Measure springs evaluated per second");
-  add_value(*command, "--size", options->size, "Voxels of a robot, each of a random material", "XxYxZ",
+  add_value(*command, "--size", options->size, "Size of a robot in voxels; each voxel has a random material", "XxYxZ",
             [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); });
-  add_number(*command, "--count", options->count, "Robots; without it, a few times what the device steps at once", "N");
-  add_number(*command, "--seed", options->seed, "Of the robots", "S");
-  add_number(*command, "--least-seconds", options->least_seconds, "Measure at least this long, after a warm-up",
+  add_number(*command, "--count", options->count,
+             "Number of robots (default: several times what the device steps at once)", "N");
+  add_number(*command, "--seed", options->seed, "Seed of the robots", "S");
+  add_number(*command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
-  command->add_flag("--json", options->json, "Print JSON rather than a table");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->add_flag("--sweep", options->sweep,
-                    "From one robot, doubling, until the memory is full or --count is reached");
-  add_text(*command, "--csv", options->csv, "Also write the measurements into this file (bench/plot.py draws it)",
+                    "Measure 1, 2, 4, ... robots, until the memory is full or --count is reached");
+  add_text(*command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)",
            "FILE");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
            "FILE.toml");
   command->footer(
-      "Springs per second = robots x springs x steps / time, with everything a step does: muscles, springs,\n"
-      "environment, contact, integration; the time is the device's own, uploading excluded.\n\n"
+      "Springs per second = robots x springs x steps / time. The time covers whole steps (muscles, springs,\n"
+      "environment, contact, integration) on the device. It does not cover the upload.\n\n"
       "Examples:\n"
       "  mercury bench --environment land --solver xpbd\n"
       "  mercury bench --size 5x5x5 --json\n"

@@ -13,15 +13,15 @@
 namespace mercury {
 namespace {
 
-constexpr std::uint64_t at_once = 512;  // robots in one simulation
+constexpr std::uint64_t at_once = 512;  // robots per simulation
 
 double distance_between(const Telemetry& start, const Telemetry& end, bool on_land) {
-  Vec3 way = end.center_of_mass - start.center_of_mass;
-  if (on_land) way.z = 0;
-  return length(way);
+  Vec3 path = end.center_of_mass - start.center_of_mass;
+  if (on_land) path.z = 0;
+  return length(path);
 }
 
-// Adds the heat's robots to the winners so far, and keeps the best.
+// Adds the robots of a round to the winners and keeps the best.
 void keep_best(std::vector<Winner>& winners, std::vector<Winner> more, std::uint64_t count) {
   winners.insert(winners.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   std::stable_sort(winners.begin(), winners.end(),
@@ -29,8 +29,8 @@ void keep_best(std::vector<Winner>& winners, std::vector<Winner> more, std::uint
   if (winners.size() > count) winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(count), winners.end());
 }
 
-// Simulates some robots; empty if the user interrupts.
-std::vector<Winner> heat(const Contest& contest, std::vector<Robot> robots) {
+// Simulates a batch of robots. Returns nothing if the user interrupts.
+std::vector<Winner> try_robots(const Contest& contest, std::vector<Robot> robots) {
   Simulation simulation(contest.configuration, robots);
   Stepper stepper(simulation);
   if (!stepper.advance_to(contest.settling)) return {};
@@ -52,12 +52,12 @@ std::vector<Winner> best_of(const Contest& contest, const MakeRobot& make, std::
   std::vector<Winner> winners;
   Progress progress("searching", "robots", static_cast<std::int64_t>(contest.candidates));
   for (std::uint64_t first = 0; first < contest.candidates && !interrupted(); first += at_once) {
-    const auto heat_size = static_cast<std::size_t>(std::min(at_once, contest.candidates - first));
+    const auto batch_size = static_cast<std::size_t>(std::min(at_once, contest.candidates - first));
     std::vector<Robot> robots;
-    for (MadeRobot& made : make_robots(make, seed, first, heat_size))
+    for (MadeRobot& made : make_robots(make, seed, first, batch_size))
       if (made.robot) robots.push_back(std::move(*made.robot));
-    keep_best(winners, heat(contest, std::move(robots)), count);
-    progress.update(static_cast<std::int64_t>(first + heat_size));
+    keep_best(winners, try_robots(contest, std::move(robots)), count);
+    progress.update(static_cast<std::int64_t>(first + batch_size));
   }
   return winners;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A search among many random robots: each is simulated, the ones that get farthest are kept.
+// A search among random robots: simulates each and keeps those that move farthest.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 namespace mercury {
 
 struct Contest {
-  std::uint64_t candidates = 0;  // how many robots take part
-  Configuration configuration;   // where they are tried
-  std::int64_t steps = 0;        // for how long
-  std::int64_t settling = 0;     // of these steps, those before the distance is measured
+  std::uint64_t candidates = 0;  // number of robots to try
+  Configuration configuration;   // of the trial
+  std::int64_t steps = 0;        // length of the trial
+  std::int64_t settling = 0;     // steps at the start that do not count for the distance
 };
 
 struct Winner {
   Robot robot;
-  double distance;  // that its centre of mass got from where it was once settled; on land along the ground [m]
+  double distance;  // of the centre of mass from where it was after settling; on land along the ground [m]
 };
 
-// The `count` robots of a seed that get farthest, the best first; equals in the order of their index. Robots that
-// cannot be made or explode take no prize. Fewer are returned when fewer can be, or when the user interrupts. The
-// result does not depend on how many are simulated at once.
+// Returns the `count` robots of a seed that move farthest, the best first; equal ones are ordered by index. Robots that
+// cannot be made or that explode are left out. Returns fewer robots if too few are left or the user interrupts. The
+// result does not depend on how many robots are simulated at once.
 std::vector<Winner> best_of(const Contest& contest, const MakeRobot& make, std::uint64_t seed, std::uint64_t count);
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of the program, one file each.
+// The subcommands of the program, one source file per command.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,14 +8,14 @@
 
 namespace mercury {
 
-// What a command does once its options are read; returns the exit status. Throws InputError (status 2), anything else
-// derived from std::exception (status 1).
+// Runs a command after its options were parsed. Returns the exit status. Throws InputError (exit status 2) or another
+// std::exception (exit status 1).
 using CommandBody = std::function<int()>;
 
-// Told which command was chosen.
+// Receives the command that the user chose.
 using Choose = std::function<void(CommandBody)>;
 
-// Each adds one subcommand to the program; `choose` is called while the command line is parsed.
+// Each function adds one subcommand to the program. Parsing the command line calls `choose`.
 void add_run_command(CLI::App& program, const Choose& choose);
 void add_view_command(CLI::App& program, const Choose& choose);
 void add_render_command(CLI::App& program, const Choose& choose);

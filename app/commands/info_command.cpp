@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury info: what a robot file or trajectory holds, or what this machine can do.
+// mercury info: describes robot files and recordings, or what this machine can do.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,16 +54,17 @@ void line(const std::string& what, const std::string& text) { fmt::print("  {:<1
 
 std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", static_cast<double>(bytes) / 1024); }
 
-// Where its masses can be stepped without leaving the chip (docs/performance.md), here and in general.
+// Whether a GPU can step the robot in the fast memory of a block (docs/performance.md): on any device, and on each GPU
+// of this machine.
 void describe_fit(const Robot& robot) {
-  constexpr std::size_t everywhere = 48 * 1024;  // what each CUDA device gives a block
+  constexpr std::size_t smallest = 48 * 1024;  // every CUDA device has at least this per block
   Configuration configuration;
   if (environment_of(robot) == Land::name) configuration.environment = Land{};
   const std::size_t bytes = chip_bytes(robot, configuration);
   line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
                                 environment_of(robot) == Land::name ? "on land" : "in water",
-                                bytes <= everywhere ? "fits every CUDA device, which has 48 kB or more"
-                                                    : "more than the 48 kB of the smallest CUDA devices"));
+                                bytes <= smallest ? "fits every CUDA device, which has 48 kB or more"
+                                                  : "more than the 48 kB of the smallest CUDA devices"));
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
     const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
@@ -87,8 +88,8 @@ void describe(const Robot& robot) {
                      kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
   line("masses", fmt::format("{}{}", found.masses,
                              found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
-  line("springs", fmt::format("{}, {:.1f} a mass, {:.3g} to {:.3g} m, {} muscles", found.springs, found.springs_a_mass,
-                              found.shortest_spring, found.longest_spring, found.muscles));
+  line("springs", fmt::format("{}, {:.1f} per mass, {:.3g} to {:.3g} m, {} muscles", found.springs,
+                              found.springs_a_mass, found.shortest_spring, found.longest_spring, found.muscles));
   line("faces", fmt::to_string(found.faces));
   line("surface", surface_text(found));
   line("materials", materials_text(found));
@@ -97,7 +98,7 @@ void describe(const Robot& robot) {
   if (found.components > 1) line("parts", fmt::format("{} that no spring joins", found.components));
 }
 
-int tell_machine(const std::string& ffmpeg) {
+int describe_machine(const std::string& ffmpeg) {
   fmt::print("{}\n", program_version);
   for (const auto& [what, found, advice] : inspect_machine(ffmpeg)) {
     fmt::print("  {:<17}{}\n", what, found);
@@ -106,7 +107,7 @@ int tell_machine(const std::string& ffmpeg) {
   return 0;
 }
 
-// "ocean, density 1000, ..." as the options would say it.
+// "ocean, density 1000, ...", with the names of the options.
 std::string environment_text(const Configuration& configuration) {
   std::string text(name_of(configuration.environment));
   const nlohmann::ordered_json json = json_of(configuration);
@@ -140,8 +141,8 @@ void describe(const TrajectoryReader& trajectory) {
   if (trajectory.robots().size() > shown) fmt::print("    and {} more\n", trajectory.robots().size() - shown);
 }
 
-int tell(const InfoOptions& options) {
-  if (options.paths.empty()) return tell_machine(options.ffmpeg);
+int info(const InfoOptions& options) {
+  if (options.paths.empty()) return describe_machine(options.ffmpeg);
   for (const std::filesystem::path path : options.paths) {
     if (is_trajectory_name(path)) {
       describe(TrajectoryReader(path));
@@ -157,12 +158,12 @@ int tell(const InfoOptions& options) {
 void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
-      program.add_subcommand("info", "What a robot or trajectory file holds; without one, what this machine can do");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, trajectories (.h5)")
+      program.add_subcommand("info", "Describe robot files and recordings; without a file, this machine");
+  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, recordings (.h5)")
       ->type_name("PATH");
-  add_text(*command, "--ffmpeg", options->ffmpeg, "The encoder to look at (default: MERCURY_FFMPEG, else ffmpeg)",
+  add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
-  command->callback([options, choose] { choose([options] { return tell(*options); }); });
+  command->callback([options, choose] { choose([options] { return info(*options); }); });
 }
 
 }  // namespace mercury

@@ -44,7 +44,7 @@ const char* vector_instructions() {
 #elif defined(__aarch64__)
   return "NEON";
 #else
-  return "no vector instructions known";
+  return "unknown vector instructions";
 #endif
 }
 
@@ -78,7 +78,7 @@ std::vector<Finding> gpus() {
   return findings;
 }
 
-// Whether a simulation's positions reach the picture on the card.
+// Whether positions can go from CUDA to OpenGL without leaving the GPU.
 std::string sharing(const render::Context& context) {
   if (context.is_software() || !built_with_cuda()) return {};
   const int device = cuda_device_of_current_context();
@@ -123,7 +123,7 @@ Finding encoder(const std::string& ffmpeg) {
     (codecs.find(codec) == std::string::npos ? missing : formats) += std::string(" ") + format;
   return {"encoder",
           fmt::format("{} {}, writes{}", program, version_in(version), formats.empty() ? " nothing" : formats),
-          missing.empty() ? "" : fmt::format("this ffmpeg cannot write{}; install the distribution's", missing)};
+          missing.empty() ? "" : fmt::format("this ffmpeg cannot write{}; install that of your distribution", missing)};
 }
 
 }  // namespace

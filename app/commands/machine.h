@@ -7,7 +7,7 @@
 
 namespace mercury {
 
-// One thing the program uses: what was found, and if it is missing or could be better, what to do.
+// One resource of the program: what was found, and advice if it is missing or could be better.
 struct Finding {
   std::string what;    // "encoder"
   std::string found;   // "ffmpeg 5.1.9 (H.264, VP9, GIF)", or "none"

@@ -22,27 +22,27 @@ namespace {
 constexpr const char* examples =
     "Examples:\n"
     "  mercury view                                              a window with the sample robots\n"
-    "  mercury render --random voxel:12 --seed 1 -o group.mp4    film twelve random robots\n"
+    "  mercury render --random voxel:12 --seed 1 -o group.mp4    make a video of twelve random robots\n"
     "  mercury run --random voxel:64 --seconds 2 --json          simulate and print the results\n"
     "  mercury new voxel --count 10 --seed 7 -o my-robots        make robot files\n"
-    "  mercury run my-robots --environment land --csv land.csv   try them on land\n"
+    "  mercury run my-robots --environment land --csv land.csv   simulate them on land\n"
     "  mercury info                                              what this machine can do\n"
-    "Every command explains itself: mercury render --help";
+    "Help on a command: mercury render --help";
 
-// Everything on one line, as every message of the program is.
+// Every message of the program is one line.
 std::string one_line(std::string text) {
   for (char& letter : text)
     if (letter == '\n' || letter == '\r') letter = ' ';
   return text;
 }
 
-// A message that quotes a long text keeps its two ends: where it was, and what would be accepted.
-std::string in_brief(const std::string& text) {
+// Shortens a message that quotes a long text. Its ends stay: they say where the error is and what would be accepted.
+std::string shortened(const std::string& text) {
   constexpr std::size_t longest = 800, end = 300;
   return text.size() <= longest ? text : text.substr(0, end) + " ... " + text.substr(text.size() - end);
 }
 
-void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", in_brief(one_line(message))); }
+void print_message(const std::string& message) { fmt::print(stderr, "mercury: {}\n", shortened(one_line(message))); }
 
 class Program {
  public:
@@ -73,21 +73,21 @@ class Program {
     } catch (const InputError& error) {
       return refuse(error.what());
     } catch (const std::bad_alloc&) {
-      say("not enough memory");
+      print_message("not enough memory");
       return status_failed;
     } catch (const std::exception& error) {
-      say(error.what());
+      print_message(error.what());
       return status_failed;
     }
   }
 
  private:
   int refuse(const std::string& message) const {
-    say(config_ ? config_->located(message) : message);
+    print_message(config_ ? config_->located(message) : message);
     return status_bad_input;
   }
 
-  // The command that the first words name, and how many words that takes.
+  // The command that the first words name, and the number of those words.
   std::pair<CLI::App*, std::size_t> command_in(const std::vector<std::string>& arguments) {
     CLI::App* command = &app_;
     std::size_t words = 0;
@@ -101,7 +101,7 @@ class Program {
     return {command, words};
   }
 
-  // Errors that are clearer told here than by the parser: no command, or one that does not exist.
+  // Reports a missing or unknown command more clearly than the parser does.
   void require_command(CLI::App& command, std::size_t words, const std::vector<std::string>& arguments) const {
     const auto children = command.get_subcommands([](const CLI::App*) { return true; });
     if (children.empty()) return;
@@ -141,7 +141,7 @@ class Program {
     }
   }
 
-  // CLI11 would take the next argument for the value of "--dt=".
+  // CLI11 would read the next argument as the value of "--dt=".
   static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
     for (const std::string& argument : arguments)
       if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
@@ -163,7 +163,7 @@ class Program {
                                         suggestion(word, names), full_name(command)));
   }
 
-  CLI::App app_{"Mercury simulates soft robots, shows and films them.", "mercury"};
+  CLI::App app_{"Mercury simulates soft robots, shows them in a window and makes videos of them.", "mercury"};
   CommandBody body_;
   std::optional<ConfigFile> config_;
   bool help_ = false;
@@ -176,7 +176,7 @@ int run_program(const std::vector<std::string>& arguments) {
   try {
     return Program().run(arguments);
   } catch (const std::exception& error) {
-    say(error.what());
+    print_message(error.what());
     return status_failed;
   }
 }

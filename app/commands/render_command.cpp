@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury render: videos and pictures, without a window.
+// mercury render: makes videos and pictures without a window.
 #include <fmt/format.h>
 
 #include <memory>
@@ -28,7 +28,7 @@ struct RenderOptions {
 
 void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", message); }
 
-// What is filmed: robots that are simulated, or a recording that is played back.
+// What the video shows: robots to simulate, or a recording to play back.
 struct Subject {
   Configuration configuration;
   std::vector<Robot> robots;                    // empty for a recording
@@ -40,7 +40,7 @@ struct Subject {
 Subject subject_of(const RenderOptions& options) {
   Subject subject;
   if (const auto file = options.robots.recording()) {
-    if (options.video.each()) throw InputError("--each", "not with a recording; it is played as it is");
+    if (options.video.each()) throw InputError("--each", "does not work with a recording; it is played as a whole");
     subject.recording = std::make_shared<TrajectoryReader>(*file);
     const TrajectoryReader& recording = *subject.recording;
     if (recording.frames() == 0) throw InputError(file->string(), "holds no frames");
@@ -55,7 +55,7 @@ Subject subject_of(const RenderOptions& options) {
   return subject;
 }
 
-// What the options come to, before anything costly is begun.
+// What the options ask for, checked before expensive work begins.
 struct Task {
   Subject subject;
   VideoOptions::Plan plan;
@@ -76,7 +76,8 @@ Task task_of(const RenderOptions& options) {
   return task;
 }
 
-void tell_result(const RenderOptions& options, const std::string& output, const Task& task, const FilmResult& result) {
+void report_result(const RenderOptions& options, const std::string& output, const Task& task,
+                   const FilmResult& result) {
   if (options.quiet) return;
   const double rate = static_cast<double>(result.frames) / result.wall_seconds;
   if (options.video.single_picture())
@@ -104,11 +105,11 @@ bool make(const RenderOptions& options, const Task& task, Stage& stage, Simulati
   const FilmResult result = studio.film(writer, task.plan.pixels, task.plan.timing, options.quiet);
   if (result.frames == 0) throw VideoError("stopped before the first frame; nothing was kept");
   writer.finish();
-  tell_result(options, options.video.output_of(name), task, result);
+  report_result(options, options.video.output_of(name), task, result);
   return !result.interrupted;
 }
 
-// Names that differ, so that no robot's video replaces another's.
+// File names of the robots, made unique so that no video replaces another.
 std::vector<std::string> file_names(std::span<const Robot> robots) {
   std::vector<std::string> names;
   std::set<std::string> taken;
@@ -132,7 +133,7 @@ int render_robots(const RenderOptions& options) {
   const std::span<const Robot> robots = task.subject.robots;
   const bool each = options.video.each();
   const std::vector<std::string> names = each ? file_names(robots) : std::vector<std::string>{""};
-  // A missing encoder or a name that cannot be written is told before the slow start of OpenGL.
+  // Open the writer first: a missing encoder or an invalid file name is then reported before the slow start of OpenGL.
   std::unique_ptr<FrameWriter> writer = options.video.open(task.plan, names[0]);
   const Device& device = task.subject.configuration.device;
   Stage stage = make_stage(options.video.context_kind(), task.plan.size, options.video.quality(),
@@ -152,13 +153,13 @@ int render_robots(const RenderOptions& options) {
 
 void add_render_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = program.add_subcommand("render", "Film a group of robots, without a window");
+  CLI::App* command = program.add_subcommand("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(*command);
   options->video.add_to(*command);
   options->view.add_to(*command);
-  command->add_flag("--quiet", options->quiet, "Nothing on standard error but errors");
+  command->add_flag("--quiet", options->quiet, "Print only errors on standard error");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
            "FILE.toml");
   command->footer(
       "Examples:\n"
@@ -167,7 +168,7 @@ void add_render_command(CLI::App& program, const Choose& choose) {
       "  mercury render my-robots --layout race --environment land -o race.mp4\n"
       "  mercury render eel.json --camera turntable --color strain --seconds 4 -o eel.gif\n"
       "  mercury render my-robots --contact-sheet 5x2 --seconds 9 -o poster.png\n"
-      "  mercury render run.h5 -o run.mp4                    a recording of mercury run --record\n"
+      "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
   command->callback([options, choose] { choose([options] { return render_robots(*options); }); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury run: simulate without pictures.
+// mercury run: simulates without pictures.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -27,8 +27,8 @@
 namespace mercury {
 namespace {
 
-constexpr double sample_period = 0.1;  // between looks at the telemetry [s]
-constexpr double recorded_rate = 30;   // frames a second of simulated time, where --every says nothing else
+constexpr double sample_period = 0.1;  // time between two samples of the telemetry [s]
+constexpr double recorded_rate = 30;   // frames per second of simulated time, without --every
 
 struct RunOptions {
   RobotOptions robots;
@@ -41,11 +41,11 @@ struct RunOptions {
 
 double distance(Vec3 a, Vec3 b) { return length(a - b); }
 
-// Looks at the robots now and then: the way each went, and its largest strain.
+// Samples the telemetry: the length of each robot's path and its largest strain.
 class Observer {
  public:
   explicit Observer(const Simulation& simulation)
-      : simulation_(simulation), start_(simulation.telemetry()), last_(start_), way_(start_.size(), 0.0),
+      : simulation_(simulation), start_(simulation.telemetry()), last_(start_), path_(start_.size(), 0.0),
         strain_(start_.size(), 0.0) {
     observe(start_);
   }
@@ -61,7 +61,7 @@ class Observer {
                          .masses = robot.masses.size(),
                          .springs = robot.springs.size(),
                          .displacement = distance(now.center_of_mass, start_[i].center_of_mass),
-                         .mean_speed = simulation_.time() > 0 ? way_[i] / simulation_.time() : 0,
+                         .mean_speed = simulation_.time() > 0 ? path_[i] / simulation_.time() : 0,
                          .largest_strain = strain_[i],
                          .exploded = now.exploded,
                          .exploded_at = now.exploded_at,
@@ -74,7 +74,7 @@ class Observer {
  private:
   void observe(const std::vector<Telemetry>& now) {
     for (std::size_t i = 0; i < now.size(); ++i) {
-      way_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
+      path_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
       strain_[i] = std::max(strain_[i], static_cast<double>(now[i].largest_strain));
     }
     last_ = now;
@@ -82,10 +82,10 @@ class Observer {
 
   const Simulation& simulation_;
   std::vector<Telemetry> start_, last_;
-  std::vector<double> way_, strain_;
+  std::vector<double> path_, strain_;
 };
 
-// Nothing when no recording is asked for. Throws InputError.
+// Returns null if no recording was requested. Throws InputError.
 std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
   if (options.every && *options.every < 1)
     throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
@@ -130,14 +130,14 @@ RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recor
           .robots = observer.results()};
 }
 
-// Tells before a long simulation what would fail after it.
+// Fails before a long simulation rather than after it.
 void require_writable(const std::string& option, const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw InputError(option, file.string() + " cannot be written: " + std::strerror(errno));
 }
 
-int tell(const RunOptions& options, const RunReport& report) {
+int report_results(const RunOptions& options, const RunReport& report) {
   if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
   fmt::print("{}", options.json ? json_of(report) : table_of(report));
 
@@ -152,24 +152,22 @@ int tell(const RunOptions& options, const RunReport& report) {
   return options.strict && exploded > 0 ? 1 : 0;
 }
 
-// Until the robot has exploded, or so long from the repro's start as --seconds says.
+// Runs until the robot has exploded, or for --seconds from the start of the repro.
 int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Device device = options.simulation.configuration().device;
   if (options.simulation.configuration() != Configuration{.device = device})
-    throw InputError(
-        file.string(),
-        "brings its own configuration; of the options for it give --device, --threads and --seconds alone");
-  if (!options.record.empty() || options.every) throw InputError("--record", "is not for a repro; give robots");
+    throw InputError(file.string(), "has its own configuration; give only --device, --threads and --seconds with it");
+  if (!options.record.empty() || options.every) throw InputError("--record", "does not work with a repro; give robots");
   const Repro repro = load_repro(file);
   Simulation simulation = start_of(repro, device);
   if (simulation.device_name() != repro.device_name)
-    fmt::print(stderr, "mercury: {} was seen on {}, this is {}: it may go another way\n", file.string(),
-               repro.device_name, simulation.device_name());
+    fmt::print(stderr, "mercury: the explosion of {} was seen on {}; this device, {}, may give another result\n",
+               file.string(), repro.device_name, simulation.device_name());
   ReproChanges changes(repro);
   const double seconds = options.simulation.seconds(0);
   const std::int64_t last =
       seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
-  return tell(options, simulate(simulation, last, options.quiet, nullptr, &changes));
+  return report_results(options, simulate(simulation, last, options.quiet, nullptr, &changes));
 }
 
 int run(const RunOptions& options) {
@@ -186,32 +184,33 @@ int run(const RunOptions& options) {
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
   const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
   if (recorder) recorder->finish();
-  return tell(options, report);
+  return report_results(options, report);
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Simulate without pictures: a table, CSV or JSON");
+  CLI::App* command = program.add_subcommand("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(*command);
-  add_text(*command, "--csv", options->csv, "Also write one line a robot into this file", "FILE");
-  add_text(*command, "--record", options->record, "Record all masses' positions and velocities (H5MD 1.1)", "FILE.h5");
-  add_number(*command, "--every", options->every, "Steps between recorded frames (default 1/30 s)", "N");
-  command->add_flag("--compress", options->compress, "Compress the recording: smaller, slower");
-  command->add_flag("--json", options->json, "Print JSON rather than a table");
+  add_text(*command, "--csv", options->csv, "Also write one line per robot to this file", "FILE");
+  add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
+           "FILE.h5");
+  add_number(*command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
+  command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
-  command->add_flag("--quiet", options->quiet, "No progress on standard error");
+  command->add_flag("--quiet", options->quiet, "Print no progress on standard error");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
            "FILE.toml");
   command->footer(
-      "Displacement is that of the centre of mass; speed is the length of its way over the time, and strain the\n"
-      "largest of any spring, both looked at every 0.1 s.\n\n"
+      "Displacement is the distance of the centre of mass from its start. Speed is the length of its path divided by\n"
+      "the time. Strain is the largest of any spring. Speed and strain are sampled every 0.1 s.\n\n"
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"
-      "  mercury run eel.repro        (of an explosion that was seen in the window)\n"
+      "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
   command->callback([options, choose] { choose([options] { return run(*options); }); });
 }

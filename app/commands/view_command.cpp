@@ -44,16 +44,17 @@ int view(const ViewCommandOptions& options) {
   viewer.configuration = options.simulation.configuration();
   if (options.robots.empty()) {
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
-    // There are none for simple water: those that swim.
+    // There are no samples for the simple ocean; use those of the ocean.
     if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
     return window::run_viewer(std::move(viewer));
   }
   if (const auto file = options.robots.repro()) {
-    load_repro(*file);  // for what is wrong with it
+    load_repro(*file);  // throws for an invalid file, before the window opens
     viewer.files = {*file};
     return window::run_viewer(std::move(viewer));
   }
-  // Files are looked at here for what is wrong with them and where the robots live; the window reads them again.
+  // Read the files here to report errors before the window opens, and to choose the environment of the robots. The
+  // window reads them again.
   const std::vector<Robot> robots = options.robots.load_files();
   if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
   viewer.files = options.robots.files();
@@ -65,24 +66,23 @@ int view(const ViewCommandOptions& options) {
 
 void add_view_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<ViewCommandOptions>();
-  CLI::App* command = program.add_subcommand("view", "Watch robots in a window, and play with them");
+  CLI::App* command = program.add_subcommand("view", "Show robots in an interactive window");
   options->robots.add_to(*command);
-  add_text(*command, "--size", options->size, "Size of the window (default: that of the last time, or 1280x720)",
-           "WIDTHxHEIGHT")
+  add_text(*command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
       ->group("Window");
-  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Effort of drawing")
+  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
       ->group("Window");
-  command->add_flag("--paused", options->paused, "Begin at rest")->group("Window");
-  command->add_flag("--fresh", options->fresh, "Neither use nor keep settings of earlier windows")->group("Window");
+  command->add_flag("--paused", options->paused, "Start paused")->group("Window");
+  command->add_flag("--fresh", options->fresh, "Neither load nor save settings")->group("Window");
   add_text(*command, "--report", options->report,
-           "Write what happens in the window to a file, one JSON object a line (docs/window.md)", "FILE")
+           "Write the events of the window to a file, one JSON object per line (docs/window.md)", "FILE")
       ->group("Window");
   options->view.add_to(*command);
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; those given here count more",
+  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
            "FILE.toml");
   command->footer(
-      "Without ROBOTS it shows the sample robots. F1 in the window lists all keys.\n"
+      "Without ROBOTS the window shows the sample robots. Press F1 for a list of all keys.\n"
       "Examples:\n"
       "  mercury view\n"
       "  mercury view my-robots --environment land\n"
