@@ -99,7 +99,7 @@ struct Group {
       positions.insert(positions.end(), lattice.masses.begin(), lattice.masses.end());
     }
     scene.placements = placements;
-    scene.looks = looks;
+    scene.materials = materials;
     scene.surroundings = around == "land"   ? Surroundings::land
                          : around == "none" ? Surroundings::none
                                             : Surroundings::water;
@@ -107,7 +107,7 @@ struct Group {
   }
   std::vector<Placement> placements;
   std::vector<float> positions;
-  std::vector<Look> looks{{muscle_color(0, 0.5f), 0.3f}};
+  std::vector<RenderMaterial> materials{{muscle_color(0, 0.5f), 0.3f}};
   Bounds box;
   Scene scene;
 };

@@ -17,7 +17,7 @@ void Bodies::set(std::shared_ptr<const BodyData> data) {
   mass_faces.write(data->mass_faces);
   mass_offsets_ = data->mass_offsets;
   face_count_ = data->records.size();
-  spring_count_ = data->spring_looks.size();
+  spring_count_ = data->spring_materials.size();
   typical_spring_ = data->typical_spring;
   springs_to_write_ = std::move(data);
 }
@@ -25,7 +25,7 @@ void Bodies::set(std::shared_ptr<const BodyData> data) {
 void Bodies::write_springs() {
   if (!springs_to_write_) return;
   springs.write(springs_to_write_->springs);
-  spring_looks.write(springs_to_write_->spring_looks);
+  spring_materials.write(springs_to_write_->spring_materials);
   springs_to_write_.reset();
 }
 

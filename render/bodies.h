@@ -35,7 +35,7 @@ class Bodies {
   Buffer faces;           // uint[3] a face
   Buffer face_records;    // FaceRecord a face
   Buffer springs;         // uint[2] a spring
-  Buffer spring_looks;    // uint a spring
+  Buffer spring_materials;    // uint a spring
   Buffer mass_face_ends;  // uint a mass: end of its part of mass_faces
   Buffer mass_faces;      // faces at each mass
 

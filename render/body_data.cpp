@@ -18,10 +18,10 @@ void validate(const Body& body, std::size_t index) {
   require(body.rest_positions.size() % 3 == 0, index, "rest_positions must have 3 floats a mass");
   require(body.faces.size() % 3 == 0, index, "faces must have 3 masses a face");
   require(body.springs.size() % 2 == 0, index, "springs must have 2 masses a spring");
-  require(body.face_looks.empty() || body.face_looks.size() == body.faces.size() / 3, index,
-          "face_looks must be empty or have one element a face");
-  require(body.spring_looks.empty() || body.spring_looks.size() == body.springs.size() / 2, index,
-          "spring_looks must be empty or have one element a spring");
+  require(body.face_materials.empty() || body.face_materials.size() == body.faces.size() / 3, index,
+          "face_materials must be empty or have one element a face");
+  require(body.spring_materials.empty() || body.spring_materials.size() == body.springs.size() / 2, index,
+          "spring_materials must be empty or have one element a spring");
   const auto within = [&](std::uint32_t mass) { return mass < body.rest_positions.size() / 3; };
   require(std::all_of(body.faces.begin(), body.faces.end(), within), index, "a face's mass is out of range");
   require(std::all_of(body.springs.begin(), body.springs.end(), within), index, "a spring's mass is out of range");
@@ -88,7 +88,7 @@ void reserve(BodyData& data, std::span<const std::shared_ptr<const PreparedBody>
   for (const auto& body : bodies) {
     masses += body->rest_positions.size() / 3;
     faces += body->records.size();
-    springs += body->spring_looks.size();
+    springs += body->spring_materials.size();
   }
   data.rest_positions.reserve(3 * masses);
   data.owners.reserve(masses);
@@ -97,7 +97,7 @@ void reserve(BodyData& data, std::span<const std::shared_ptr<const PreparedBody>
   data.mass_faces.reserve(3 * faces);
   data.records.reserve(faces);
   data.springs.reserve(2 * springs);
-  data.spring_looks.reserve(springs);
+  data.spring_materials.reserve(springs);
 }
 
 }  // namespace
@@ -108,10 +108,10 @@ std::shared_ptr<const PreparedBody> prepare_body(const Body& body, std::size_t i
   prepared->rest_positions.assign(body.rest_positions.begin(), body.rest_positions.end());
   prepared->faces = copy_of(body.faces);
   prepared->springs = copy_of(body.springs);
-  prepared->spring_looks = copy_of(body.spring_looks);
-  prepared->spring_looks.resize(body.springs.size() / 2, 0);
+  prepared->spring_materials = copy_of(body.spring_materials);
+  prepared->spring_materials.resize(body.springs.size() / 2, 0);
   prepared->records = skin_topology(body.rest_positions, body.faces);
-  for (std::size_t i = 0; i < body.face_looks.size(); ++i) prepared->records[i].look = body.face_looks[i];
+  for (std::size_t i = 0; i < body.face_materials.size(); ++i) prepared->records[i].material = body.face_materials[i];
   MassFaces adjacency = mass_faces_of(body.faces, body.rest_positions.size() / 3);
   prepared->mass_face_ends = std::move(adjacency.ends);
   prepared->mass_faces = std::move(adjacency.faces);
@@ -130,7 +130,7 @@ std::shared_ptr<const BodyData> assemble(std::span<const std::shared_ptr<const P
     data->owners.resize(data->rest_positions.size() / 3, std::uint32_t(i));
     append(data->faces, body.faces, first_mass);
     append(data->springs, body.springs, first_mass);
-    append(data->spring_looks, body.spring_looks);
+    append(data->spring_materials, body.spring_materials);
     append(data->records, body.records, first_face);
     append(data->mass_face_ends, body.mass_face_ends, std::uint32_t(data->mass_faces.size()));
     append(data->mass_faces, body.mass_faces, first_face);

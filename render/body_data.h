@@ -16,7 +16,7 @@ namespace mercury::render {
 struct PreparedBody {
   std::vector<float> rest_positions;                      // 3 a mass
   std::vector<std::uint32_t> faces, springs;              // 3 masses a face, 2 a spring
-  std::vector<std::uint32_t> spring_looks;                // one a spring
+  std::vector<std::uint32_t> spring_materials;                // one a spring
   std::vector<FaceRecord> records;                        // one a face
   std::vector<std::uint32_t> mass_face_ends, mass_faces;  // the faces at each mass
   std::vector<float> lengths;                             // of some springs [m]
@@ -31,7 +31,7 @@ struct BodyData {
   std::vector<std::uint32_t> mass_offsets{0};  // bodies + 1
   std::vector<float> rest_positions;
   std::vector<std::uint32_t> owners;  // body, one a mass
-  std::vector<std::uint32_t> faces, springs, spring_looks;
+  std::vector<std::uint32_t> faces, springs, spring_materials;
   std::vector<FaceRecord> records;
   std::vector<std::uint32_t> mass_face_ends, mass_faces;
   float typical_spring = 0.1f;  // median rest length [m]

@@ -24,7 +24,7 @@ LatticePass::LatticePass(const std::string& defines)
 
 void LatticePass::draw_springs(const Bodies& bodies, const Scene& scene, GLuint program) {
   bodies.springs.bind_storage(binding::first_free);
-  bodies.spring_looks.bind_storage(binding::first_free + 1);
+  bodies.spring_materials.bind_storage(binding::first_free + 1);
   values_.write(scene.spring_values);
   values_.bind_storage(binding::first_free + 2);
   glUseProgram(program);

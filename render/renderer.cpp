@@ -262,7 +262,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   glDepthFunc(GL_GREATER);
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
-                                                     : SkinPass::ColorBy::looks;
+                                                     : SkinPass::ColorBy::materials;
   draw_sides(scene, camera,
              [&](const char* side) { passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
   glDisable(GL_CULL_FACE);

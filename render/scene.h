@@ -22,12 +22,12 @@ struct Body {
   std::span<const float> rest_positions;        // 3 a mass; tells which edges of the skin are sharp
   std::span<const std::uint32_t> faces;         // 3 masses a face, counter-clockwise seen from outside
   std::span<const std::uint32_t> springs;       // 2 masses a spring
-  std::span<const std::uint32_t> face_looks;    // one a face, index into Scene::looks; empty = all 0
-  std::span<const std::uint32_t> spring_looks;  // one a spring, the same
+  std::span<const std::uint32_t> face_materials;    // one a face, index into Scene::materials; empty = all 0
+  std::span<const std::uint32_t> spring_materials;  // one a spring, the same
 };
 
 // What the faces and springs of one material look like at this moment.
-struct Look {
+struct RenderMaterial {
   Color color;
   float activation = 0;  // of a muscle, -1 stretched to +1 contracted; it lights up as it contracts
 };
@@ -39,7 +39,7 @@ struct Placement {
   bool selected = false;         // drawn with a bright rim
   bool faulty = false;           // drawn grey, with a red rim: it has exploded
   bool smooth = false;           // skin rounded rather than with its edges
-  std::uint32_t first_look = 0;  // added to the body's face_looks and spring_looks, below 2^24
+  std::uint32_t first_material = 0;  // added to the body's face_materials and spring_materials, below 2^24
 };
 
 // How numbers become colours.
@@ -102,7 +102,7 @@ struct Scene {
   // Empty = Renderer::position_buffer() holds them already.
   std::span<const float> positions;
   std::span<const Placement> placements;  // one a body; empty = all at their own coordinates
-  std::span<const Look> looks;            // by Body::face_looks and spring_looks; empty = one neutral look
+  std::span<const RenderMaterial> materials;            // by Body::face_materials and spring_materials; empty = one neutral look
 
   // Numbers to colour by, through `scale`, one a face / mass / spring of all bodies; empty = looks.
   // Skin takes face_values, else mass_values; springs take spring_values, else mass_values; masses take mass_values.

@@ -21,7 +21,7 @@ struct PlacementRecord {
 
 std::uint32_t flags_of(const Placement& place) {
   return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u) |
-         place.first_look << 8;
+         place.first_material << 8;
 }
 
 std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
@@ -33,11 +33,11 @@ std::vector<PlacementRecord> placement_records(std::span<const Placement> placem
   return records;
 }
 
-std::vector<Vector4f> look_records(std::span<const Look> looks) {
+std::vector<Vector4f> material_records(std::span<const RenderMaterial> materials) {
   std::vector<Vector4f> records;
-  for (const Look& look : looks) {
-    const auto linear = linear_of(look.color);
-    records.push_back({linear[0], linear[1], linear[2], look.activation});
+  for (const Look& look : materials) {
+    const auto linear = linear_of(material.color);
+    records.push_back({linear[0], linear[1], linear[2], material.activation});
   }
   if (records.empty()) records.push_back({0.6f, 0.6f, 0.6f, 0});
   return records;
@@ -62,7 +62,7 @@ void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   else
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // whoever has written them
   placements_.write(placement_records(scene.placements, bodies.body_count()));
-  looks_.write(look_records(scene.looks));
+  materials_.write(material_records(scene.materials));
   face_values_.write(scene.face_values);
   mass_values_.write(scene.mass_values);
 }
@@ -72,7 +72,7 @@ void SceneBuffers::bind(const Bodies& bodies) const {
   placements_.bind_storage(binding::placements);
   bodies.mass_bodies.bind_storage(binding::mass_bodies);
   bodies.face_records.bind_storage(binding::face_records);
-  looks_.bind_storage(binding::looks);
+  materials_.bind_storage(binding::materials);
   face_values_.bind_storage(binding::face_values);
   mass_values_.bind_storage(binding::mass_values);
 }

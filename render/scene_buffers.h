@@ -20,7 +20,7 @@ class SceneBuffers {
   void bind(const Bodies& bodies) const;
 
  private:
-  StreamBuffer placements_, looks_, face_values_, mass_values_;
+  StreamBuffer placements_, materials_, face_values_, mass_values_;
 };
 
 // The boxes of bodies as they stand in the picture; empty for one that is not shown.

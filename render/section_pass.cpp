@@ -19,14 +19,14 @@ SectionPass::SectionPass() : empty_(make_vertex_array()), program_(make_program(
 void SectionPass::resize(int width, int height) {
   width_ = width;
   height_ = height;
-  looks_ = Texture();
+  colors_ = Texture();
 }
 
 void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
-  if (!looks_) {
-    looks_ = make_texture(GL_RGBA16F, width_, height_);
+  if (!colors_) {
+    colors_ = make_texture(GL_RGBA16F, width_, height_);
     nearness_ = make_texture(GL_DEPTH_COMPONENT32F, width_, height_);
-    framebuffer_ = make_framebuffer({looks_.get()}, nearness_.get());
+    framebuffer_ = make_framebuffer({colors_.get()}, nearness_.get());
   }
   const std::array<float, 4> plain{0.35f, 0.35f, 0.35f, 0};
   const float nothing = 0;
@@ -38,7 +38,7 @@ void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
   glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
   bodies.springs.bind_storage(binding::first_free);
-  bodies.spring_looks.bind_storage(binding::first_free + 1);
+  bodies.spring_materials.bind_storage(binding::first_free + 1);
   glUseProgram(program_.get());
   glBindVertexArray(empty_.get());
   glUniform1f(0, reach_of_springs * bodies.typical_spring());
@@ -48,7 +48,7 @@ void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
     glUniform1ui(3, GLuint(first));
     glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.spring_count() - first)));
   }
-  glBindTextureUnit(binding::section, looks_.get());
+  glBindTextureUnit(binding::section, colors_.get());
 }
 
 }  // namespace mercury::render

@@ -21,7 +21,7 @@ class SectionPass {
   VertexArray empty_;
   Program program_;
   int width_ = 0, height_ = 0;
-  Texture looks_, nearness_;  // made when first needed
+  Texture colors_, nearness_;  // made when first needed
   Framebuffer framebuffer_;
 };
 

@@ -76,7 +76,7 @@ void SkinPass::draw_seen() const {
 
 void SkinPass::draw(ColorBy color_by, const Scale& scale, const std::string& variant) const {
   glUseProgram(skin_.get(define("COLOR_BY", int(color_by)) + variant));
-  if (color_by != ColorBy::looks) set_scale(1, scale);
+  if (color_by != ColorBy::materials) set_scale(1, scale);
   draw_seen();
 }
 

@@ -19,7 +19,7 @@ class SkinPass {
   // which faces are to be drawn. `cut`: a part of what is drawn next is cut away.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
-  enum class ColorBy { looks, face_values, mass_values };
+  enum class ColorBy { materials, face_values, mass_values };
   // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
   void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
   // And, where there is a colour, the number of the face, counted from 1. `variant`: "" or, with a cut whose inside is

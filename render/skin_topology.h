@@ -14,7 +14,7 @@ struct FaceRecord {
   // Neighbours across the edges of the triangle or, for half a quadrilateral, of the whole: triangle edges opposite to
   // corner 0, 1, 2; quadrilateral edges u = 0, u = 1, v = 0, v = 1. no_face at an open border.
   std::array<std::uint32_t, 4> neighbours;
-  std::uint32_t look;
+  std::uint32_t material;
   // 3 = a triangle of its own; 0, 1, 2 = half a quadrilateral, and this corner is opposite to the diagonal.
   std::uint32_t shape;
   std::uint32_t padding[2] = {0, 0};

@@ -13,7 +13,7 @@ struct Placement {
 
 struct FaceRecord {
   uvec4 neighbours;
-  uint look;
+  uint material;
   uint shape;
 };
 
@@ -44,10 +44,10 @@ layout(std430, binding = 1) readonly buffer Positions { float positions[]; };
 layout(std430, binding = 2) readonly buffer Placements { Placement placements[]; };
 layout(std430, binding = 3) readonly buffer MassBodies { uint mass_bodies[]; };
 layout(std430, binding = 4) readonly buffer FaceRecords { FaceRecord face_records[]; };
-layout(std430, binding = 6) readonly buffer Looks { vec4 looks[]; };  // linear colour, activation
+layout(std430, binding = 6) readonly buffer Materials { vec4 materials[]; };  // linear colour, activation
 
-vec4 look_at(uint look, uint placement_flags) {
-  return looks[min(look + (placement_flags >> 8), uint(looks.length()) - 1u)];
+vec4 material_at(uint material, uint placement_flags) {
+  return materials[min(material + (placement_flags >> 8), uint(materials.length()) - 1u)];
 }
 
 vec3 position_of(uint mass) { return vec3(positions[3u * mass], positions[3u * mass + 1u], positions[3u * mass + 2u]); }

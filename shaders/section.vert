@@ -5,19 +5,19 @@
 #include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
-layout(std430, binding = 12) readonly buffer SpringLooks { uint spring_looks[]; };
+layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
 layout(location = 0) uniform float reach;       // [m]
-layout(location = 1) uniform int color_by;      // 0 looks, 1 mass values, 2 nothing that masses or springs have
+layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 nothing that masses or springs have
 layout(location = 2) uniform vec3 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
 
 layout(location = 0) out vec3 off;   // from the spring's middle
-layout(location = 1) flat out vec4 look;  // colour, activation
+layout(location = 1) flat out vec4 material;  // colour, activation
 out gl_PerVertex { vec4 gl_Position; };
 
-vec4 look_of(uint spring, uint a, uint b, uint flags) {
-  if (color_by == 0) return look_at(spring_looks[spring], flags);
+vec4 material_of(uint spring, uint a, uint b, uint flags) {
+  if (color_by == 0) return material_at(spring_materials[spring], flags);
   if (color_by == 2) return vec4(0.35, 0.35, 0.35, 0.0);
   float value = 0.5 * (mass_values[a] + mass_values[b]);
   return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
@@ -34,7 +34,7 @@ void main() {
   vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
   float half_side = sqrt(max(0.0, reach * reach - height * height));
   off = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
-  look = look_of(spring, a, b, placement.flags);
+  material = material_of(spring, a, b, placement.flags);
   gl_Position = frame.view_projection * vec4(middle + off, 1.0);
   if (abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -17,7 +17,7 @@ layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
 layout(std430, binding = 15) readonly buffer SeenFaces { uint seen_faces[]; };  // that are drawn
 
-// COLOR_BY: 0 looks, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
+// COLOR_BY: 0 materials, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
 // FRONT_LIGHT: what of the key light arrives has been found before. CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
 layout(location = 0) in vec3 local;
 layout(location = 1) in vec3 skin_point;
@@ -103,9 +103,9 @@ void main() {
   }
 
 #if COLOR_BY == 0
-  vec4 look = look_at(record.look, flags);
-  float activation = look.a;
-  vec3 albedo = look.rgb * (1.0 + 0.25 * min(activation, 0.0));
+  vec4 material = material_at(record.material, flags);
+  float activation = material.a;
+  vec3 albedo = material.rgb * (1.0 + 0.25 * min(activation, 0.0));
 #else
 #if COLOR_BY == 1
   float value = face_values[face];

@@ -5,11 +5,11 @@
 #include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
-layout(std430, binding = 12) readonly buffer SpringLooks { uint spring_looks[]; };
+layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
 layout(std430, binding = 13) readonly buffer SpringValues { float spring_values[]; };
 
 layout(location = 0) uniform float radius;      // [m]
-layout(location = 1) uniform int color_by;      // 0 looks, 1 mass values, 2 spring values
+layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 spring values
 layout(location = 2) uniform vec3 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
@@ -18,7 +18,7 @@ layout(location = 0) out vec3 world;
 layout(location = 1) out float across;
 layout(location = 2) flat out vec3 side;
 layout(location = 3) flat out vec3 axis;
-layout(location = 4) out vec4 look;  // colour, activation
+layout(location = 4) out vec4 material;  // colour, activation
 layout(location = 5) flat out uint flags;
 
 out gl_PerVertex {
@@ -26,8 +26,8 @@ out gl_PerVertex {
   float gl_ClipDistance[1];
 };
 
-vec4 look_of(uint spring, uint mass, uint placement_flags) {
-  if (color_by == 0) return look_at(spring_looks[spring], placement_flags);
+vec4 material_of(uint spring, uint mass, uint placement_flags) {
+  if (color_by == 0) return material_at(spring_materials[spring], placement_flags);
   float value = color_by == 1 ? mass_values[mass] : spring_values[spring];
   return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
 }
@@ -46,12 +46,12 @@ void main() {
   vec3 to_eye = frame.eye.xyz - point;
   float thickness = max(radius, 0.6 * pixel_size(point));
 #endif
-  look = look_of(spring, corner.x < 0.5 ? mass_a : mass_b, placement.flags);
+  material = material_of(spring, corner.x < 0.5 ? mass_a : mass_b, placement.flags);
   axis = normalize(b - a);
   side = across_of(axis, to_eye);
   across = corner.y;
   // A muscle swells as it shortens.
-  world = point + side * corner.y * thickness * (1.0 + 0.25 * look.a);
+  world = point + side * corner.y * thickness * (1.0 + 0.25 * material.a);
   flags = placement.flags;
 #ifdef SHADOW
   vec3 place = (frame.shadow * vec4(world, 1.0)).xyz;

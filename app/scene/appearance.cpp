@@ -50,22 +50,22 @@ render::Color color_of(const Material& material, const Range& frequencies, const
 
 }  // namespace
 
-BodyShape::BodyShape(const Robot& robot, std::uint32_t first_look) {
+BodyShape::BodyShape(const Robot& robot, std::uint32_t first_material) {
   for (const Vec3 p : robot.masses) rest_positions_.insert(rest_positions_.end(), {p.x, p.y, p.z});
   for (const Face& face : robot.faces) faces_.insert(faces_.end(), {face.a, face.b, face.c});
   for (const Spring& spring : robot.springs) {
     springs_.insert(springs_.end(), {spring.a, spring.b});
-    spring_looks_.push_back(first_look + spring.material);
+    spring_materials_.push_back(first_material + spring.material);
   }
-  for (const MaterialId id : face_materials(robot)) face_looks_.push_back(first_look + id);
+  for (const MaterialId id : face_materials(robot)) face_materials_.push_back(first_material + id);
 }
 
 render::Body BodyShape::body() const {
   return {.rest_positions = rest_positions_,
           .faces = faces_,
           .springs = springs_,
-          .face_looks = face_looks_,
-          .spring_looks = spring_looks_};
+          .face_materials = face_materials_,
+          .spring_materials = spring_materials_};
 }
 
 std::vector<MaterialId> face_materials(const Robot& robot) {
@@ -100,14 +100,14 @@ std::vector<render::Color> material_colors(std::span<const Material> materials, 
   return colors;
 }
 
-void set_activations(std::span<const Material> materials, double time, std::span<render::Look> looks) {
+void set_activations(std::span<const Material> materials, double time, std::span<render::RenderMaterial> drawn) {
   float largest = 0;
   for (const Material& material : materials) largest = std::max(largest, std::abs(material.amplitude));
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];
     const double angle =
         std::remainder(static_cast<double>(m.frequency) * time + static_cast<double>(m.phase), 2 * M_PI);
-    looks[i].activation = largest > 0 ? -m.amplitude / largest * static_cast<float>(std::sin(angle)) : 0;
+    drawn[i].activation = largest > 0 ? -m.amplitude / largest * static_cast<float>(std::sin(angle)) : 0;
   }
 }
 

@@ -12,15 +12,15 @@
 
 namespace mercury {
 
-// A robot's unchanging parts as the renderer takes them. `first_look` is added to every material id.
+// A robot's unchanging parts as the renderer takes them. `first_material` is added to every material id.
 class BodyShape {
  public:
-  BodyShape(const Robot& robot, std::uint32_t first_look);
+  BodyShape(const Robot& robot, std::uint32_t first_material);
   render::Body body() const;
 
  private:
   std::vector<float> rest_positions_;
-  std::vector<std::uint32_t> faces_, springs_, face_looks_, spring_looks_;
+  std::vector<std::uint32_t> faces_, springs_, face_materials_, spring_materials_;
 };
 
 // The material that a face is drawn in, one a face: that of the spring along its longest edge that has one. In a voxel
@@ -33,6 +33,6 @@ std::vector<render::Color> material_colors(std::span<const Material> materials, 
 
 // How far each material's muscle is contracted at a time: -1 longest to +1 shortest, by the table's largest amplitude;
 // 0 for passive ones. Writes one a material.
-void set_activations(std::span<const Material> materials, double time, std::span<render::Look> looks);
+void set_activations(std::span<const Material> materials, double time, std::span<render::RenderMaterial> drawn);
 
 }  // namespace mercury

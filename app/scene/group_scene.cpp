@@ -169,22 +169,22 @@ std::size_t GroupScene::table_for(std::span<const Material> own, std::span<const
   if (found != tables_.end()) return static_cast<std::size_t>(found - tables_.begin());
   found = std::ranges::find_if(tables_, free);
   if (found == tables_.end()) {
-    tables_.push_back({.first_look = looks_.size()});
-    looks_.resize(looks_.size() + own.size());
+    tables_.push_back({.first_material = materials_.size()});
+    materials_.resize(materials_.size() + own.size());
     found = tables_.end() - 1;
   }
-  const std::size_t first = found->first_look;
+  const std::size_t first = found->first_material;
   *found = {first, {own.begin(), own.end()}, {materials.begin(), materials.end()}, defaults, 0};
   found->materials.resize(own.size());
   const std::vector<render::Color> colors = material_colors(own, defaults);
-  for (std::size_t id = 0; id < colors.size(); ++id) looks_[first + id] = {.color = colors[id]};
+  for (std::size_t id = 0; id < colors.size(); ++id) materials_[first + id] = {.color = colors[id]};
   return static_cast<std::size_t>(found - tables_.begin());
 }
 
 void GroupScene::use_table(std::size_t robot, std::size_t table) {
   ++tables_[table].robots;
   table_of_[robot] = table;
-  placements_[robot].first_look = static_cast<std::uint32_t>(tables_[table].first_look);
+  placements_[robot].first_material = static_cast<std::uint32_t>(tables_[table].first_material);
 }
 
 void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
@@ -213,8 +213,8 @@ void GroupScene::set_bodies(render::Renderer& renderer) const { renderer.set_bod
 
 void GroupScene::update(double time, std::span<const Telemetry> telemetry, SceneDetails details) {
   for (const Table& table : tables_)
-    set_activations(table.materials, time, std::span(looks_).subspan(table.first_look, table.materials.size()));
-  scene_.looks = looks_;
+    set_activations(table.materials, time, std::span(materials_).subspan(table.first_material, table.materials.size()));
+  scene_.materials = materials_;
   scene_.time = time;
   if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
   place(telemetry);

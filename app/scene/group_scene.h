@@ -73,7 +73,7 @@ class GroupScene {
  private:
   // Looks of robots that have the same materials now and the same of their own, which give the colours.
   struct Table {
-    std::size_t first_look = 0;
+    std::size_t first_material = 0;
     std::vector<Material> own, materials;
     bool defaults = true;    // it has the default table
     std::size_t robots = 0;  // that use it; 0 = free for others
@@ -94,7 +94,7 @@ class GroupScene {
   std::vector<std::string> names_;
   std::shared_ptr<const render::BodyData> bodies_;
   std::vector<Table> tables_;
-  std::vector<render::Look> looks_;
+  std::vector<render::RenderMaterial> materials_;
   std::vector<render::Placement> placements_;
   std::vector<render::Bounds> rest_;  // about the centre of mass at rest
   std::vector<render::Bounds> bounds_;

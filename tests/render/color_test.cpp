@@ -13,24 +13,24 @@ class ColorTest : public Offscreen {};
 TEST_F(ColorTest, APlacementChoosesAmongLooksWithoutNewBodies) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();
-  const std::array<std::uint32_t, 1> face_look{1};
-  const std::array<std::uint32_t, 3> spring_looks{1, 1, 1};
+  const std::array<std::uint32_t, 1> face_material{1};
+  const std::array<std::uint32_t, 3> spring_materials{1, 1, 1};
   Body body = mesh.body();
-  body.face_looks = face_look;
-  body.spring_looks = spring_looks;
+  body.face_materials = face_material;
+  body.spring_materials = spring_materials;
   // Prepared beforehand, as on another thread.
   const std::array prepared{prepare_body(body)};
   renderer.set_bodies(assemble(prepared));
   EXPECT_EQ(renderer.spring_count(), 3u);
-  const std::array looks{Look{rgb(0x101010)}, Look{rgb(0xd01010)}, Look{rgb(0x101010)}, Look{rgb(0x1010d0)}};
+  const std::array materials{RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0xd01010)}, RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0x1010d0)}};
   for (const bool springs : {false, true}) {
     Scene scene = plain();
     scene.show = {.skin = !springs, .springs = springs};
     scene.spring_radius = 0.1f;
-    scene.looks = looks;
+    scene.materials = materials;
     const Vector2f middle = pinhole(front(), {0.05f, 0, -0.45f}, 160, 120);  // of the first spring
-    const auto color = [&](std::uint32_t first_look) {
-      const std::array placements{Placement{.selected = false, .first_look = first_look}};
+    const auto color = [&](std::uint32_t first_material) {
+      const std::array placements{Placement{.selected = false, .first_material = first_material}};
       scene.placements = placements;
       return springs ? pixel(drawn(renderer, scene), int(middle.x()), int(middle.y()))
                      : pixel(drawn(renderer, scene), 80, 60);
@@ -47,9 +47,9 @@ TEST_F(ColorTest, AContractedMuscleIsBrighterThanAStretchedOne) {
   renderer.set_bodies(std::array{mesh.body()});
   int last = -1;
   for (const float activation : {-1.0f, 0.0f, 0.6f, 1.0f}) {
-    const std::array looks{Look{muscle_color(0, 0.5f), activation}};
+    const std::array materials{RenderMaterial{muscle_color(0, 0.5f), activation}};
     Scene scene = plain();
-    scene.looks = looks;
+    scene.materials = materials;
     const int brightness = pixel(drawn(renderer, scene), 80, 60).sum();
     EXPECT_GT(brightness, last + 10) << activation;
     last = brightness;

@@ -34,15 +34,15 @@ struct Cube {
   std::vector<float> positions;
   std::vector<std::uint32_t> faces{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-  std::vector<std::uint32_t> springs, spring_looks;
+  std::vector<std::uint32_t> springs, spring_materials;
   Cube() {
     for (std::uint32_t i = 0; i < 8; ++i)
       for (const std::uint32_t bit : {1u, 2u, 4u}) positions.push_back(i & bit ? 0.5f : -0.5f);
     for (std::uint32_t a = 0; a < 8; ++a)
       for (std::uint32_t b = a + 1; b < 8; ++b) springs.insert(springs.end(), {a, b});
-    spring_looks.assign(springs.size() / 2, 1);
+    spring_materials.assign(springs.size() / 2, 1);
   }
-  Body body() const { return {positions, faces, springs, {}, spring_looks}; }
+  Body body() const { return {positions, faces, springs, {}, spring_materials}; }
 };
 
 TEST_F(CutTest, ACutShowsBodiesAsSolidInTheLooksOfTheirSprings) {
@@ -50,8 +50,8 @@ TEST_F(CutTest, ACutShowsBodiesAsSolidInTheLooksOfTheirSprings) {
   const Cube cube;
   renderer.set_bodies(std::array{cube.body()});
   Scene scene = plain();
-  const std::array looks{Look{.color = {200, 40, 40}}, Look{.color = {40, 200, 40}}};
-  scene.looks = looks;
+  const std::array materials{RenderMaterial{.color = {200, 40, 40}}, RenderMaterial{.color = {40, 200, 40}}};
+  scene.materials = materials;
   const auto is_green = [](const Vector3i& color) { return 2 * color.y() > 3 * color.x(); };
   const auto is_red = [](const Vector3i& color) { return 2 * color.x() > 3 * color.y(); };
   const Image whole = drawn(renderer, scene);

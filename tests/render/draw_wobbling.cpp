@@ -77,9 +77,9 @@ int main(int argc, char** argv) {
     if (i == 1) begin = seconds();
     scene.time = number("time") + i / 30.0;
     const std::vector<float> positions = group.positions(scene.time);
-    const std::vector<Look> looks = wobbling_looks(scene.time);
+    const std::vector<RenderMaterial> materials = wobbling_materials(scene.time);
     scene.positions = positions;
-    scene.looks = looks;
+    scene.materials = materials;
     std::vector<float> values;
     if (!settings["map"].empty()) {
       for (std::size_t m = 0; m < positions.size() / 3; ++m) values.push_back(positions[3 * m]);

@@ -64,10 +64,10 @@ TEST_P(GoldenTest, PictureLooksAsItDid) {
   const WobblingGroup group = make_wobbling_group(6, 6, 4, 0.9f);
   renderer.set_bodies(group.views());
   const std::vector<float> positions = group.positions(1.7);
-  const std::vector<Look> looks = wobbling_looks(1.7);
+  const std::vector<RenderMaterial> materials = wobbling_materials(1.7);
   Scene scene;
   scene.positions = positions;
-  scene.looks = looks;
+  scene.materials = materials;
   scene.placements = group.placements;
   scene.surroundings = c.surroundings;
   scene.theme = c.theme;

@@ -79,12 +79,12 @@ TEST_F(PlacementTest, TheNearerBodyHidesTheFartherInEitherOrder) {
   Renderer renderer = make_renderer();
   const Mesh near = triangle(-0.5f), far = triangle(0.5f);
   const std::array<std::uint32_t, 1> first{0}, second{1};
-  const std::array looks{Look{rgb(0xd01010)}, Look{rgb(0x1010d0)}};
+  const std::array materials{RenderMaterial{rgb(0xd01010)}, RenderMaterial{rgb(0x1010d0)}};
   Scene scene = plain();
-  scene.looks = looks;
+  scene.materials = materials;
   Body a = near.body(), b = far.body();
-  a.face_looks = first;
-  b.face_looks = second;
+  a.face_materials = first;
+  b.face_materials = second;
   renderer.set_bodies(std::array{a, b});
   const Eigen::Vector3i near_color = pixel(drawn(renderer, scene), 80, 60);
   renderer.set_bodies(std::array{b, a});

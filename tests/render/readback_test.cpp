@@ -15,10 +15,10 @@ class ReadbackTest : public Offscreen {
   // Something with all kinds of colours, other on every frame.
   void draw(Renderer& renderer, double time) {
     if (renderer.body_count() == 0) renderer.set_bodies(group_.views());
-    const std::vector<Look> looks = wobbling_looks(time);
+    const std::vector<RenderMaterial> materials = wobbling_materials(time);
     const std::vector<float> positions = group_.positions(time);
     Scene scene;
-    scene.looks = looks;
+    scene.materials = materials;
     scene.positions = positions;
     scene.placements = group_.placements;
     scene.floor = -0.6f;

@@ -73,7 +73,7 @@ class Builder {
           if (grid_.at(x, y, z)) add_voxel(x, y, z);
     for (const auto& [ends, kind] : springs_) {
       body_.springs.insert(body_.springs.end(), {ends.first, ends.second});
-      body_.spring_looks.push_back(std::uint32_t(kind - 1));
+      body_.spring_materials.push_back(std::uint32_t(kind - 1));
     }
     return std::move(body_);
   }
@@ -97,7 +97,7 @@ class Builder {
       const auto& c = side_corners[s];
       const auto at = [&](std::size_t i) { return corner[std::size_t(c[i])]; };
       body_.faces.insert(body_.faces.end(), {at(0), at(1), at(2), at(0), at(2), at(3)});
-      body_.face_looks.insert(body_.face_looks.end(), 2, std::uint32_t(kind - 1));
+      body_.face_materials.insert(body_.face_materials.end(), 2, std::uint32_t(kind - 1));
     }
   }
 
@@ -164,25 +164,25 @@ WobblingBody make_blob(int splits, std::uint32_t seed) {
   body.faces = faces;
   for (std::size_t i = 0; i < faces.size(); i += 3) {
     const Eigen::Vector3f at = points[faces[i]];
-    body.face_looks.push_back(std::uint32_t(7 * std::floor(3 + 2 * at.x()) + std::floor(3 + 2 * at.z())) % 22);
+    body.face_materials.push_back(std::uint32_t(7 * std::floor(3 + 2 * at.x()) + std::floor(3 + 2 * at.z())) % 22);
     for (std::size_t corner = 0; corner < 3; ++corner)
       if (faces[i + corner] < faces[i + (corner + 1) % 3]) {
         body.springs.insert(body.springs.end(), {faces[i + corner], faces[i + (corner + 1) % 3]});
-        body.spring_looks.push_back(body.face_looks.back());
+        body.spring_materials.push_back(body.face_materials.back());
       }
   }
   return body;
 }
 
-std::vector<Look> wobbling_looks(double time) {
-  std::vector<Look> looks;
+std::vector<RenderMaterial> wobbling_materials(double time) {
+  std::vector<RenderMaterial> materials;
   for (int m = 0; m < 20; ++m) {
     const float speed = float(m / 4), phase = float(m % 4) * quarter;
-    looks.push_back({muscle_color(phase, speed / 4), -std::sin((speed + 1) * float(time) + phase)});
+    materials.push_back({muscle_color(phase, speed / 4), -std::sin((speed + 1) * float(time) + phase)});
   }
-  looks.push_back({tissue_color, 0});
-  looks.push_back({bone_color, 0});
-  return looks;
+  materials.push_back({tissue_color, 0});
+  materials.push_back({bone_color, 0});
+  return materials;
 }
 
 std::vector<Body> WobblingGroup::views() const {

@@ -11,21 +11,21 @@ namespace mercury::render {
 
 struct WobblingBody {
   std::vector<float> rest;
-  std::vector<std::uint32_t> faces, springs, face_looks, spring_looks;
+  std::vector<std::uint32_t> faces, springs, face_materials, spring_materials;
 
-  Body body() const { return {rest, faces, springs, face_looks, spring_looks}; }
+  Body body() const { return {rest, faces, springs, face_materials, spring_materials}; }
   // Masses at a time [s]: stretched and bent by travelling waves, smooth in space.
   std::vector<float> positions(double time, float phase) const;
 };
 
-// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; every voxel one of 22 looks.
+// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; every voxel one of 22 materials.
 WobblingBody make_wobbling_body(int side, std::uint32_t seed);
 
 // A bumpy ball of about half a metre, of triangles alone: an icosahedron, each side split into 4 `splits` times.
 WobblingBody make_blob(int splits, std::uint32_t seed);
 
 // The 22 looks: muscles at their activation, tissue, bone.
-std::vector<Look> wobbling_looks(double time);
+std::vector<RenderMaterial> wobbling_materials(double time);
 
 // `count` bodies and where they stand: in rows that fill a picture of that aspect.
 struct WobblingGroup {

@@ -22,13 +22,13 @@ void Thumbnails::draw(const std::string& name, const Robot& robot, render::Theme
   const BodyShape shape(robot, 0);
   const render::Body body = shape.body();
   renderer_->set_bodies(std::span(&body, 1));
-  std::vector<render::Look> looks;
+  std::vector<render::RenderMaterial> materials;
   for (const render::Color color : material_colors(materials_of(robot), robot.materials.empty()))
-    looks.push_back({.color = color});
+    materials.push_back({.color = color});
   const Generator* generator = generator_of(robot);
   const render::Placement placement{.smooth = generator && generator->smooth};
   render::Scene scene{.placements = std::span(&placement, 1),
-                      .looks = looks,
+                      .materials = materials,
                       .surroundings = render::Surroundings::none,
                       .theme = theme};
   render::Orbit orbit{.azimuth = -1.0f, .elevation = 0.5f};

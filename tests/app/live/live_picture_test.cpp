@@ -48,7 +48,7 @@ TEST(LivePicture, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
   const render::Scene& drawn = scene.picture().scene();
   // From the muscle law: +1 where the muscle is shortest.
   const auto activation = [&](std::size_t robot, MaterialId id) {
-    return drawn.looks[drawn.placements[robot].first_look + id].activation;
+    return drawn.materials[drawn.placements[robot].first_material + id].activation;
   };
   const auto expected = [&](const Material& material) {
     return -std::sin(static_cast<double>(material.frequency) * scene.snapshot().time +
@@ -61,15 +61,15 @@ TEST(LivePicture, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
     for (const MaterialId id : {MaterialId{1}, MaterialId{6}, MaterialId{20}})
       EXPECT_NEAR(activation(robot, id), expected(scene.materials(ids[robot])[id]), 1e-5)
           << robot << ", material " << int{id};
-  EXPECT_EQ(drawn.placements[7].first_look, drawn.placements[110].first_look) << "equal tables are stored once";
-  EXPECT_EQ(drawn.placements[0].first_look, drawn.placements[119].first_look);
-  const auto looks = drawn.looks.size();
+  EXPECT_EQ(drawn.placements[7].first_material, drawn.placements[110].first_material) << "equal tables are stored once";
+  EXPECT_EQ(drawn.placements[0].first_material, drawn.placements[119].first_material);
+  const auto materials = drawn.materials.size();
   for (int i = 0; i < 50; ++i) {
     scene.scale_materials({ids[7]},
                           {.stiffness = 1 + 0.01f * static_cast<float>(i), .phase = 0.01f * static_cast<float>(i)});
     scene.wait_until_done();
   }
-  EXPECT_LE(drawn.looks.size(), looks + 2 * 254) << "the tables of a slider's old values are dropped";
+  EXPECT_LE(drawn.materials.size(), materials + 2 * 254) << "the tables of a slider's old values are dropped";
   scene.reset_materials(ids);
   scene.wait_until_done();
   for (const std::size_t robot : {7u, 60u, 110u})

@@ -51,13 +51,13 @@ TEST(MaterialColors, MusclesDiffer) {
 // A spring is shortest where sin(omega t + phi) = -1, that is contracted by 1.
 TEST(Activation, IsOneWhereTheMuscleIsShortest) {
   const std::vector<Material> materials{{}, {50, 0.14f, 2, 0}, {50, 0.07f, 2, 0}, {100, 0, 0, 0}};
-  std::vector<render::Look> looks(materials.size());
-  set_activations(materials, 1.5 * M_PI / 2, looks);
-  EXPECT_NEAR(looks[1].activation, 1, 1e-6);
-  EXPECT_NEAR(looks[2].activation, 0.5, 1e-6);
-  EXPECT_EQ(looks[3].activation, 0);
-  set_activations(materials, 0.5 * M_PI / 2, looks);
-  EXPECT_NEAR(looks[1].activation, -1, 1e-6);
+  std::vector<render::RenderMaterial> drawn(materials.size());
+  set_activations(materials, 1.5 * M_PI / 2, drawn);
+  EXPECT_NEAR(drawn[1].activation, 1, 1e-6);
+  EXPECT_NEAR(drawn[2].activation, 0.5, 1e-6);
+  EXPECT_EQ(drawn[3].activation, 0);
+  set_activations(materials, 0.5 * M_PI / 2, drawn);
+  EXPECT_NEAR(drawn[1].activation, -1, 1e-6);
 }
 
 TEST(BodyShape, HoldsTheRobotsArrays) {
@@ -67,9 +67,9 @@ TEST(BodyShape, HoldsTheRobotsArrays) {
   EXPECT_EQ(body.rest_positions.size(), 3 * robot.masses.size());
   EXPECT_EQ(body.faces.size(), 3 * robot.faces.size());
   EXPECT_EQ(body.springs.size(), 2 * robot.springs.size());
-  EXPECT_EQ(body.face_looks.size(), robot.faces.size());
+  EXPECT_EQ(body.face_materials.size(), robot.faces.size());
   for (std::size_t i = 0; i < robot.springs.size(); ++i)
-    EXPECT_EQ(body.spring_looks[i], 100u + robot.springs[i].material);
+    EXPECT_EQ(body.spring_materials[i], 100u + robot.springs[i].material);
 }
 
 }  // namespace
