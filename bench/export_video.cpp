@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast a group is filmed, and what limits: bench_export_video [name=value ...].
+// How fast a video of a group is made, and which part limits it: bench_export_video [name=value ...].
 // Names: robots width height frames device quality gl
 //        output (.mp4, .webm) crf ffmpeg json (0, 1)
 //
-// The film is made three times: simulated and drawn without encoding, with positions on the card and through the host;
-// encoded alone, from pictures kept in memory; and all together.
+// Measures each part alone and then the whole: simulating and drawing without encoding, with positions on the GPU and
+// through the host; encoding pictures that are kept in memory; and the whole export.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "app/video/studio.h"
+#include "app/video/video_pipeline.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
@@ -44,7 +44,7 @@ Options options_of(int argc, char** argv) {
   return options;
 }
 
-// Keeps some pictures and throws the others away.
+// Keeps some pictures and discards the others.
 class Kept final : public FrameWriter {
  public:
   void write(const render::Image& frame) override {
@@ -58,11 +58,11 @@ class Kept final : public FrameWriter {
   std::size_t count_ = 0;
 };
 
-struct Film {
+struct Video {
   std::vector<Robot> robots;
   Configuration configuration;
-  FilmTiming timing;
-  VideoSettings video;
+  VideoTiming timing;
+  VideoSettings settings;
 };
 
 struct Made {
@@ -70,56 +70,57 @@ struct Made {
   bool on_card = false;
 };
 
-Made make(const Film& film, Stage& stage, FrameWriter& writer, bool interop) {
+Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer, bool interop) {
   ViewSettings view;
   view.interop = interop;
-  Studio studio(stage, Simulation(film.configuration, film.robots), view);
-  const FilmResult result = studio.film(writer, render::PixelFormat::yuv420, film.timing, true);
-  return {static_cast<double>(result.frames) / result.wall_seconds, studio.positions_on_card()};
+  VideoPipeline pipeline(offscreen, Simulation(video.configuration, video.robots), view);
+  const VideoResult result = pipeline.run(writer, render::PixelFormat::yuv420, video.timing, true);
+  return {static_cast<double>(result.frames) / result.wall_seconds, pipeline.positions_on_card()};
 }
 
-double encode(const Film& film, const std::string& output, const std::vector<render::Image>& frames) {
-  const auto writer = open_frame_writer(output, film.video);
+double encode(const Video& video, const std::string& output, const std::vector<render::Image>& frames) {
+  const auto writer = open_frame_writer(output, video.settings);
   const double begin = now();
-  // There and back again, so that consecutive pictures are as alike as in the film.
+  // Forwards and then backwards, so that consecutive pictures differ as little as in a real video.
   const std::size_t count = frames.size();
-  for (std::int64_t i = 0; i < film.timing.frames; ++i) {
+  for (std::int64_t i = 0; i < video.timing.frames; ++i) {
     const std::size_t k = static_cast<std::size_t>(i) % (2 * count);
     writer->write(frames[k < count ? k : 2 * count - 1 - k]);
   }
   writer->finish();
-  return static_cast<double>(film.timing.frames) / (now() - begin);
+  return static_cast<double>(video.timing.frames) / (now() - begin);
 }
 
 int measure(const Options& options) {
   const auto number = [&](const char* name) { return std::atoi(options.at(name).c_str()); };
-  Film film{.robots = random_voxel_robots({}, 1, static_cast<std::size_t>(number("robots"))),
-            .timing = {.frames = number("frames"), .interval = 1.0 / 30, .pace = 1.0 / 30},
-            .video = {.size = {number("width"), number("height")},
-                      .expected_frames = number("frames"),
-                      .crf = number("crf"),
-                      .ffmpeg = options.at("ffmpeg")}};
-  film.configuration.device = device_named(options.at("device"));
-  const int device = film.configuration.device.kind == DeviceKind::cpu ? -1 : film.configuration.device.index;
-  Stage stage = make_stage(render::context_kind_named(options.at("gl")), film.video.size,
-                           render::quality_named(options.at("quality")), device);
+  Video video{.robots = random_voxel_robots({}, 1, static_cast<std::size_t>(number("robots"))),
+              .timing = {.frames = number("frames"), .interval = 1.0 / 30, .pace = 1.0 / 30},
+              .settings = {.size = {number("width"), number("height")},
+                           .expected_frames = number("frames"),
+                           .crf = number("crf"),
+                           .ffmpeg = options.at("ffmpeg")}};
+  video.configuration.device = device_named(options.at("device"));
+  const int device = video.configuration.device.kind == DeviceKind::cpu ? -1 : video.configuration.device.index;
+  OffscreenRenderer offscreen =
+      make_offscreen_renderer(render::context_kind_named(options.at("gl")), video.settings.size,
+                              render::quality_named(options.at("quality")), device);
   Kept kept;
   {
-    Film warm_up = film;
+    Video warm_up = video;
     warm_up.timing.frames = 10;
-    make(warm_up, stage, kept, true);
+    make(warm_up, offscreen, kept, true);
     kept.frames.clear();
   }
-  const Made drawn = make(film, stage, kept, true);
+  const Made drawn = make(video, offscreen, kept, true);
   Kept again;
-  const Made through_host = make(film, stage, again, false);
+  const Made through_host = make(video, offscreen, again, false);
   const std::string& output = options.at("output");
-  const double encoded = encode(film, output, kept.frames);
-  const auto writer = open_frame_writer(output, film.video);
+  const double encoded = encode(video, output, kept.frames);
+  const auto writer = open_frame_writer(output, video.settings);
   const double begin = now();
-  make(film, stage, *writer, true);
+  make(video, offscreen, *writer, true);
   writer->finish();
-  const double whole = static_cast<double>(film.timing.frames) / (now() - begin);
+  const double whole = static_cast<double>(video.timing.frames) / (now() - begin);
   const auto bytes = static_cast<double>(std::filesystem::file_size(output));
   const char* limit = encoded < drawn.rate ? "the encoder" : "drawing and simulating";
   const char* format =
@@ -132,9 +133,9 @@ int measure(const Options& options) {
                        "  ... through the host %8.1f frames/s\n"
                        "  encoded alone        %8.1f frames/s\n"
                        "  the whole export     %8.1f frames/s, limited by %s; %.2f MB\n";
-  std::printf(format, Simulation(film.configuration, film.robots).device_name().c_str(),
-              stage.context->describe().c_str(), std::string(name_of(stage.renderer.quality())).c_str(),
-              writer->description().c_str(), number("robots"), film.video.size.width, film.video.size.height,
+  std::printf(format, Simulation(video.configuration, video.robots).device_name().c_str(),
+              offscreen.context->describe().c_str(), std::string(name_of(offscreen.renderer.quality())).c_str(),
+              writer->description().c_str(), number("robots"), video.settings.size.width, video.settings.size.height,
               drawn.rate, drawn.on_card ? 1 : 0, through_host.rate, encoded, whole, limit, bytes * 1e-6);
   return 0;
 }

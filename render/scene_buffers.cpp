@@ -35,7 +35,7 @@ std::vector<PlacementRecord> placement_records(std::span<const Placement> placem
 
 std::vector<Vector4f> material_records(std::span<const RenderMaterial> materials) {
   std::vector<Vector4f> records;
-  for (const Look& look : materials) {
+  for (const RenderMaterial& material : materials) {
     const auto linear = linear_of(material.color);
     records.push_back({linear[0], linear[1], linear[2], material.activation});
   }

@@ -12,7 +12,7 @@
 #include "app/options/video_options.h"
 #include "app/options/view_options.h"
 #include "app/recording/trajectory_playback.h"
-#include "app/video/studio.h"
+#include "app/video/video_pipeline.h"
 
 namespace mercury {
 namespace {
@@ -77,7 +77,7 @@ Task task_of(const RenderOptions& options) {
 }
 
 void report_result(const RenderOptions& options, const std::string& output, const Task& task,
-                   const FilmResult& result) {
+                   const VideoResult& result) {
   if (options.quiet) return;
   const double rate = static_cast<double>(result.frames) / result.wall_seconds;
   if (options.video.single_picture())
@@ -87,22 +87,23 @@ void report_result(const RenderOptions& options, const std::string& output, cons
                     static_cast<double>(result.frames) * task.plan.timing.pace, result.wall_seconds, rate));
 }
 
-// One film into a writer. Returns whether the user let it come to its end.
-bool make(const RenderOptions& options, const Task& task, Stage& stage, Simulation simulation, FrameWriter& writer,
-          const std::string& name, bool first) {
-  Studio studio(stage, std::move(simulation), task.view);
+// Makes one video. Returns false when the user interrupted it.
+bool make(const RenderOptions& options, const Task& task, OffscreenRenderer& offscreen, Simulation simulation,
+          FrameWriter& writer, const std::string& name, bool first) {
+  VideoPipeline pipeline(offscreen, std::move(simulation), task.view);
   if (first && !options.quiet) {
-    const std::size_t count = studio.simulation().size();
+    const std::size_t count = pipeline.simulation().size();
     say(fmt::format("{} {} {} ({}) on {}", task.subject.recording ? "playing" : "simulating", count,
                     count == 1 ? "robot" : "robots", name_of(task.subject.configuration.environment),
-                    studio.simulation().device_name()));
-    say(fmt::format("drawing with {}, {} quality{}", stage.context->describe(), name_of(stage.renderer.quality()),
-                    studio.positions_on_card() ? ", positions stay on the card" : ""));
-    if (!studio.bridge_note().empty()) say(studio.bridge_note());
+                    pipeline.simulation().device_name()));
+    say(fmt::format("drawing with {}, {} quality{}", offscreen.context->describe(),
+                    name_of(offscreen.renderer.quality()),
+                    pipeline.positions_on_card() ? ", positions stay on the card" : ""));
+    if (!pipeline.bridge_note().empty()) say(pipeline.bridge_note());
     say(fmt::format("encoding {}", writer.description()));
   }
-  for (const std::string& note : studio.simulation().notes()) say(note);
-  const FilmResult result = studio.film(writer, task.plan.pixels, task.plan.timing, options.quiet);
+  for (const std::string& note : pipeline.simulation().notes()) say(note);
+  const VideoResult result = pipeline.run(writer, task.plan.pixels, task.plan.timing, options.quiet);
   if (result.frames == 0) throw VideoError("stopped before the first frame; nothing was kept");
   writer.finish();
   report_result(options, options.video.output_of(name), task, result);
@@ -136,13 +137,14 @@ int render_robots(const RenderOptions& options) {
   // Open the writer first: a missing encoder or an invalid file name is then reported before the slow start of OpenGL.
   std::unique_ptr<FrameWriter> writer = options.video.open(task.plan, names[0]);
   const Device& device = task.subject.configuration.device;
-  Stage stage = make_stage(options.video.context_kind(), task.plan.size, options.video.quality(),
-                           device.kind == DeviceKind::cpu ? -1 : device.index);
+  OffscreenRenderer offscreen =
+      make_offscreen_renderer(options.video.context_kind(), task.plan.size, options.video.quality(),
+                              device.kind == DeviceKind::cpu ? -1 : device.index);
   bool done = true;
   for (std::size_t i = 0; i < names.size() && done; ++i) {
     if (!writer) writer = options.video.open(task.plan, names[i]);
     Simulation simulation = simulation_of(task.subject, each ? robots.subspan(i, 1) : robots);
-    done = make(options, task, stage, std::move(simulation), *writer, names[i], i == 0);
+    done = make(options, task, offscreen, std::move(simulation), *writer, names[i], i == 0);
     writer.reset();
   }
   if (!done) say("stopped early; the video ends there");

@@ -7,13 +7,13 @@
 #include <mutex>
 #include <thread>
 
-#include "app/video/studio.h"
+#include "app/video/video_pipeline.h"
 #include "mercury/error.h"
 
 namespace mercury {
 namespace {
 
-FilmTiming timing_of(const GroupVideoOptions& options) {
+VideoTiming timing_of(const GroupVideoOptions& options) {
   const double interval = options.speed / options.frames_per_second;
   if (!(std::isfinite(options.seconds) && options.seconds > 0))
     throw InputError("seconds", "give a finite number above 0");
@@ -47,7 +47,7 @@ struct GroupVideo::Parts {
   Configuration configuration;
   ViewSettings view;
   GroupVideoOptions options;
-  FilmControl control;
+  VideoControl control;
   mutable std::mutex mutex;
   VideoStatus status;
   std::thread thread;
@@ -70,7 +70,7 @@ struct GroupVideo::Parts {
   bool write() {
     const VideoKind kind = video_kind_of(options.output);
     const PictureSize size = encoded_size(kind, options.size);
-    const FilmTiming timing = timing_of(options);
+    const VideoTiming timing = timing_of(options);
     {
       const std::lock_guard lock(mutex);
       status.total = timing.frames;
@@ -81,9 +81,9 @@ struct GroupVideo::Parts {
         {.size = size, .frames_per_second = options.frames_per_second, .expected_frames = timing.frames});
     view.speed = options.speed;
     Simulation simulation = simulation_of(robots, configuration);
-    Stage stage = make_stage(options.context, size, options.quality);
-    Studio studio(stage, std::move(simulation), view);
-    const FilmResult result = studio.film(*writer, pixel_format_of(kind), timing, true, &control);
+    OffscreenRenderer offscreen = make_offscreen_renderer(options.context, size, options.quality);
+    VideoPipeline pipeline(offscreen, std::move(simulation), view);
+    const VideoResult result = pipeline.run(*writer, pixel_format_of(kind), timing, true, &control);
     if (control.stop || result.interrupted) return false;
     set_state(VideoStatus::State::finishing);
     writer->finish();

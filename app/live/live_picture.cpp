@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "app/live/slow_motion.h"
-#include "app/scene/cameraman.h"
+#include "app/scene/camera_controller.h"
 
 namespace mercury {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/scene/group_layout.h"
-#include "app/video/film.h"
 #include "app/video/frame_writer.h"
+#include "app/video/video_stages.h"
 #include "render/context.h"
 #include "render/renderer.h"
 
@@ -26,7 +26,7 @@ class VideoOptions {
   struct Plan {
     PictureSize size;  // of a frame
     render::PixelFormat pixels = render::PixelFormat::rgb;
-    FilmTiming timing;
+    VideoTiming timing;
   };
   Plan plan(double seconds) const;
   // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several moments side by side in one picture.
+// Several frames side by side in one picture.
 #pragma once
 
 #include "app/scene/group_layout.h"
@@ -7,12 +7,12 @@
 
 namespace mercury {
 
-// A still is a sheet of one. Frames come as rgb, are laid out row by row, and written as one PNG by finish(); places
-// for frames that never came stay empty.
+// A still picture is a sheet of one. Takes rgb frames and lays them out row by row; finish() writes them as one PNG.
+// Cells without a frame stay empty.
 class ContactSheet final : public FrameWriter {
  public:
   // `frame`: size of each frame; `gap` between them [pixels]. Throws InputError for a name that is not *.png, or a
-  // sheet of more than 32768 pixels a side.
+  // sheet wider or higher than 32768 pixels.
   ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap);
   void write(const render::Image& frame) override;
   void finish() override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions from CUDA's memory into OpenGL's, on the card that both use.
+// Copies positions from CUDA's memory into OpenGL's, on the GPU that both use.
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
 #include <cuda_gl_interop.h>
@@ -45,14 +45,14 @@ class Mark {
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
   void set(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "recording an event"); }
-  // What is put into the stream from now on waits for the mark; one never set holds nothing up.
-  void hold(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "waiting for an event"); }
+  // Later work in this stream waits for the mark; a mark that was never set blocks nothing.
+  void block(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "waiting for an event"); }
 
  private:
   cudaEvent_t event_ = nullptr;
 };
 
-// A stream that does not wait for the simulation's.
+// A stream that runs beside the simulation's.
 class Stream {
  public:
   Stream() {
@@ -85,7 +85,7 @@ class SharedBuffer {
   SharedBuffer(const SharedBuffer&) = delete;
   SharedBuffer& operator=(const SharedBuffer&) = delete;
 
-  // Fills its beginning. OpenGL's calls before and after this one see it before and after.
+  // Overwrites its beginning, in order with the OpenGL calls around this one.
   void fill(const DeviceFloats& values, cudaStream_t stream) {
     check(cudaGraphicsMapResources(1, &resource_, stream), "taking OpenGL's buffer");
     void* memory = nullptr;
@@ -102,15 +102,15 @@ class SharedBuffer {
   cudaGraphicsResource_t resource_ = nullptr;
 };
 
-// Memory of one snapshot.
+// Device memory of one snapshot.
 struct Store {
   explicit Store(std::size_t masses) : positions(3 * masses) {}
   DeviceFloats positions;
-  Mark taken, shown;  // it is full; it has been copied on
+  Mark taken, shown;  // the snapshot is complete; it has been copied to OpenGL
 };
 
-// Stores that are done with, for the next snapshots.
-class Shelf {
+// Memory of finished snapshots; the next ones use it again.
+class Pool {
  public:
   std::unique_ptr<Store> take(std::size_t masses) {
     const std::lock_guard lock(mutex_);
@@ -133,19 +133,19 @@ class Shelf {
 
 class CudaSnapshot final : public PositionSnapshot {
  public:
-  CudaSnapshot(std::shared_ptr<Shelf> shelf, const Simulation& simulation)
-      : shelf_(std::move(shelf)), store_(shelf_->take(simulation.mass_count())) {
-    // The simulation's kernels run in this stream: the copy comes after the steps before and before those after.
-    store_->shown.hold(cudaStreamLegacy);
+  CudaSnapshot(std::shared_ptr<Pool> pool, const Simulation& simulation)
+      : pool_(std::move(pool)), store_(pool_->take(simulation.mass_count())) {
+    // The simulation's kernels run in the same stream, so the copy lies between the earlier and the later steps.
+    store_->shown.block(cudaStreamLegacy);
     simulation.copy_positions(store_->positions.data());
     store_->taken.set(cudaStreamLegacy);
   }
-  ~CudaSnapshot() override { shelf_->put(std::move(store_)); }
+  ~CudaSnapshot() override { pool_->put(std::move(store_)); }
 
   Store& store() const { return *store_; }
 
  private:
-  std::shared_ptr<Shelf> shelf_;
+  std::shared_ptr<Pool> pool_;
   std::unique_ptr<Store> store_;
 };
 
@@ -155,13 +155,13 @@ class CudaBridge final : public PositionBridge {
 
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
     use_device();
-    return std::make_unique<CudaSnapshot>(shelf_, simulation);
+    return std::make_unique<CudaSnapshot>(pool_, simulation);
   }
 
   void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
     use_device();
     Store& store = dynamic_cast<const CudaSnapshot&>(snapshot).store();
-    store.taken.hold(stream_.get());
+    store.taken.block(stream_.get());
     buffer_.fill(store.positions, stream_.get());
     store.shown.set(stream_.get());
     scene.positions = {};
@@ -173,7 +173,7 @@ class CudaBridge final : public PositionBridge {
   int device_;
   Stream stream_;
   SharedBuffer buffer_;
-  std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+  std::shared_ptr<Pool> pool_ = std::make_shared<Pool>();
 };
 
 }  // namespace

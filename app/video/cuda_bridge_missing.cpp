@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for cuda_bridge.cpp in a build without CUDA.
+// Replaces cuda_bridge.cpp in a build without CUDA.
 #include "app/video/position_bridge.h"
 
 namespace mercury {

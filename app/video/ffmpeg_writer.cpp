@@ -16,7 +16,7 @@
 namespace mercury {
 namespace {
 
-// A palette for the whole GIF needs all frames in memory until the last has come; beyond this each frame gets its own.
+// One palette for the whole GIF needs all frames in memory. Above this size, each frame gets a palette of its own.
 constexpr double palette_memory = 1.5e9;  // [bytes]
 
 std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& settings) {
@@ -53,7 +53,7 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
   return arguments;
 }
 
-// Makes the file at once, so that a name that cannot be written is told before anything is computed.
+// Creates the file at once, so that an unusable name is reported before anything is computed.
 void create(const std::string& output, const UnfinishedFile& file) {
   if (std::filesystem::exists(output) && !std::filesystem::is_regular_file(output))
     throw InputError("-o", output + " is not a file that can be replaced");
@@ -83,21 +83,21 @@ std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& s
   arguments.insert(arguments.end(), {"-i", "pipe:0", "-an"});
   const std::vector<std::string> codec = codec_arguments(kind, settings);
   arguments.insert(arguments.end(), codec.begin(), codec.end());
-  // "file:" keeps a colon or a leading dash in the name from meaning something to ffmpeg.
+  // "file:" keeps ffmpeg from interpreting a colon or a leading dash in the name.
   arguments.push_back("file:" + file);
   return arguments;
 }
 
-std::string telling_line(const std::string& messages) {
+std::string failure_line(const std::string& messages) {
   std::string last;
   for (std::size_t start = 0; start < messages.size();) {
     std::size_t end = messages.find_first_of("\r\n", start);
     if (end == std::string::npos) end = messages.size();
     const std::string line = messages.substr(start, end - start);
     start = end + 1;
-    const bool says_nothing = line.find_first_not_of(" \t") == std::string::npos || line == "Conversion failed!" ||
-                              line.find("Last message repeated") != std::string::npos;
-    if (!says_nothing) last = line.substr(line.find_first_not_of(" \t"));
+    const bool is_noise = line.find_first_not_of(" \t") == std::string::npos || line == "Conversion failed!" ||
+                          line.find("Last message repeated") != std::string::npos;
+    if (!is_noise) last = line.substr(line.find_first_not_of(" \t"));
   }
   constexpr std::size_t longest = 300;
   return last.size() > longest ? last.substr(0, longest) + "..." : last;
@@ -139,7 +139,7 @@ void FfmpegWriter::fail(int status) {
   if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) || messages.find("File too large") != std::string::npos)
     throw VideoError(output_ + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept");
   const std::string end = status == 0 ? "wrote nothing" : describe_exit(status);
-  const std::string line = telling_line(messages);
+  const std::string line = failure_line(messages);
   throw VideoError(output_ + ": the encoder " + program_ + " " + end + (line.empty() ? "" : ": " + line));
 }
 

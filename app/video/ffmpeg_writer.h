@@ -10,8 +10,8 @@
 
 namespace mercury {
 
-// H.264 .mp4 (yuv420p, BT.709, index before the data), VP9 .webm, or .gif with a palette made for it. Written under a
-// temporary name beside the target, which finish() renames.
+// H.264 .mp4 (yuv420p, BT.709, index before the data), VP9 .webm, or .gif with a palette of its own. Writes to a
+// temporary name beside the target; finish() renames it.
 class FfmpegWriter final : public FrameWriter {
  public:
   FfmpegWriter(const std::string& output, VideoKind kind, const VideoSettings& settings);
@@ -29,10 +29,10 @@ class FfmpegWriter final : public FrameWriter {
   std::optional<ChildProcess> encoder_;
 };
 
-// The command line that encodes raw frames from standard input into `file`; its program left out.
+// The arguments, without the program, that encode raw frames from standard input into `file`.
 std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& settings, const std::string& file);
 
-// The one line of an encoder's messages that says why it failed, shortened; empty if it said nothing.
-std::string telling_line(const std::string& messages);
+// The line of an encoder's messages that says why it failed, shortened; empty if there is none.
+std::string failure_line(const std::string& messages);
 
 }  // namespace mercury

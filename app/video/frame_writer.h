@@ -20,51 +20,51 @@ struct PictureSize {
 struct VideoSettings {
   PictureSize size;
   double frames_per_second = 30;
-  std::int64_t expected_frames = 0;  // how many will come, as far as is known; 0 = unknown
+  std::int64_t expected_frames = 0;  // 0 = unknown
   int crf = -1;        // constant rate factor of H.264 and VP9, lower is better; -1 = the format's default
   std::string ffmpeg;  // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
 };
 
 enum class VideoKind { mp4, webm, gif, png_folder };
 
-// What the name asks for: .mp4, .webm, .gif, or a folder (a name without extension, or with a slash at its end, or an
-// existing folder). Throws InputError that lists these.
+// By the name: .mp4, .webm, .gif, or a folder (no extension, a slash at the end, or an existing folder). Throws
+// InputError that lists these.
 VideoKind video_kind_of(const std::string& output);
 
-// How the frames of such a video are to be handed in: yuv420 where the encoder wants that, rgb elsewhere.
+// The format of the frames that FrameWriter::write takes: yuv420 if the encoder wants that, else rgb.
 render::PixelFormat pixel_format_of(VideoKind kind);
 
-// The size a video of this kind has when `size` is asked for: both codecs are fed 4:2:0
-// pictures, whose sides are even, so odd ones are rounded up.
+// The size of the video when the user asks for `size`: H.264 and VP9 take 4:2:0 pictures, whose sides are even, so odd
+// sides are rounded up.
 PictureSize encoded_size(VideoKind kind, PictureSize size);
 
-// Something failed after the user's input was found good: the encoder is missing or died, the disk is full.
+// A failure that is not the user's input: the encoder is missing or died, the disk is full.
 class VideoError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Without finish(), its destructor leaves nothing behind: a file of that name stays as it was.
+// Without finish(), the destructor removes everything it wrote; an existing file of that name stays as it was.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
   // One frame of the settings' size, in the format of pixel_format_of. Blocks while the encoder is busy.
   // Throws VideoError.
   virtual void write(const render::Image& frame) = 0;
-  // Ends the video and gives it its name. Throws VideoError.
+  // Completes the video and renames it to its final name. Throws VideoError.
   virtual void finish() = 0;
   // For people: "H.264 by ffmpeg".
   virtual std::string description() const = 0;
 };
 
-// Opens what video_kind_of(output) says. Missing folders on the way are made. Throws InputError when the name or the
-// settings cannot be used, VideoError when the encoder cannot be started.
+// Opens a writer of the kind video_kind_of(output), and makes missing parent folders. Throws InputError when the name
+// or the settings cannot be used, VideoError when the encoder cannot be started.
 std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const VideoSettings& settings);
 
-// Makes the folders on the way to a file. Throws InputError("-o: ...").
+// Makes the parent folders of a file. Throws InputError("-o: ...").
 void make_parent_folder(const std::filesystem::path& output);
 
-// The encoder program that the settings mean.
+// The encoder program: this option, else MERCURY_FFMPEG, else "ffmpeg".
 std::string encoder_program(const std::string& ffmpeg_option);
 
 }  // namespace mercury

@@ -75,7 +75,7 @@ void PngFolder::rethrow() {
   if (error_) std::rethrow_exception(error_);
 }
 
-// Frames are numbered without gaps, so the first that is missing ends the video they belong to.
+// Frames are numbered without gaps: the first missing number ends the earlier video.
 void PngFolder::remove_frames_from(std::int64_t first) const {
   std::error_code error;
   for (std::int64_t number = first; std::filesystem::remove(path_of(number), error); ++number) {

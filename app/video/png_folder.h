@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of PNG pictures, one a frame.
+// A folder with a PNG picture per frame.
 #pragma once
 
 #include <atomic>
@@ -41,7 +41,7 @@ class PngFolder final : public FrameWriter {
   std::int64_t written_ = 0;
   BoundedQueue<Frame> queue_;
   std::mutex mutex_;
-  std::exception_ptr error_;  // the first one, guarded by mutex_
+  std::exception_ptr error_;  // the first one; guarded by mutex_
   std::vector<std::thread> workers_;
 };
 

@@ -6,10 +6,10 @@
 namespace mercury {
 namespace {
 
-static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are handed on as plain floats");
+static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are passed on as plain floats");
 
-// Memory of snapshots that are done with, for the next ones.
-class Shelf {
+// Memory of finished snapshots; the next ones use it again.
+class Pool {
  public:
   std::vector<Vec3> take() {
     const std::lock_guard lock(mutex_);
@@ -30,31 +30,31 @@ class Shelf {
 
 class HostSnapshot final : public PositionSnapshot {
  public:
-  HostSnapshot(std::shared_ptr<Shelf> shelf, const Simulation& simulation)
-      : shelf_(std::move(shelf)), positions_(shelf_->take()) {
+  HostSnapshot(std::shared_ptr<Pool> pool, const Simulation& simulation)
+      : pool_(std::move(pool)), positions_(pool_->take()) {
     positions_.resize(simulation.mass_count());
     simulation.read_positions(positions_);
   }
-  ~HostSnapshot() override { shelf_->put(std::move(positions_)); }
+  ~HostSnapshot() override { pool_->put(std::move(positions_)); }
 
   std::span<const float> floats() const { return {&positions_.data()->x, 3 * positions_.size()}; }
 
  private:
-  std::shared_ptr<Shelf> shelf_;
+  std::shared_ptr<Pool> pool_;
   std::vector<Vec3> positions_;
 };
 
 class HostBridge final : public PositionBridge {
  public:
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
-    return std::make_unique<HostSnapshot>(shelf_, simulation);
+    return std::make_unique<HostSnapshot>(pool_, simulation);
   }
   void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
     scene.positions = dynamic_cast<const HostSnapshot&>(snapshot).floats();
   }
 
  private:
-  std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+  std::shared_ptr<Pool> pool_ = std::make_shared<Pool>();
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "app/base/interrupt.h"
 #include "app/live/live_scene.h"
 #include "app/live/session_settings.h"
-#include "app/scene/cameraman.h"
+#include "app/scene/camera_controller.h"
 #include "app/window/frame_report.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/video_recorder.h"

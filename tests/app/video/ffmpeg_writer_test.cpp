@@ -61,7 +61,7 @@ Image noise(VideoKind kind, PictureSize size, std::uint32_t seed) {
 
 class VideoTest : public FolderTest {
  protected:
-  void film(const std::string& name, const VideoSettings& settings, int frames, Rgb color = {0.5, 0.5, 0.5}) {
+  void write_video(const std::string& name, const VideoSettings& settings, int frames, Rgb color = {0.5, 0.5, 0.5}) {
     const auto writer = open_frame_writer(path(name), settings);
     for (int i = 0; i < frames; ++i) writer->write(plain(video_kind_of(path(name)), settings.size, color));
     writer->finish();
@@ -71,7 +71,7 @@ class VideoTest : public FolderTest {
 constexpr PictureSize small{160, 90};
 
 TEST_F(VideoTest, Mp4IsWhatEveryPlayerOpens) {
-  film("a.mp4", {.size = small, .frames_per_second = 25}, 10);
+  write_video("a.mp4", {.size = small, .frames_per_second = 25}, 10);
   const auto stream = probe(path("a.mp4"));
   EXPECT_EQ(stream["codec_name"], "h264");
   EXPECT_EQ(stream["pix_fmt"], "yuv420p");
@@ -86,7 +86,7 @@ TEST_F(VideoTest, Mp4IsWhatEveryPlayerOpens) {
 
 // ISO 14496-12: a file is a row of boxes, each its size in 4 bytes, most significant first, and its type.
 TEST_F(VideoTest, Mp4HasItsIndexBeforeItsData) {
-  film("a.mp4", {.size = small}, 5);
+  write_video("a.mp4", {.size = small}, 5);
   const std::string file = read("a.mp4");
   std::vector<std::string> boxes;
   for (std::size_t at = 0; at + 8 <= file.size();) {
@@ -105,7 +105,7 @@ TEST_F(VideoTest, Mp4HasItsIndexBeforeItsData) {
 TEST_F(VideoTest, ColoursComeOutAsTheyWentIn) {
   const Rgb color{0.9, 0.3, 0.1};
   for (const char* name : {"a.mp4", "a.webm", "a.gif"}) {
-    film(name, {.size = small, .frames_per_second = 25}, 3, color);
+    write_video(name, {.size = small, .frames_per_second = 25}, 3, color);
     const std::string pixels = output_of("ffmpeg", {"-v", "error", "-i", path(name), "-frames:v", "1", "-vf",
                                                     "crop=2:2:80:40", "-pix_fmt", "rgb24", "-f", "rawvideo", "-"});
     ASSERT_EQ(pixels.size(), 12u) << name;
@@ -116,7 +116,7 @@ TEST_F(VideoTest, ColoursComeOutAsTheyWentIn) {
 }
 
 TEST_F(VideoTest, WebmIsVp9) {
-  film("a.webm", {.size = small}, 6);
+  write_video("a.webm", {.size = small}, 6);
   const auto stream = probe(path("a.webm"));
   EXPECT_EQ(stream["codec_name"], "vp9");
   EXPECT_EQ(stream["nb_read_frames"], "6");
@@ -124,7 +124,7 @@ TEST_F(VideoTest, WebmIsVp9) {
 }
 
 TEST_F(VideoTest, GifKeepsItsSizeAndTime) {
-  film("a.gif", {.size = {121, 67}, .frames_per_second = 25, .expected_frames = 10}, 10);
+  write_video("a.gif", {.size = {121, 67}, .frames_per_second = 25, .expected_frames = 10}, 10);
   const auto stream = probe(path("a.gif"));
   EXPECT_EQ(stream["codec_name"], "gif");
   EXPECT_EQ(stream["width"], 121);
@@ -134,14 +134,14 @@ TEST_F(VideoTest, GifKeepsItsSizeAndTime) {
 
 TEST_F(VideoTest, GifOfManyLargeFramesMakesAPaletteAFrame) {
   const VideoSettings settings{.size = small, .frames_per_second = 25, .expected_frames = 1'000'000};
-  film("a.gif", settings, 3, {1, 0, 0});
+  write_video("a.gif", settings, 3, {1, 0, 0});
   EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "3");
 }
 
 TEST_F(VideoTest, FolderHoldsAPictureAFrame) {
   const VideoSettings settings{.size = {33, 21}};
-  film("frames", settings, 12);
-  film("frames", settings, 5, {1, 0, 0.2});  // the frames of the longer video before are not left beside these
+  write_video("frames", settings, 12);
+  write_video("frames", settings, 5, {1, 0, 0.2});  // the frames of the longer video before are not left beside these
   EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png", "frame-00002.png",
                                                          "frame-00003.png", "frame-00004.png"}));
   const Image picture = render::read_png(path("frames/frame-00004.png"));
@@ -151,8 +151,8 @@ TEST_F(VideoTest, FolderHoldsAPictureAFrame) {
 }
 
 TEST_F(VideoTest, FoldersOnTheWayAreMade) {
-  film("x/y/a.mp4", {.size = small}, 2);
-  film("x/z/", {.size = small}, 2);
+  write_video("x/y/a.mp4", {.size = small}, 2);
+  write_video("x/z/", {.size = small}, 2);
   EXPECT_TRUE(std::filesystem::exists(path("x/y/a.mp4")));
   EXPECT_EQ(listing("x/z").size(), 2u);
 }
@@ -173,12 +173,12 @@ TEST_F(VideoTest, FileOfThatNameStaysUntilTheNewOneIsDone) {
     EXPECT_EQ(read("a.mp4"), "the old one");
   }
   EXPECT_EQ(read("a.mp4"), "the old one");
-  film("a.mp4", {.size = small}, 2);
+  write_video("a.mp4", {.size = small}, 2);
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "2");
 }
 
 TEST_F(VideoTest, NamesWithMeaningToFfmpegAreJustNames) {
-  film("-i a:b %d.mp4", {.size = small}, 2);
+  write_video("-i a:b %d.mp4", {.size = small}, 2);
   EXPECT_EQ(listing(), std::vector<std::string>{"-i a:b %d.mp4"});
 }
 
@@ -246,10 +246,10 @@ TEST_F(FailingVideo, FolderThatCannotBeMadeIsBadInput) {
 }
 
 TEST(TellingLine, IsTheLastThatSaysSomething) {
-  EXPECT_EQ(telling_line("first\nsecond\n    Last message repeated 17 times\nConversion failed!\n"), "second");
-  EXPECT_EQ(telling_line("progress 1\rprogress 2\r"), "progress 2");
-  EXPECT_EQ(telling_line(""), "");
-  EXPECT_EQ(telling_line("\n \n"), "");
+  EXPECT_EQ(failure_line("first\nsecond\n    Last message repeated 17 times\nConversion failed!\n"), "second");
+  EXPECT_EQ(failure_line("progress 1\rprogress 2\r"), "progress 2");
+  EXPECT_EQ(failure_line(""), "");
+  EXPECT_EQ(failure_line("\n \n"), "");
 }
 
 TEST(VideoKind, FollowsFromTheName) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/scene/group_scene.h"
-#include "app/video/studio.h"
+#include "app/video/video_pipeline.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"

@@ -23,10 +23,10 @@ struct PictureFrame {
 // The direction a plan begins with: its angles, or those that suit the mode; target and distance are not set.
 render::Orbit direction_of(const CameraPlan& plan, bool on_ground);
 
-class Cameraman {
+class CameraController {
  public:
   // `names`: of the robots. Throws InputError("--camera: ...") when the plan follows one that is not there.
-  Cameraman(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names);
+  CameraController(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names);
 
   // Once a frame, with the boxes of the robots and the time since the last frame [s of video]. Boxes that are empty are
   // left out. The first call begins without a lag.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/scene/cameraman.h"
+#include "app/scene/camera_controller.h"
 
 #include <fmt/format.h>
 
@@ -77,12 +77,13 @@ render::Orbit direction_of(const CameraPlan& plan, bool on_ground) {
   return orbit;
 }
 
-Cameraman::Cameraman(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names)
+CameraController::CameraController(const CameraPlan& plan, const PictureFrame& picture,
+                                   std::span<const std::string> names)
     : plan_(plan), picture_(picture), orbit_(direction_of(plan, picture.on_ground)) {
   if (!plan.robot.empty()) robot_ = robot_named(plan.robot, names);
 }
 
-render::Camera Cameraman::at(std::span<const render::Bounds> robots, double dt) {
+render::Camera CameraController::at(std::span<const render::Bounds> robots, double dt) {
   switch (plan_.mode) {
     case CameraMode::group:
     case CameraMode::top:
@@ -105,7 +106,7 @@ render::Camera Cameraman::at(std::span<const render::Bounds> robots, double dt) 
   return orbit_.camera();
 }
 
-void Cameraman::keep_in_view(std::span<const render::Bounds> robots, double dt) {
+void CameraController::keep_in_view(std::span<const render::Bounds> robots, double dt) {
   constexpr float least_margin = 1.02f;  // what the lag may leave
   render::Orbit wanted = orbit_;
   wanted.frame(robots, picture_.aspect, margin / plan_.zoom, picture_.free);
@@ -116,7 +117,7 @@ void Cameraman::keep_in_view(std::span<const render::Bounds> robots, double dt) 
     orbit_.distance = std::max(orbit_.distance, least_margin * least_distance(robots, orbit_, picture_.aspect));
 }
 
-void Cameraman::go_along(std::span<const render::Bounds> robots, double dt) {
+void CameraController::go_along(std::span<const render::Bounds> robots, double dt) {
   const auto followed = robot_ ? robots.subspan(*robot_, 1) : robots;
   const render::Bounds box = all_of(followed);
   if (box.empty()) return;  // it has exploded: the camera stays
@@ -132,7 +133,7 @@ void Cameraman::go_along(std::span<const render::Bounds> robots, double dt) {
   render::follow(orbit_, middle, started_ ? dt : INFINITY, lag);
 }
 
-void Cameraman::circle(std::span<const render::Bounds> robots, double dt) {
+void CameraController::circle(std::span<const render::Bounds> robots, double dt) {
   const render::Bounds box = all_of(robots);
   if (box.empty()) return;
   // A sphere looks the same from all sides, so that nothing pulses while the camera turns.

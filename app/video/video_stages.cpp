@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/video/film.h"
+#include "app/video/video_stages.h"
 
 #include <chrono>
 #include <cmath>
@@ -15,11 +15,11 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t waiting_moments = 4;   // simulated, not yet drawn
-constexpr std::size_t waiting_pictures = 6;  // drawn, not yet encoded
+constexpr std::size_t waiting_snapshots = 4;  // simulated, not yet drawn
+constexpr std::size_t waiting_pictures = 6;   // drawn, not yet encoded
 
-// The group at one moment, ready to be drawn.
-struct Moment {
+// What one frame shows.
+struct FrameSnapshot {
   double time;
   std::unique_ptr<PositionSnapshot> positions;
   std::vector<Telemetry> telemetry;
@@ -42,18 +42,18 @@ class FirstError {
   std::exception_ptr error_;
 };
 
-class Production {
+class VideoStages {
  public:
-  Production(const FilmSet& set, const FilmTiming& timing, bool quiet, FilmControl& control)
-      : set_(set), timing_(timing), quiet_(quiet), control_(control) {}
+  VideoStages(const VideoParts& parts, const VideoTiming& timing, bool quiet, VideoControl& control)
+      : parts_(parts), timing_(timing), quiet_(quiet), control_(control) {}
 
-  FilmResult run() {
+  VideoResult run() {
     const auto start = std::chrono::steady_clock::now();
     std::thread simulating([this] { guarded([this] { simulate(); }); });
     std::thread encoding([this] { guarded([this] { encode(); }); });
     guarded([this] { draw(); });
     pictures_.close();
-    moments_.abandon();
+    snapshots_.abandon();
     simulating.join();
     encoding.join();
     error_.rethrow();
@@ -63,54 +63,54 @@ class Production {
   }
 
  private:
-  // Where one stage fails, the others stop.
+  // Runs a stage; if it throws, ends the others.
   template <class Stage>
   void guarded(Stage stage) {
     try {
       stage();
     } catch (...) {
       error_.keep(std::current_exception());
-      moments_.abandon();
+      snapshots_.abandon();
       pictures_.abandon();
       spare_.abandon();
     }
   }
 
   void simulate() {
-    Stepper stepper(set_.simulation);
-    const std::int64_t first = set_.simulation.steps();
-    const double dt = set_.simulation.configuration().dt;
+    Stepper stepper(parts_.simulation);
+    const std::int64_t first = parts_.simulation.steps();
+    const double dt = parts_.simulation.configuration().dt;
     for (std::int64_t frame = 0; frame < timing_.frames; ++frame) {
       if (control_.stop || !stepper.advance_to(first + step_of_frame(frame, timing_, dt))) {
         interrupted_ = true;
         break;
       }
-      std::vector<Telemetry> telemetry = set_.simulation.telemetry();
-      SceneDetails details = set_.details.observe(telemetry);
-      if (!moments_.push(
-              {set_.simulation.time(), set_.bridge.take(set_.simulation), std::move(telemetry), std::move(details)}))
+      std::vector<Telemetry> telemetry = parts_.simulation.telemetry();
+      SceneDetails details = parts_.details.observe(telemetry);
+      if (!snapshots_.push({parts_.simulation.time(), parts_.bridge.take(parts_.simulation), std::move(telemetry),
+                            std::move(details)}))
         return;
     }
-    moments_.close();
+    snapshots_.close();
   }
 
   void draw() {
-    render::Readback readback(set_.pixels, set_.renderer.width(), set_.renderer.height());
+    render::Readback readback(parts_.pixels, parts_.renderer.width(), parts_.renderer.height());
     for (std::size_t i = 0; i < waiting_pictures + 2; ++i) spare_.push({});
-    while (auto moment = moments_.pop()) {
-      set_.scene.update(moment->time, moment->telemetry, std::move(moment->details));
-      set_.bridge.show(*moment->positions, set_.renderer, set_.scene.scene());
-      const render::Camera camera = set_.camera.at(set_.scene.bounds(), timing_.pace);
-      set_.renderer.draw(set_.scene.scene(), camera);
-      if (readback.full() && !hand_on(readback)) return;
-      readback.start(set_.renderer);
+    while (auto snapshot = snapshots_.pop()) {
+      parts_.scene.update(snapshot->time, snapshot->telemetry, std::move(snapshot->details));
+      parts_.bridge.show(*snapshot->positions, parts_.renderer, parts_.scene.scene());
+      const render::Camera camera = parts_.camera.at(parts_.scene.bounds(), timing_.pace);
+      parts_.renderer.draw(parts_.scene.scene(), camera);
+      if (readback.full() && !pass_on(readback)) return;
+      readback.start(parts_.renderer);
     }
     while (readback.pending() > 0)
-      if (!hand_on(readback)) return;
+      if (!pass_on(readback)) return;
   }
 
-  // The oldest picture under way to the encoder. False when that has failed.
-  bool hand_on(render::Readback& readback) {
+  // Passes the oldest picture that is being read back to the encoder. False when the encoder has failed.
+  bool pass_on(render::Readback& readback) {
     std::optional<render::Image> picture = spare_.pop();
     if (!picture) return false;
     readback.finish(*picture);
@@ -120,33 +120,33 @@ class Production {
   void encode() {
     Progress progress("rendering", "frames", timing_.frames, quiet_);
     while (auto picture = pictures_.pop()) {
-      set_.writer.write(*picture);
+      parts_.writer.write(*picture);
       progress.update(control_.frames = ++result_.frames);
       spare_.push(std::move(*picture));
     }
   }
 
-  const FilmSet& set_;
-  const FilmTiming& timing_;
+  const VideoParts& parts_;
+  const VideoTiming& timing_;
   const bool quiet_;
-  FilmControl& control_;
-  BoundedQueue<Moment> moments_{waiting_moments};
+  VideoControl& control_;
+  BoundedQueue<FrameSnapshot> snapshots_{waiting_snapshots};
   BoundedQueue<render::Image> pictures_{waiting_pictures};
-  BoundedQueue<render::Image> spare_{waiting_pictures + 2};  // pictures whose memory is free to be used again
+  BoundedQueue<render::Image> spare_{waiting_pictures + 2};  // written; their memory is used again
   FirstError error_;
-  FilmResult result_;
+  VideoResult result_;
   bool interrupted_ = false;
 };
 
 }  // namespace
 
-std::int64_t step_of_frame(std::int64_t frame, const FilmTiming& timing, double dt) {
+std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double dt) {
   return std::llround((timing.start + static_cast<double>(frame) * timing.interval) / dt);
 }
 
-FilmResult film(const FilmSet& set, const FilmTiming& timing, bool quiet, FilmControl* control) {
-  FilmControl unwatched;
-  return Production(set, timing, quiet, control ? *control : unwatched).run();
+VideoResult run_video_stages(const VideoParts& parts, const VideoTiming& timing, bool quiet, VideoControl* control) {
+  VideoControl unwatched;
+  return VideoStages(parts, timing, quiet, control ? *control : unwatched).run();
 }
 
 }  // namespace mercury

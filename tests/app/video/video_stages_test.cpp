@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/video/film.h"
+#include "app/video/video_stages.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace mercury::test {
 namespace {
 
-FilmTiming video(double rate, double speed) { return {.interval = speed / rate}; }
+VideoTiming video(double rate, double speed) { return {.interval = speed / rate}; }
 
 TEST(StepOfFrame, TenSecondsAreTenSeconds) {
   EXPECT_EQ(step_of_frame(0, video(30, 1), 1e-3), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera sees what its plan says, as large as fits.
-#include "app/scene/cameraman.h"
+#include "app/scene/camera_controller.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ class GroupInView : public testing::TestWithParam<CameraMode> {};
 TEST_P(GroupInView, FirstFrameFillsThePicture) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     const std::vector<Bounds> boxes = scattered(seed, 3);
-    Cameraman camera({.mode = GetParam()}, {}, {});
+    CameraController camera({.mode = GetParam()}, {}, {});
     const float fill = fill_of(camera.at(boxes, tick), boxes);
     EXPECT_LE(fill, 1.0f);
     EXPECT_GE(fill, 0.8f);
@@ -61,7 +61,7 @@ TEST_P(GroupInView, FirstFrameFillsThePicture) {
 
 TEST_P(GroupInView, RobotsThatRunAreNeverCutOff) {
   std::vector<Bounds> boxes = scattered(1, 2);
-  Cameraman camera({.mode = GetParam()}, {}, {});
+  CameraController camera({.mode = GetParam()}, {}, {});
   for (int frame = 0; frame < 200; ++frame) {
     EXPECT_LE(fill_of(camera.at(boxes, tick), boxes), 1.0f) << frame;
     boxes[0] = boxes[0].moved({0.2f, 0, 0});  // 6 m/s
@@ -69,12 +69,12 @@ TEST_P(GroupInView, RobotsThatRunAreNeverCutOff) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cameraman, GroupInView, testing::Values(CameraMode::group, CameraMode::top),
+INSTANTIATE_TEST_SUITE_P(CameraController, GroupInView, testing::Values(CameraMode::group, CameraMode::top),
                          [](const auto& tested) { return std::string(name_of(tested.param)); });
 
-TEST(Cameraman, MovesWithoutJerks) {
+TEST(CameraController, MovesWithoutJerks) {
   std::vector<Bounds> boxes = scattered(2, 2);
-  Cameraman camera({}, {}, {});
+  CameraController camera({}, {}, {});
   Eigen::Vector3f before = camera.at(boxes, tick).eye;
   boxes[0] = boxes[0].moved({0.05f, 0, 0});  // less than the margin, so that nothing must be caught up with at once
   for (int frame = 0; frame < 100; ++frame) {
@@ -82,28 +82,28 @@ TEST(Cameraman, MovesWithoutJerks) {
     EXPECT_LT((eye - before).norm(), 0.02f);
     before = eye;
   }
-  Cameraman there({}, {}, {});
+  CameraController there({}, {}, {});
   EXPECT_LT((there.at(boxes, 0).eye - before).norm(), 0.02f);
 }
 
-TEST(Cameraman, EmptyBoxesAreLeftOut) {
+TEST(CameraController, EmptyBoxesAreLeftOut) {
   std::vector<Bounds> boxes = scattered(3, 2);
-  Cameraman without({}, {}, {}), with({}, {}, {});
+  CameraController without({}, {}, {}), with({}, {}, {});
   const Eigen::Vector3f eye = without.at(boxes, 0).eye;
   boxes.push_back({});
   EXPECT_EQ(with.at(boxes, 0).eye, eye);
 }
 
-TEST(Cameraman, TopLooksStraightDown) {
-  Cameraman camera({.mode = CameraMode::top}, {}, {});
+TEST(CameraController, TopLooksStraightDown) {
+  CameraController camera({.mode = CameraMode::top}, {}, {});
   const render::Camera view = camera.at(scattered(4, 2), 0);
   EXPECT_NEAR((view.eye - view.target).normalized().z(), 1, 1e-5);
 }
 
-TEST(Cameraman, FollowKeepsItsDistanceToTheRobot) {
+TEST(CameraController, FollowKeepsItsDistanceToTheRobot) {
   const std::vector<std::string> names{"ray", "eel", "squid"};
   std::vector<Bounds> boxes{box({0, 0, 0}, 0.2f), box({2, 0, 0}, 0.3f), box({4, 1, 0}, 0.2f)};
-  Cameraman camera({.mode = CameraMode::follow, .robot = "eel"}, {}, names);
+  CameraController camera({.mode = CameraMode::follow, .robot = "eel"}, {}, names);
   const render::Camera first = camera.at(boxes, tick);
   EXPECT_LT((first.target - boxes[1].center()).norm(), 1e-5);
   for (int frame = 0; frame < 300; ++frame) {
@@ -116,16 +116,16 @@ TEST(Cameraman, FollowKeepsItsDistanceToTheRobot) {
   EXPECT_NEAR((last.eye - last.target).norm(), (first.eye - first.target).norm(), 1e-4);
 }
 
-TEST(Cameraman, RobotToFollowMustBeThere) {
+TEST(CameraController, RobotToFollowMustBeThere) {
   const std::vector<std::string> names{"ray", "eel"};
-  EXPECT_NO_THROW(Cameraman({.mode = CameraMode::follow, .robot = "1"}, {}, names));
-  EXPECT_THROW(Cameraman({.mode = CameraMode::follow, .robot = "2"}, {}, names), InputError);
-  EXPECT_THROW(Cameraman({.mode = CameraMode::follow, .robot = "cod"}, {}, names), InputError);
+  EXPECT_NO_THROW(CameraController({.mode = CameraMode::follow, .robot = "1"}, {}, names));
+  EXPECT_THROW(CameraController({.mode = CameraMode::follow, .robot = "2"}, {}, names), InputError);
+  EXPECT_THROW(CameraController({.mode = CameraMode::follow, .robot = "cod"}, {}, names), InputError);
 }
 
-TEST(Cameraman, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
+TEST(CameraController, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
   const std::vector<Bounds> boxes = scattered(5, 1);
-  Cameraman camera({.mode = CameraMode::turntable, .period = 2}, {}, {});
+  CameraController camera({.mode = CameraMode::turntable, .period = 2}, {}, {});
   const Eigen::Vector3f start = camera.at(boxes, 0.1).eye;
   float farthest = 0;
   for (int frame = 0; frame < 19; ++frame) {
@@ -137,8 +137,8 @@ TEST(Cameraman, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
   EXPECT_LT((camera.at(boxes, 0.1).eye - start).norm(), 0.01f);
 }
 
-TEST(Cameraman, StillStaysWhereItWasTold) {
-  Cameraman camera(
+TEST(CameraController, StillStaysWhereItWasTold) {
+  CameraController camera(
       {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5}, {},
       {});
   std::vector<Bounds> boxes = scattered(6, 1);
@@ -148,9 +148,9 @@ TEST(Cameraman, StillStaysWhereItWasTold) {
   }
 }
 
-TEST(Cameraman, ZoomBringsCloser) {
+TEST(CameraController, ZoomBringsCloser) {
   const std::vector<Bounds> boxes = scattered(7, 1);
-  Cameraman far({}, {}, {}), near({.zoom = 2}, {}, {});
+  CameraController far({}, {}, {}), near({.zoom = 2}, {}, {});
   const render::Camera a = far.at(boxes, tick), b = near.at(boxes, tick);
   EXPECT_NEAR((a.eye - a.target).norm() / (b.eye - b.target).norm(), 2, 0.1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/video/studio.h"
+#include "app/video/video_pipeline.h"
 
 #include <variant>
 
@@ -35,8 +35,8 @@ std::vector<Eigen::Vector3f> offsets_of(const Simulation& simulation, const View
                               .on_ground = flat});
 }
 
-// What the picture keeps free of robots for what is written on it, as shares of its sides.
-render::Insets written_on(const ViewSettings& settings) {
+// The edges of the picture where text is written and no robot should be, as shares of its sides.
+render::Insets free_edges(const ViewSettings& settings) {
   render::Insets free;
   if (settings.shown.legend) free.right = 0.1f;
   if (settings.shown.labels) free.top = 0.07f;
@@ -46,27 +46,30 @@ render::Insets written_on(const ViewSettings& settings) {
 
 }  // namespace
 
-Stage make_stage(render::ContextKind kind, PictureSize size, render::Quality quality, int cuda_device) {
+OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
+                                          int cuda_device) {
   auto context = render::make_context({.kind = kind, .cuda_device = cuda_device, .debug = false});
   render::Renderer renderer(*context, {.width = size.width, .height = size.height, .quality = quality});
   return {std::move(context), std::move(renderer)};
 }
 
-Studio::Studio(Stage& stage, Simulation simulation, const ViewSettings& settings)
-    : stage_(stage), simulation_(std::move(simulation)),
-      scene_(simulation_, offsets_of(simulation_, settings, aspect_of(stage.renderer)), settings),
-      camera_(settings.camera,
-              {.aspect = aspect_of(stage.renderer), .free = written_on(settings), .on_ground = on_land(simulation_)},
-              names_of(simulation_)),
+VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings)
+    : offscreen_(offscreen), simulation_(std::move(simulation)),
+      scene_(simulation_, offsets_of(simulation_, settings, aspect_of(offscreen.renderer)), settings),
+      camera_(
+          settings.camera,
+          {.aspect = aspect_of(offscreen.renderer), .free = free_edges(settings), .on_ground = on_land(simulation_)},
+          names_of(simulation_)),
       details_(simulation_, settings) {
-  scene_.set_bodies(stage.renderer);
-  bridge_ = choose_bridge(simulation_, stage.renderer, settings.interop);
+  scene_.set_bodies(offscreen.renderer);
+  bridge_ = choose_bridge(simulation_, offscreen.renderer, settings.interop);
 }
 
-FilmResult Studio::film(FrameWriter& writer, render::PixelFormat pixels, const FilmTiming& timing, bool quiet,
-                        FilmControl* control) {
-  return mercury::film({simulation_, *bridge_.bridge, details_, scene_, camera_, stage_.renderer, writer, pixels},
-                       timing, quiet, control);
+VideoResult VideoPipeline::run(FrameWriter& writer, render::PixelFormat pixels, const VideoTiming& timing, bool quiet,
+                               VideoControl* control) {
+  return run_video_stages(
+      {simulation_, *bridge_.bridge, details_, scene_, camera_, offscreen_.renderer, writer, pixels}, timing, quiet,
+      control);
 }
 
 }  // namespace mercury

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a simulation to a video: three stages that run at the same time.
+//
+//   simulate               draw                      encode
+//   a thread               the calling thread        a thread
+//   steps the robots  -->  draws a snapshot,    -->  writes pictures with
+//   to each frame          reads the picture back    the FrameWriter
+//              snapshots (4)             pictures (6)
+//                                  <-- spare pictures (8)
+//
+// 1. Each stage has its own thread, so the slowest one sets the rate, not the sum of all three. OpenGL draws on the
+//    calling thread because the context is current there.
+// 2. The queues are short. A stage that is ahead waits, and memory does not grow with the length of the video.
+// 3. Written pictures go back as spare ones, so no memory is allocated per frame.
+// 4. When a stage throws, it abandons all queues, the other stages end, and the caller gets the first exception.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "app/scene/camera_controller.h"
+#include "app/scene/group_scene.h"
+#include "app/scene/scene_details.h"
+#include "app/video/frame_writer.h"
+#include "app/video/position_bridge.h"
+#include "mercury/simulation.h"
+#include "render/renderer.h"
+
+namespace mercury {
+
+// A video that is made in the background; other threads can watch and stop it.
+struct VideoControl {
+  std::atomic<std::int64_t> frames = 0;  // written so far
+  std::atomic<bool> stop = false;        // end before the last frame, as when the user interrupts
+};
+
+// Frame k shows the time start + k interval, counted from the simulation's time when the video begins.
+struct VideoTiming {
+  std::int64_t frames = 0;
+  double start = 0;     // [s]
+  double interval = 0;  // simulated time between frames [s]
+  double pace = 0;      // time between frames when the video plays [s]
+};
+
+struct VideoResult {
+  std::int64_t frames = 0;   // written
+  bool interrupted = false;  // the user stopped it before the last frame
+  double wall_seconds = 0;
+};
+
+// The step that frame k shows: the one nearest to its time. It is computed from the first frame on, so rounding does
+// not add up.
+std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double dt);
+
+// What the stages work with; the caller owns all of it.
+struct VideoParts {
+  Simulation& simulation;
+  PositionBridge& bridge;
+  DetailObserver& details;
+  GroupScene& scene;
+  CameraController& camera;
+  render::Renderer& renderer;
+  FrameWriter& writer;
+  render::PixelFormat pixels;
+};
+
+// Simulates, draws and writes all frames; the caller finishes the writer. Draws on the calling thread, where the
+// renderer's context must be current. When the user interrupts, the frames so far are written. Throws the first
+// exception of any stage. `quiet`: shows no progress. `control` must outlive the call.
+VideoResult run_video_stages(const VideoParts& parts, const VideoTiming& timing, bool quiet,
+                             VideoControl* control = nullptr);
+
+}  // namespace mercury
