@@ -21,9 +21,9 @@ struct ArrowRecord {
   Vector4f from, vector, color;
 };
 
-// As shaders/path.vert has it.
+// The layout of shaders/path.vert.
 struct PathPoint {
-  Vector4f place, color;
+  Vector4f position, color;
 };
 
 Vector4f linear(Color color, float alpha = 1) {
@@ -42,7 +42,7 @@ void append(const Path& path, std::vector<PathPoint>& points) {
   }
 }
 
-// Blends into the colours and leaves alpha, which says what glows.
+// Blends colours and keeps alpha, which is the share of light that glows.
 class Blending {
  public:
   Blending() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn into the scene to explain it: arrows, paths, and specks that show how the water flows.
+// Drawings that explain the scene: arrows, paths, and particles that drift with the water.
 #pragma once
 
 #include "render/camera.h"
@@ -12,8 +12,9 @@ class AnnotationPass {
  public:
   AnnotationPass();
   void draw_arrows(std::span<const Arrow> arrows);
-  // Translucent: after everything solid, with the depth test on and blending left as it was found, off.
+  // Translucent: call them after everything solid, with the depth test on. Blending is off before and after.
   void draw_paths(std::span<const Path> paths, float width);
+  // Two sets of particles, one of twice the size, fade into each other as the camera's distance changes.
   void draw_particles(const Scene& scene, const Camera& camera, int count) const;
 
  private:

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where buffers and textures are bound, for C++ and, as numbers, for shaders/.
+// Binding points of buffers and textures; shaders/ has the same numbers.
 #pragma once
 
 namespace mercury::render::binding {
 
-// Storage buffers: shaders/bodies.glsl and those that say so themselves.
-inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_records = 4, face_frames = 5, materials = 6,
-                          faces = 7, mass_normals = 8, face_values = 9, mass_values = 10, first_free = 11,
-                          face_normals = 13, face_areas = 14, seen_faces = 15;
+// Storage buffers. A pass binds its own buffers from first_free on.
+inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_records = 4, face_frames = 5,
+                          materials = 6, faces = 7, mass_normals = 8, face_values = 9, mass_values = 10,
+                          first_free = 11, face_normals = 13, face_areas = 14, seen_faces = 15;
 
-// Textures; 0 is a pass's own source.
+// Textures. 0 is the pass's own source.
 inline constexpr unsigned source = 0, shadow_map = 1, shadow_depths = 2, occlusion = 3, caustics = 4, sand = 5,
                           ground_light = 6, colormap = 7, glow = 8, font = 9, section = 10, front_light = 11,
                           faces_seen = 12;

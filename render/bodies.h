@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All bodies on the card: one buffer for each kind of thing, so that a pass draws every body with one call.
+// All bodies on the GPU: one buffer per kind of data for all of them, so that a pass draws every body with one call.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class Bodies {
   Bodies();
   // See Renderer::set_bodies.
   void set(std::shared_ptr<const BodyData> data);
-  // Springs are the larger part, and seldom seen: they go to the card before they are first drawn.
+  // Uploads the springs before they are first drawn: they are most of the data and seldom visible.
   void write_springs();
 
   std::size_t body_count() const { return mass_offsets_.size() - 1; }
@@ -28,20 +28,20 @@ class Bodies {
   std::span<const std::uint32_t> mass_offsets() const { return mass_offsets_; }
   float typical_spring() const { return typical_spring_; }  // median rest length of the springs [m]
 
-  // One after the other, with indices counted over all bodies.
-  Buffer positions;       // float[3] a mass
-  Buffer mass_bodies;     // uint a mass
-  Buffer first_masses;    // uint a body and one more: its first mass
-  Buffer faces;           // uint[3] a face
-  Buffer face_records;    // FaceRecord a face
-  Buffer springs;         // uint[2] a spring
-  Buffer spring_materials;    // uint a spring
-  Buffer mass_face_ends;  // uint a mass: end of its part of mass_faces
-  Buffer mass_faces;      // faces at each mass
+  // One body after the other; indices count over all bodies.
+  Buffer positions;         // float[3] per mass
+  Buffer mass_bodies;       // uint per mass
+  Buffer first_masses;      // uint per body, and one more: its first mass
+  Buffer faces;             // uint[3] per face
+  Buffer face_records;      // FaceRecord per face
+  Buffer springs;           // uint[2] per spring
+  Buffer spring_materials;  // uint per spring
+  Buffer mass_face_ends;    // uint per mass: the end of its part of mass_faces
+  Buffer mass_faces;        // the faces at each mass
 
  private:
   std::vector<std::uint32_t> mass_offsets_{0};
-  std::shared_ptr<const BodyData> springs_to_write_;  // or nothing
+  std::shared_ptr<const BodyData> springs_to_write_;  // nullptr = they are on the GPU
   std::size_t face_count_ = 0, spring_count_ = 0;
   float typical_spring_ = 0.1f;
 };

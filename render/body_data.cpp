@@ -15,13 +15,13 @@ void require(bool holds, std::size_t body, const char* what) {
 }
 
 void validate(const Body& body, std::size_t index) {
-  require(body.rest_positions.size() % 3 == 0, index, "rest_positions must have 3 floats a mass");
-  require(body.faces.size() % 3 == 0, index, "faces must have 3 masses a face");
-  require(body.springs.size() % 2 == 0, index, "springs must have 2 masses a spring");
+  require(body.rest_positions.size() % 3 == 0, index, "rest_positions must have 3 floats per mass");
+  require(body.faces.size() % 3 == 0, index, "faces must have 3 masses per face");
+  require(body.springs.size() % 2 == 0, index, "springs must have 2 masses per spring");
   require(body.face_materials.empty() || body.face_materials.size() == body.faces.size() / 3, index,
-          "face_materials must be empty or have one element a face");
+          "face_materials must be empty or have one element per face");
   require(body.spring_materials.empty() || body.spring_materials.size() == body.springs.size() / 2, index,
-          "spring_materials must be empty or have one element a spring");
+          "spring_materials must be empty or have one element per spring");
   const auto within = [&](std::uint32_t mass) { return mass < body.rest_positions.size() / 3; };
   require(std::all_of(body.faces.begin(), body.faces.end(), within), index, "a face's mass is out of range");
   require(std::all_of(body.springs.begin(), body.springs.end(), within), index, "a spring's mass is out of range");
@@ -33,7 +33,7 @@ float length_of(const Body& body, std::size_t spring) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-// Some, evenly picked: of all bodies together enough for a median.
+// A sample spread evenly over the springs; over all bodies it is enough for a median.
 void sample_lengths(const Body& body, std::vector<float>& lengths) {
   const std::size_t count = body.springs.size() / 2;
   for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / 64)) lengths.push_back(length_of(body, i));
@@ -67,7 +67,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-// Every index moved on by `first`.
+// Adds `first` to each index.
 void append(std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& from, std::uint32_t first) {
   const std::size_t begin = to.size();
   to.resize(begin + from.size());

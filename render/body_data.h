@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies made ready for the card, without OpenGL: on whatever thread, each once, however often it is drawn with others.
+// Bodies prepared for the GPU, without OpenGL: on any thread, and once per body, however many groups it is drawn in.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ namespace mercury::render {
 
 // One body; indices count its own masses and faces.
 struct PreparedBody {
-  std::vector<float> rest_positions;                      // 3 a mass
-  std::vector<std::uint32_t> faces, springs;              // 3 masses a face, 2 a spring
-  std::vector<std::uint32_t> spring_materials;                // one a spring
-  std::vector<FaceRecord> records;                        // one a face
+  std::vector<float> rest_positions;                      // 3 per mass
+  std::vector<std::uint32_t> faces, springs;              // 3 masses per face, 2 per spring
+  std::vector<std::uint32_t> spring_materials;            // one per spring
+  std::vector<FaceRecord> records;                        // one per face
   std::vector<std::uint32_t> mass_face_ends, mass_faces;  // the faces at each mass
-  std::vector<float> lengths;                             // of some springs [m]
+  std::vector<float> lengths;                             // of a sample of the springs [m]
 };
 
 // Throws std::invalid_argument ("body 3: a face's mass is out of range") for an index out of range or a length that
 // does not fit; `index` is for the message.
 std::shared_ptr<const PreparedBody> prepare_body(const Body& body, std::size_t index = 0);
 
-// Bodies one after the other, with indices counted over all of them.
+// All bodies of a group, one after the other; indices count over all of them.
 struct BodyData {
-  std::vector<std::uint32_t> mass_offsets{0};  // bodies + 1
+  std::vector<std::uint32_t> mass_offsets{0};  // one per body, and one more
   std::vector<float> rest_positions;
-  std::vector<std::uint32_t> owners;  // body, one a mass
+  std::vector<std::uint32_t> owners;  // the body of each mass
   std::vector<std::uint32_t> faces, springs, spring_materials;
   std::vector<FaceRecord> records;
   std::vector<std::uint32_t> mass_face_ends, mass_faces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boxes around bodies, found where their positions lie.
+// The box around each body, computed on the GPU, where the positions are.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@ namespace mercury::render {
 class BoundsPass {
  public:
   BoundsPass();
-  // From the positions bound for storage. A body without a finite mass has an empty box.
+  // From the positions bound as storage. A body without a finite mass has an empty box.
   void measure(const Bodies& bodies);
-  // On the card, low and high corner as vec4 a body, for shaders that come after.
+  // On the GPU, for later shaders: low and high corner of each body, as vec4.
   const Buffer& boxes() const { return boxes_; }
 
-  // Begins to bring the boxes to the processor; read() waits for them, but for nothing that was drawn since.
+  // Starts a copy of the boxes to the CPU. read() waits for the copy, but not for what was drawn after it.
   void start_reading();
   std::vector<Bounds> read();
 

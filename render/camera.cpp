@@ -30,8 +30,8 @@ Axes axes_of(const Camera& camera) {
   return {right, back.cross(right), back};
 }
 
-// A part of the picture along one axis, as tangents from the line of sight.
-struct Slot {
+// The free part of the picture along one axis, as tangents from the line of sight.
+struct Span {
   float low, high;
 };
 
@@ -41,12 +41,12 @@ struct Interval {
   float middle() const { return 0.5f * (low + high); }
 };
 
-// How far the target may be shifted along an axis so that all points, seen from a distance, lie within the slot.
-Interval shifts(std::span<const Vector3f> points, int axis, Slot slot, float distance) {
+// The shifts of the target along an axis for which all points, seen from `distance`, lie in the free part.
+Interval shifts(std::span<const Vector3f> points, int axis, Span free, float distance) {
   Interval interval;
   for (const Vector3f& p : points) {
-    interval.low = std::max(interval.low, p[axis] - slot.high * (distance - p.z()));
-    interval.high = std::min(interval.high, p[axis] - slot.low * (distance - p.z()));
+    interval.low = std::max(interval.low, p[axis] - free.high * (distance - p.z()));
+    interval.high = std::min(interval.high, p[axis] - free.low * (distance - p.z()));
   }
   return interval;
 }
@@ -124,7 +124,7 @@ Camera Orbit::camera() const {
   Camera camera;
   camera.target = target;
   camera.eye = target + distance * direction;
-  // Derivative of `direction` by the elevation: upright even when looking straight down.
+  // Derivative of `direction` by the elevation: points up in the picture even when the camera looks straight down.
   camera.up =
       Vector3f(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth), std::cos(elevation));
   camera.field_of_view = field_of_view;
@@ -164,9 +164,9 @@ void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, con
     seen.push_back({p.dot(axes.right), p.dot(axes.up), p.dot(axes.back)});
     nearest = std::max(nearest, seen.back().z());
   }
-  // The nearest distance at which there is a sideways shift that both axes allow.
-  const Slot across{half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)};
-  const Slot upward{half * (2 * free.bottom - 1), half * (1 - 2 * free.top)};
+  // Bisects for the smallest distance at which some sideways shift fits along both axes.
+  const Span across{half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)};
+  const Span upward{half * (2 * free.bottom - 1), half * (1 - 2 * free.top)};
   float low = nearest, high = nearest + 1e6f;
   for (int i = 0; i < 60; ++i) {
     const float middle =

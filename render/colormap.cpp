@@ -76,15 +76,15 @@ Triple oklab_of_linear(Triple rgb) {
           0.0259040371f * l + 0.7827717662f * m - 0.8086757660f * s};
 }
 
-bool shown(Triple linear) {
+bool in_srgb(Triple linear) {
   return std::all_of(linear.begin(), linear.end(), [](float x) { return x >= -1e-4f && x <= 1.0001f; });
 }
 
 struct MuscleAnchor {
   float hue, lightness, chroma;
 };
-// A quarter turn apart in phase: coral, gold, teal, violet. Lightness differs as well, so that those who do not see
-// red from green still tell them apart.
+// A quarter turn apart in phase: coral, gold, teal, violet. Lightness differs as well, for people who
+// do not distinguish red from green.
 constexpr std::array<MuscleAnchor, 4> muscle_anchors{
     {{0.55f, 0.66f, 0.185f}, {1.45f, 0.82f, 0.160f}, {3.40f, 0.73f, 0.125f}, {5.05f, 0.56f, 0.200f}}};
 
@@ -106,7 +106,8 @@ std::string_view name_of(Colormap map) {
 Colormap colormap_named(std::string_view name) {
   for (const auto& [value, known] : map_names)
     if (known == name) return value;
-  throw std::invalid_argument("'" + std::string(name) + "' is no colour map; give viridis, magma, turbo or diverging");
+  throw std::invalid_argument("'" + std::string(name) +
+                              "' is not a colour map; give viridis, magma, turbo or diverging");
 }
 
 Color mix(Color a, Color b, float t) {
@@ -119,9 +120,9 @@ Color mix(Color a, Color b, float t) {
 Color color_at(Colormap map, float t) {
   if (std::isnan(t)) return rgb(0x808080);
   const std::span<const Color> table = samples(map);
-  const float place = std::clamp(t, 0.0f, 1.0f) * float(table.size() - 1);
-  const std::size_t index = std::min(std::size_t(place), table.size() - 2);
-  return mix(table[index], table[index + 1], place - float(index));
+  const float position = std::clamp(t, 0.0f, 1.0f) * float(table.size() - 1);
+  const std::size_t index = std::min(std::size_t(position), table.size() - 2);
+  return mix(table[index], table[index + 1], position - float(index));
 }
 
 Color color_at(Colormap map, float value, float low, float high) {
@@ -130,11 +131,11 @@ Color color_at(Colormap map, float value, float low, float high) {
 
 Color oklch(float lightness, float chroma, float hue) {
   const auto at = [&](float c) { return linear_of_oklab({lightness, c * std::cos(hue), c * std::sin(hue)}); };
-  if (shown(at(chroma))) return color_of_linear(at(chroma));
+  if (in_srgb(at(chroma))) return color_of_linear(at(chroma));
   float inside = 0, outside = chroma;
   for (int i = 0; i < 12; ++i) {
     const float middle = 0.5f * (inside + outside);
-    (shown(at(middle)) ? inside : outside) = middle;
+    (in_srgb(at(middle)) ? inside : outside) = middle;
   }
   return color_of_linear(at(inside));
 }

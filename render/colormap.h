@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours: scales for numbers and a palette for kinds, chosen to be told apart with colour-blind eyes too.
+// Colours: maps for numbers and a palette for kinds, chosen so that colour-blind people can distinguish them too.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ constexpr Color rgb(std::uint32_t hex) {
   return {std::uint8_t(hex >> 16), std::uint8_t(hex >> 8), std::uint8_t(hex), 255};
 }
 
-// Linear light, 0 to 1 a channel (IEC 61966-2-1), and back, rounded.
+// sRGB to linear light, 0 to 1 per channel (IEC 61966-2-1), and back, rounded.
 std::array<float, 3> linear_of(Color color);
 Color color_of_linear(std::array<float, 3> linear);
 
 enum class Colormap {
-  viridis,    // dark blue to yellow, lightness even: amounts
+  viridis,    // dark blue to yellow, even lightness steps: amounts
   magma,      // black to cream: amounts, on a dark ground
-  turbo,      // rainbow of even lightness steps: finding places
+  turbo,      // rainbow with smooth lightness: shows small differences
   diverging,  // blue over grey to red: signed numbers, 0 in the middle
 };
 
@@ -38,29 +38,29 @@ std::string_view name_of(Colormap map);
 // Throws std::invalid_argument that lists them.
 Colormap colormap_named(std::string_view name);
 
-// Between two colours, evenly to the eye: t = 0 gives a, 1 gives b.
+// A perceptually even blend of two colours: t = 0 gives a, 1 gives b.
 Color mix(Color a, Color b, float t);
 
-// The colour at t, clamped to [0, 1]; not a number gives mid-grey.
+// The colour at t, clamped to [0, 1]; NaN gives mid-grey.
 Color color_at(Colormap map, float t);
 
 // The colour for a value between low and high; low == high gives the middle.
 Color color_at(Colormap map, float value, float low, float high);
 
 // Perceptual colour (Ottosson's Oklab in polar form): lightness 0 to 1, chroma 0 to about 0.3, hue in radians.
-// Chroma is reduced until the colour can be shown.
+// Chroma is reduced until the colour is inside sRGB.
 Color oklch(float lightness, float chroma, float hue);
 
-// A muscle's colour: its phase as hue, four phases far apart for all kinds of colour vision, its frequency as lightness
-// (slow = light). `phase` in radians, `speed` 0 = slowest to 1 = fastest.
+// A muscle's colour: hue is its phase, with four phases far apart for all kinds of colour vision; lightness is its
+// frequency (slow = light). `phase` in radians, `speed` 0 = slowest to 1 = fastest.
 Color muscle_color(float phase, float speed);
 inline constexpr Color tissue_color = rgb(0xe9c9b4);
 inline constexpr Color bone_color = rgb(0xf4f1e8);
 
-// Colours for things without an order, as lines in a plot; repeats after 10.
+// Colours for unordered things, such as lines in a plot; repeats after 10.
 Color category_color(int index);
 
-// "Nice" numbers to write at a scale's ticks: 3 to `most` round values from low to high inclusive where they are round.
+// Round numbers for a scale's ticks: at most `most` values from low to high, and the ends if they are round.
 std::vector<float> ticks(float low, float high, int most = 6);
 
 }  // namespace mercury::render

@@ -21,7 +21,7 @@ constexpr std::array<std::pair<ContextKind, std::string_view>, 5> kind_names{{
     {ContextKind::window, "window"},
 }};
 
-constexpr std::size_t most_messages = 100;  // a message a draw call must not fill the memory
+constexpr std::size_t most_messages = 100;  // a message per draw call must not fill the memory
 
 const char* severity_name(unsigned severity) {
   switch (severity) {
@@ -39,7 +39,7 @@ std::string gl_string(GLenum name) {
   return text ? reinterpret_cast<const char*>(text) : "";
 }
 
-// "NVIDIA H100 80GB HBM3/PCIe/SSE2" and "llvmpipe (LLVM 15.0.6, 256 bits)" without what follows the name.
+// The name alone of "NVIDIA H100 80GB HBM3/PCIe/SSE2" and "llvmpipe (LLVM 15.0.6, 256 bits)".
 std::string card_name(const std::string& renderer) {
   return renderer.substr(0, std::min(renderer.find('/'), renderer.find(" (")));
 }
@@ -59,7 +59,7 @@ class WindowContext : public Context {
 
 }  // namespace
 
-// Written by the driver, perhaps from a thread of its own.
+// The driver writes them, perhaps from a thread of its own.
 struct ContextMessages {
   std::mutex mutex;
   std::vector<std::string> lines;
@@ -69,8 +69,8 @@ namespace {
 
 void GLAPIENTRY on_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                            const void* user) {
-  // Notifications tell where buffers live, "other" carries shader statistics, "performance" that a shader is
-  // recompiled: none is misuse.
+  // None of these is misuse: notifications say where buffers live, "other" carries shader statistics, "performance"
+  // says that a shader is recompiled.
   if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_OTHER || type == GL_DEBUG_TYPE_PERFORMANCE)
     return;
   std::string line = length < 0 ? std::string(text) : std::string(text, std::size_t(length));
@@ -92,7 +92,7 @@ std::string_view name_of(ContextKind kind) {
 ContextKind context_kind_named(std::string_view name) {
   for (const auto& [value, known] : kind_names)
     if (known == name && value != ContextKind::window) return value;
-  throw std::invalid_argument("'" + std::string(name) + "' is no context; give auto, egl, mesa or osmesa");
+  throw std::invalid_argument("'" + std::string(name) + "' is not a context; give auto, egl, mesa or osmesa");
 }
 
 Context::Context() : messages_(std::make_unique<ContextMessages>()) {}
@@ -115,10 +115,10 @@ void Context::inspect(ContextKind kind, bool debug) {
                        ", Mercury draws with 4.5 or newer");
   software_ = renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos ||
               renderer.find("SWR") != std::string::npos;
-  const std::string place = software_                     ? "Mesa " + card_name(renderer) + " (software)"
+  const std::string where = software_                     ? "Mesa " + card_name(renderer) + " (software)"
                             : kind == ContextKind::window ? card_name(renderer)
                                                           : "EGL on " + card_name(renderer);
-  description_ = place + (kind == ContextKind::osmesa ? " through OSMesa" : "") + ", OpenGL " + version.substr(0, 3);
+  description_ = where + (kind == ContextKind::osmesa ? " through OSMesa" : "") + ", OpenGL " + version.substr(0, 3);
   if (!debug) return;
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

@@ -20,13 +20,13 @@ struct DeviceChoice {
   int cuda_device = -1;
 };
 
-// libepoxy ends the process when it cannot open libEGL, so look first.
+// libepoxy ends the process when it cannot open libEGL, so check first.
 void require_egl() {
   static const bool there = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) != nullptr;
   if (!there) throw ContextError("libEGL.so.1 is not installed");
 }
 
-// Whether a list of names with blanks between them holds this one.
+// Whether a list of names separated by blanks contains this one.
 bool lists(const char* extensions, std::string_view name) {
   std::string_view rest = extensions ? extensions : "";
   while (!rest.empty()) {
@@ -49,7 +49,7 @@ bool is_software(EGLDeviceEXT device) {
   return lists(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-// Cards or software devices; of the cards, the one with the wanted CUDA ordinal first, then those with any.
+// GPUs or software devices. Of the GPUs, the one with the wanted CUDA ordinal comes first, then those with any.
 std::vector<DeviceChoice> devices(bool software, int wanted_cuda) {
   if (!client_has("EGL_EXT_device_enumeration") && !client_has("EGL_EXT_device_base")) return {};
   std::array<EGLDeviceEXT, 64> found{};
@@ -160,7 +160,7 @@ std::unique_ptr<Context> make_egl_mesa_context(const ContextOptions& options) {
   if (!client_has("EGL_MESA_platform_surfaceless")) throw ContextError(reason);
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   auto context = std::make_unique<EglContext>(display, ContextKind::mesa, -1, options);
-  // Where Mesa is not installed another vendor's EGL may answer for it.
+  // Without Mesa, another vendor's EGL may answer instead.
   if (!context->is_software()) throw ContextError("Mesa is not installed");
   return context;
 }

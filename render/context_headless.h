@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways to a context without a window, tried by make_context() in this order. All throw ContextError.
+// The kinds of context without a window, in the order in which make_context() tries them. All throw ContextError.
 #pragma once
 
 #include <memory>

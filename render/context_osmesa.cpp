@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSMesa, loaded when asked for: the program starts and draws through EGL without it.
+// OSMesa, loaded on first use: without it, the program starts and draws through EGL.
 //
-// libepoxy knows GLX and EGL alone and ends the process under any other context, so while an OSMesa context is current
-// its function pointers are set to OSMesa's (gl_names.cpp lists them, made from epoxy's header at build time).
+// libepoxy supports only GLX and EGL, and ends the process under any other context. So while an OSMesa context is
+// current, libepoxy's function pointers point to OSMesa's functions (gl_names.cpp lists them; the build generates it
+// from epoxy's header).
 #include <dlfcn.h>
 #include <epoxy/gl.h>
 
@@ -15,7 +16,7 @@
 namespace mercury::render {
 namespace {
 
-// From GL/osmesa.h, whose package need not be there to build.
+// From GL/osmesa.h, so that its package is not needed to build.
 using OsmesaHandle = void*;
 using OsmesaFunction = void (*)();
 constexpr int osmesa_format = 0x22;
@@ -93,7 +94,7 @@ class OsmesaContext : public Context {
   }
 
  private:
-  static constexpr int side = 16;  // its own picture, which nothing is drawn to
+  static constexpr int side = 16;  // of the context's own picture, which nothing is drawn into
   OsmesaHandle handle_ = nullptr;
   std::array<unsigned char, std::size_t(4 * side * side)> pixels_{};
 };

@@ -9,7 +9,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr std::size_t faces_a_group = 256;
+constexpr std::size_t faces_per_group = 256;
 constexpr std::size_t command_bytes = 20;  // DrawElementsIndirectCommand
 
 }  // namespace
@@ -20,7 +20,7 @@ CullPass::CullPass()
 
 void CullPass::attach(const Bodies& bodies) {
   const std::size_t faces = bodies.face_count();
-  counts_.reserve(8 * ((faces + faces_a_group - 1) / faces_a_group));
+  counts_.reserve(8 * ((faces + faces_per_group - 1) / faces_per_group));
   commands_.reserve(2 * command_bytes);
   seen_corners_.reserve(12 * faces);
   lit_corners_.reserve(12 * faces);
@@ -36,7 +36,7 @@ void CullPass::find(const Bodies& bodies, bool all_sides) {
   seen_corners_.bind_storage(binding::first_free + 2);
   lit_corners_.bind_storage(binding::first_free + 3);
   seen_faces_.bind_storage(binding::seen_faces);
-  const GLuint groups = GLuint((bodies.face_count() + faces_a_group - 1) / faces_a_group);
+  const GLuint groups = GLuint((bodies.face_count() + faces_per_group - 1) / faces_per_group);
   const GLuint across = std::min(groups, 32768u);
   for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
     glUseProgram(stages_[stage].get());

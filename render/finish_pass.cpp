@@ -22,7 +22,7 @@ void FinishPass::resize(int width, int height) {
 void FinishPass::draw(GLuint samples, GLuint framebuffer, float vignette) const {
   glBindTextureUnit(binding::source, samples);
   extract_.draw_into(glow_framebuffer_.get(), glow_width_, glow_height_);
-  // The same spread in every size of picture: a fiftieth of its height.
+  // The glow spreads by a fiftieth of the picture's height, whatever its size.
   const float stride = float(height_) / 180.0f / 4.0f;
   glBindTextureUnit(binding::source, glow_.get());
   glProgramUniform2f(blur_.program(), 0, stride / float(glow_width_), 0);

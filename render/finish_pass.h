@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From samples of light to the finished picture: glow spread, tone-mapped, averaged.
+// From samples of light to the finished picture: spreads the glow, applies the tone curve, averages the samples.
 #pragma once
 
 #include "render/fullscreen.h"
@@ -11,7 +11,7 @@ class FinishPass {
  public:
   explicit FinishPass(const QualitySettings& settings);
   void resize(int width, int height);
-  // `samples`: multisampled light, its alpha the share that glows. Into an sRGB framebuffer.
+  // `samples`: multisampled light; its alpha is the share that glows. Draws into an sRGB framebuffer.
   void draw(GLuint samples, GLuint framebuffer, float vignette) const;
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int replacement = 0xfffd;
 
-// Bytes that follow a first byte, and the bits of the character that the first one holds; -1 for no first byte.
+// How many bytes follow a first byte (-1 = it is not a first byte), and the character's bits in the first byte.
 struct Lead {
   int more, bits;
 };

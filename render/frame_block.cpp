@@ -22,7 +22,7 @@ Octave octave_of(float distance) {
   const float power = std::log2(std::max(distance, 1e-6f));
   const float whole = std::floor(power);
   const float t = std::clamp((power - whole - 0.35f) / 0.3f, 0.0f, 1.0f);
-  // All of the double is the next power alone.
+  // A share of 1 is the next power of two without a double.
   return t < 1 ? Octave{std::exp2(whole), t * t * (3 - 2 * t)} : Octave{std::exp2(whole + 1), 0};
 }
 
@@ -46,7 +46,7 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.cut = scene.cut ? with(scene.cut->normal, scene.cut->offset) : Vector4f(0, 0, 0, 1);
   b.screen = {float(width), float(height), 1 / float(width), 1 / float(height)};
   const float scale = 1 / std::tan(0.5f * camera.field_of_view);
-  // Depth d of the buffer stands for the distance near far / (near + d (far - near)).
+  // Depth d in the buffer is the distance near far / (near + d (far - near)).
   b.depth = {camera.near, camera.far, aspect / scale, 1 / scale};
   b.ground = {0, 0, 1, scene.floor};
   b.water = {float(scene.surroundings), style.caustics, 0, distance};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The uniform block that all shaders of one picture share; shaders/frame.glsl has the same members in the same order.
+// The uniform block that all shaders of one picture share; shaders/frame.glsl explains the members, in the same order.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +16,14 @@ struct FrameBlock {
       fog, cut, screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
 };
 
-// Sizes for patterns that stay in their place in the world and yet suit any distance: a power of two, and the share of
-// its double, which is faded over to as the distance grows.
+// The size of a pattern that is fixed in the world and suits any viewing distance: a power of two, which fades into its
+// double as the distance grows.
 struct Octave {
   float size = 1, share_of_double = 0;
 };
 Octave octave_of(float distance);
 
-// All but what FitPass fills in.
+// Everything except what FitPass fills in.
 FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height);
 
 }  // namespace mercury::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest surface of each pixel, one sample a pixel, found before anything is shaded.
+// The nearest surface in each pixel, one sample per pixel, before anything is shaded.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace mercury::render {
 
-// At low quality only its distance, at half the picture's size, for ambient occlusion. Else at the picture's size, and
-// how much of the key light reaches it.
+// At low quality: its depth at half the picture's size, for ambient occlusion. Else: its depth and face at the
+// picture's size, and how much of the key light reaches it.
 class FrontPass {
  public:
   explicit FrontPass(const QualitySettings& settings);
   void resize(int width, int height);  // of the picture
 
-  // `surfaces`: draws what there is besides the floor: depth, and the number of the face.
+  // `surfaces`: draws everything except the floor: depth, and the number of the face.
   template <typename Surfaces>
   void draw(Surfaces surfaces) {
     begin();
@@ -25,7 +25,8 @@ class FrontPass {
   }
   GLuint depths() const { return depths_.get(); }
 
-  // Finds what of the key light arrives, and binds that for the skins. Uses the shadow map and the normals bound.
+  // Computes how much of the key light reaches each surface and binds the result for the skins. Uses the shadow map and
+  // the normals that are bound.
   void find_light() const;
 
  private:

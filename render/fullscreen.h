@@ -6,14 +6,14 @@
 
 namespace mercury::render {
 
-// fullscreen.vert with a fragment shader of its own.
+// fullscreen.vert with a given fragment shader.
 class Fullscreen {
  public:
   Fullscreen(std::string_view fragment_shader, const std::string& defines = "");
   GLuint program(const std::string& variant = "") const { return program_.get(variant); }
-  // Into the framebuffer bound now.
+  // Draws into the bound framebuffer.
   void draw(const std::string& variant = "") const;
-  // Into all of that framebuffer, without depth test.
+  // Draws into all of that framebuffer, without depth test.
   void draw_into(GLuint framebuffer, int width, int height) const;
 
  private:

@@ -125,7 +125,7 @@ Program make_program(std::span<const std::string_view> names, const std::string&
 }
 
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height) {
-  // While a framebuffer is bound, NVIDIA's driver does not see to it that what was drawn into it is read by others.
+  // While a framebuffer is bound, NVIDIA's driver does not make what was drawn into it visible to compute programs.
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glTextureBarrier();
   glUseProgram(program);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of OpenGL objects: made with the direct-state-access calls of OpenGL 4.5, deleted with the owner.
+// RAII owners of OpenGL objects, made with the direct state access of OpenGL 4.5.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -14,7 +14,7 @@
 
 namespace mercury::render {
 
-// A name that is released once. `Release` is a stateless function object.
+// The name of an object; the destructor releases it. `Release` is a stateless function object.
 template <typename Release>
 class GlName {
  public:
@@ -63,7 +63,7 @@ class Buffer {
   GLuint get() const { return name_.get(); }
   std::size_t size() const { return size_; }  // bytes written or reserved last
 
-  // At least that many bytes, contents undefined; never empty, so that it can always be bound.
+  // Reserves at least that many bytes with undefined contents. A buffer is never empty, so it can always be bound.
   void reserve(std::size_t bytes);
   // Replaces the contents.
   void write(const void* data, std::size_t bytes);
@@ -75,7 +75,7 @@ class Buffer {
   void write(const std::vector<T>& values) {
     write(values.data(), values.size() * sizeof(T));
   }
-  // As storage or uniform block at that binding; an array's length() in a shader is that of what was written last.
+  // Binds it as storage or uniform block. The length() of its array in a shader is that of the last write.
   void bind_storage(GLuint binding) const { bind(GL_SHADER_STORAGE_BUFFER, binding); }
   void bind_uniform(GLuint binding) const { bind(GL_UNIFORM_BUFFER, binding); }
 
@@ -86,9 +86,9 @@ class Buffer {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-// A buffer whose contents are replaced in every picture, at most twice. Pictures that the card has not finished keep
-// theirs: NVIDIA's driver has been seen to write into a storage buffer that an earlier picture was yet to read. Whoever
-// draws must see to it that the picture before the last is finished.
+// A buffer whose contents are replaced at most twice per picture. It is a ring of four, because pictures that the GPU
+// has not finished must keep their contents: NVIDIA's driver has been observed to write into a storage buffer that an
+// earlier picture had not read yet. Before drawing, make sure that the picture before the last is finished (Pace).
 class StreamBuffer {
  public:
   template <typename Values>
@@ -96,7 +96,7 @@ class StreamBuffer {
     next().write(values);
   }
   void write(const void* data, std::size_t bytes) { next().write(data, bytes); }
-  // As it was written last.
+  // The buffer of the last write.
   const Buffer& last() const { return ring_[current_]; }
   void bind_storage(GLuint binding) const { last().bind_storage(binding); }
   void bind_uniform(GLuint binding) const { last().bind_uniform(binding); }
@@ -108,25 +108,25 @@ class StreamBuffer {
   std::size_t current_ = 0;
 };
 
-// A texture of one level; samples = 0 for an ordinary one. Clamped to its edge, bilinear unless it is multisampled.
+// A texture of one level; samples > 0 = multisampled. Others are clamped to the edge and bilinear.
 Texture make_texture(GLenum format, int width, int height, int samples = 0);
 
-// A framebuffer of those colour textures and an optional depth texture.
+// A framebuffer with these colour textures and an optional depth texture.
 Framebuffer make_framebuffer(std::initializer_list<GLuint> colors, GLuint depth = 0);
 
 VertexArray make_vertex_array();
 
-// Compiles and links shaders/<name> for each name; the ending (.vert, .frag, .comp) tells the stage.
-// `defines` are lines put below #version, as "#define SAMPLES 4\n".
-// Throws ContextError with the shader's name and the driver's words.
+// Compiles and links shaders/<name> for each name; the extension (.vert, .frag, .comp) is the stage. `defines` are
+// lines below #version, such as "#define SAMPLES 4\n". Throws ContextError with the shader's name and the driver's
+// message.
 Program make_program(std::span<const std::string_view> names, const std::string& defines = "");
 inline Program make_program(std::initializer_list<std::string_view> names, const std::string& defines = "") {
   return make_program(std::span(names.begin(), names.size()), defines);
 }
 
-// Runs a compute program of 8 x 8 invocations a group once for each texel of a texture, which is its image 0.
-// Leaves no framebuffer bound. Data-centre cards compute with all of their processors, but draw with few: what costs
-// much a pixel goes this way.
+// Runs a compute program with groups of 8 x 8 invocations, one invocation per texel of a texture, which is its image 0.
+// Leaves no framebuffer bound. Work that is expensive per pixel is done this way, because GPUs for data centres compute
+// with all of their multiprocessors but draw with few.
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height);
 
 }  // namespace mercury::render

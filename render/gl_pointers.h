@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libepoxy's table of OpenGL functions, pointed elsewhere for a context that libepoxy does not know.
+// libepoxy's table of OpenGL functions, redirected for a context that libepoxy does not support.
 #pragma once
 
 #include <span>
@@ -11,12 +11,12 @@ struct GlPointer {
   void** pointer;    // where libepoxy keeps it
 };
 
-// Every function of epoxy/gl.h; the definition is generated at build time.
+// Every function of epoxy/gl.h. The build generates the definition.
 std::span<const GlPointer> gl_pointers();
 
-// Points each function that `find` knows at what it returns, and remembers what was there.
+// Sets each pointer to what `find` returns for its name, if anything, and keeps the previous pointers.
 void override_gl_pointers(void (*(*find)(const char*))());
-// Undoes it; nothing if nothing was overridden.
+// Restores the previous pointers; does nothing if none were overridden.
 void restore_gl_pointers();
 
 }  // namespace mercury::render

@@ -6,7 +6,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr GLuint64 patience = 20'000'000'000;  // [ns] for one picture, before the card is taken for dead
+constexpr GLuint64 patience = 20'000'000'000;  // [ns] per picture; after that the GPU counts as dead
 
 }  // namespace
 

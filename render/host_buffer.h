@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of the processor's that the card writes into, read without stopping the card.
+// Host memory that the GPU writes into, read without stopping the GPU.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +25,10 @@ class HostBuffer {
   }
 
   std::size_t size() const { return size_; }
-  // Copies what `from` will hold after the calls so far. Nothing waits.
+  // Starts a copy of what `from` holds after all earlier GL calls. Does not wait.
   void start(const Buffer& from, std::size_t bytes);
   bool started() const { return fence_ != nullptr; }
-  // Waits for the copy; the bytes stay until the next start(). Throws ContextError when the card does not answer.
+  // Waits for the copy. The bytes are valid until the next start(). Throws ContextError when the GPU does not answer.
   const std::uint8_t* finish();
 
  private:

@@ -31,9 +31,9 @@ void LatticePass::draw_springs(const Bodies& bodies, const Scene& scene, GLuint 
   glUniform1f(0, scene.spring_radius > 0 ? scene.spring_radius : 0.055f * bodies.typical_spring());
   glUniform1i(1, !scene.spring_values.empty() ? 2 : !scene.mass_values.empty() ? 1 : 0);
   set_scale(2, scene.scale);
-  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_a_call) {
+  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_per_call) {
     glUniform1ui(3, GLuint(first));
-    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.spring_count() - first)));
+    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_per_call, bodies.spring_count() - first)));
   }
 }
 
@@ -42,7 +42,7 @@ void LatticePass::draw_masses(const Bodies& bodies, const Scene& scene, GLuint p
   glUniform1f(0, scene.mass_radius > 0 ? scene.mass_radius : 0.11f * bodies.typical_spring());
   glUniform1i(1, scene.mass_values.empty() ? 0 : 1);
   set_scale(2, scene.scale);
-  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.mass_count())));
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_per_call, bodies.mass_count())));
 }
 
 void LatticePass::draw(const Bodies& bodies, const Scene& scene) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs as bars and masses as balls.
+// Draws springs as bars and masses as balls.
 #pragma once
 
 #include "render/bodies.h"
@@ -11,7 +11,7 @@ namespace mercury::render {
 class LatticePass {
  public:
   explicit LatticePass(const std::string& defines);
-  // What Scene::show asks for, into the picture or the shadow map. Uses the buffers bound for the skins.
+  // Draws what Scene::show requests, into the picture or the shadow map. Uses the buffers bound for the skins.
   void draw(const Bodies& bodies, const Scene& scene);
   void draw_shadow(const Bodies& bodies, const Scene& scene);
 
@@ -24,12 +24,13 @@ class LatticePass {
   StreamBuffer values_;
 };
 
-inline constexpr std::size_t most_quads_a_call = std::size_t(1) << 27;  // 6 vertices each still count within 32 bits
+inline constexpr std::size_t most_quads_per_call = std::size_t(1)
+                                                   << 27;  // 6 vertices each: their count fits into 32 bits
 
 inline constexpr int colormap_entries = 256;
 
-// Tells the program in use how values become places in the texture of colour maps: x = value * [0] + [1], y = [2].
-// An empty scale shows its middle, as color_at() does.
+// Sets a uniform of the current program that maps values to texture coordinates of the colour maps:
+// x = value * [0] + [1], y = [2]. A scale with low == high shows the middle of the map, as color_at() does.
 void set_scale(GLint location, const Scale& scale);
 
 }  // namespace mercury::render

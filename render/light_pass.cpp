@@ -43,7 +43,7 @@ std::vector<GLuint> grid_indices(int cells) {
   return indices;
 }
 
-// The same texels seen through a comparing sampler.
+// The same texels through a comparing sampler.
 Texture comparing_view(GLuint depths) {
   GLuint name = 0;
   glGenTextures(1, &name);
@@ -78,7 +78,8 @@ LightPass::LightPass(const QualitySettings& settings)
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
 }
 
-// Rays that the waves bend together add their light: the tile is drawn as a net of their paths.
+// A grid of light rays, bent by the waves, is drawn where the rays arrive. Where the grid folds over itself, light adds
+// up.
 void LightPass::draw_caustics() const {
   const float dark = 0;
   glClearNamedFramebufferfv(caustics_framebuffer_.get(), GL_COLOR, 0, &dark);
@@ -94,7 +95,7 @@ void LightPass::draw_caustics() const {
   glBindVertexArray(caustics_grid_.get());
   glDrawElements(GL_TRIANGLES, 6 * caustics_cells * caustics_cells, GL_UNSIGNED_INT, nullptr);
   glDisable(GL_BLEND);
-  // Where few rays cross, the finest level is ragged: it is averaged and then left out.
+  // The finest level is ragged where few rays cross, so sampling starts at the next one.
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 0);
   glGenerateTextureMipmap(caustics_.get());
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the key light falls: the shadow map, its trace on the floor, and under water the pattern of caustics.
+// Where the key light falls: the shadow map, the light on the floor, and under water the pattern of caustics.
 #pragma once
 
 #include "render/bodies.h"
@@ -14,14 +14,14 @@ class LightPass {
   explicit LightPass(const QualitySettings& settings);
   int shadow_side() const { return settings_.shadow_side; }
 
-  // `casting`: draws what throws shadows with the current framebuffer. Binds the shadow map.
+  // `casting`: draws what casts shadows into the bound framebuffer. Binds the shadow map.
   template <typename Casting>
   void draw_shadows(Casting casting) {
     begin_shadow();
     casting();
     end_shadow();
   }
-  // The floor's map of light and the caustics, and binds both.
+  // Draws the floor's light map and the caustics, and binds both.
   void draw_maps(bool under_water, bool with_floor);
 
  private:

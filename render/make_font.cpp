@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_font FONT.ttf OUTPUT.cpp: at build time, turns a font into a picture of signed distances and a table of glyphs.
+// make_font FONT.ttf OUTPUT.cpp: at build time, converts a font into a picture of signed distances and a table of
+// glyphs.
 #include <png.h>
 
 #define STB_TRUETYPE_IMPLEMENTATION
@@ -17,7 +18,7 @@
 namespace {
 
 constexpr int size = 44;    // pixels from the deepest descender to the highest ascender
-constexpr int padding = 7;  // pixels around a glyph in which its distance is told
+constexpr int padding = 7;  // pixels around a glyph that hold distances
 constexpr int atlas_width = 1024;
 
 struct Glyph {
@@ -57,7 +58,7 @@ Glyph draw_glyph(const stbtt_fontinfo& font, float scale, int code) {
   return glyph;
 }
 
-// Rows of glyphs, the highest first. Returns the atlas's height.
+// Places the glyphs in rows, the highest first. Returns the atlas's height.
 int pack(std::vector<Glyph>& glyphs) {
   std::vector<Glyph*> order;
   for (Glyph& glyph : glyphs) order.push_back(&glyph);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ambient occlusion: how much of the sky's light each point of the picture sees, computed at half its size.
+// Ambient occlusion: how much of the sky's light reaches each point of the picture, at half the picture's size.
 #pragma once
 
 #include "render/gl_objects.h"
@@ -12,7 +12,7 @@ class OcclusionPass {
   explicit OcclusionPass(const QualitySettings& settings);
   void resize(int width, int height);  // of the picture
 
-  // `depths`: of FrontPass. `radius`: how far away things darken [m]. Binds its result.
+  // `depths`: of FrontPass. `radius`: surfaces farther apart do not darken each other [m]. Binds its result.
   void draw(GLuint depths, float radius) const;
 
  private:

@@ -35,10 +35,10 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
 
 struct PlacedLabel {
   const Label* label;
-  float x, y, depth;  // where its lower middle is to be [pixels], and how far away the body is [m]
+  float x, y, depth;  // lower middle [pixels], distance of the body [m]
 };
 
-// The highest point of the body's box as it is seen, above the middle of the box.
+// Places the label between the middle and the highest visible point of the body's box.
 PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& camera, int width, int height) {
   const Eigen::Vector3f middle = camera.project(body.center(), width, height);
   float top = middle.y();
@@ -64,7 +64,7 @@ std::string tick_text(float value, float step) {
     std::snprintf(text.data(), text.size(), "%.3g", double(value));
   } else {
     int digits = std::clamp(int(std::ceil(-std::log10(std::abs(step)) - 1e-4f)), 0, 6);
-    // A step of 0.25 needs a digit more than its size tells.
+    // A step of 0.25 needs one digit more than its magnitude suggests.
     const float scaled = std::abs(step) * std::pow(10.0f, float(digits));
     if (std::abs(scaled - std::round(scaled)) > 1e-3f) ++digits;
     std::snprintf(text.data(), text.size(), "%.*f", digits, double(value));
@@ -94,8 +94,8 @@ void Overlay::text(std::string_view utf8, float x, float y, float size, float al
     const FontGlyph& glyph = glyph_of(code);
     OverlayQuad quad;
     quad.kind = OverlayQuad::glyph;
-    quad.place = {pen + scale * float(glyph.left), base + scale * float(glyph.top), scale * float(glyph.width),
-                  scale * float(glyph.height)};
+    quad.rectangle = {pen + scale * float(glyph.left), base + scale * float(glyph.top), scale * float(glyph.width),
+                      scale * float(glyph.height)};
     quad.source = {float(glyph.x), float(glyph.y), float(glyph.width), float(glyph.height)};
     quad.sharpness = scale * float(font.spread) * 255 / 128;
     set(quad.color, style_.text, opacity);
@@ -105,32 +105,32 @@ void Overlay::text(std::string_view utf8, float x, float y, float size, float al
   }
 }
 
-void Overlay::box(const Rectangle& place, float radius, Color color, float opacity) {
+void Overlay::box(const Rectangle& area, float radius, Color color, float opacity) {
   OverlayQuad quad;
-  quad.place = place;
+  quad.rectangle = area;
   quad.source.x = radius;
   set(quad.color, color, opacity);
   quads_.push_back(quad);
 }
 
-void Overlay::scale_bar(const Rectangle& place, Colormap map) {
+void Overlay::scale_bar(const Rectangle& area, Colormap map) {
   OverlayQuad quad;
   quad.kind = OverlayQuad::scale;
-  quad.place = place;
+  quad.rectangle = area;
   quad.map = std::uint32_t(map);
   quads_.push_back(quad);
 }
 
-void Overlay::backing(const Rectangle& place, float opacity) {
-  box(place, 0.35f * text_size_, style_.text_edge, opacity);
+void Overlay::backing(const Rectangle& area, float opacity) {
+  box(area, 0.35f * text_size_, style_.text_edge, opacity);
 }
 
-void Overlay::label(const Rectangle& place, std::span<const std::string_view> lines) {
-  backing(place, 0.5f);
-  float y = place.y + 0.09f * text_size_;
+void Overlay::label(const Rectangle& area, std::span<const std::string_view> lines) {
+  backing(area, 0.5f);
+  float y = area.y + 0.09f * text_size_;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const float size = text_size_ * (i == 0 ? 1 : small);
-    text(lines[i], place.x + 0.5f * place.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
+    text(lines[i], area.x + 0.5f * area.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
     y += size;
   }
 }
@@ -150,14 +150,13 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
     float across = 0;
     for (std::size_t i = 0; i < lines.size(); ++i)
       across = std::max(across, text_width(lines[i], text_size_ * (i == 0 ? 1 : small)));
-    Rectangle place{p.x - 0.5f * across - pad, p.y - down - 0.8f * pad, across + 2 * pad, down + 0.8f * pad};
-    if (place.x + place.width < 0 || place.x > width_ || p.y < 0 || place.y > height_) continue;
-    place.x = std::clamp(place.x, 0.0f, std::max(0.0f, width_ - place.width));
-    place.y = std::max(place.y, 0.0f);
-    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(place, other); }))
-      continue;
-    taken.push_back(place);
-    label(place, lines);
+    Rectangle area{p.x - 0.5f * across - pad, p.y - down - 0.8f * pad, across + 2 * pad, down + 0.8f * pad};
+    if (area.x + area.width < 0 || area.x > width_ || p.y < 0 || area.y > height_) continue;
+    area.x = std::clamp(area.x, 0.0f, std::max(0.0f, width_ - area.width));
+    area.y = std::max(area.y, 0.0f);
+    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(area, other); })) continue;
+    taken.push_back(area);
+    label(area, lines);
   }
 }
 
@@ -186,15 +185,14 @@ void Overlay::legend(const Legend& legend) {
   text(title, left, y, size);
   y += 1.5f * size;
   if (legend.scale) {
-    const Rectangle place{std::round(left), std::round(y + 0.3f * size), std::round(1.1f * size), bar};
-    scale_bar(place, legend.scale->map);
+    const Rectangle area{std::round(left), std::round(y + 0.3f * size), std::round(1.1f * size), bar};
+    scale_bar(area, legend.scale->map);
     const float range = legend.scale->high - legend.scale->low;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const float at = range != 0 ? (values[i] - legend.scale->low) / range : 0.5f;
-      const float line = place.y + (1 - at) * bar;
-      box({place.x + place.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text,
-          0.9f);
-      text(numbers[i], place.x + place.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
+      const float line = area.y + (1 - at) * bar;
+      box({area.x + area.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+      text(numbers[i], area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
     }
     y += bar + 0.6f * size;
   }
@@ -208,9 +206,9 @@ void Overlay::legend(const Legend& legend) {
 
 void Overlay::clock(std::string_view shown) {
   const float size = text_size_, pad = 0.45f * size;
-  const Rectangle place{size, height_ - 2.4f * size, text_width(shown, size) + 2 * pad, 1.4f * size};
-  backing(place, 0.5f);
-  text(shown, place.x + pad, place.y + 0.2f * size, size);
+  const Rectangle area{size, height_ - 2.4f * size, text_width(shown, size) + 2 * pad, 1.4f * size};
+  backing(area, 0.5f);
+  text(shown, area.x + pad, area.y + 0.2f * size, size);
 }
 
 void Overlay::caption(std::string_view shown) {
@@ -220,12 +218,12 @@ void Overlay::caption(std::string_view shown) {
   for (std::size_t i = 0; i < lines.size(); ++i)
     across = std::max(across, text_width(lines[i], i == 0 ? size : small * size));
   const float down = size * (1 + small * float(lines.size() - 1));
-  const Rectangle place{text_size_, text_size_, across + 2 * pad, down + 0.4f * size};
+  const Rectangle area{text_size_, text_size_, across + 2 * pad, down + 0.4f * size};
   if (lines.empty()) return;
-  backing(place, 0.5f);
-  float y = place.y + 0.2f * size;
+  backing(area, 0.5f);
+  float y = area.y + 0.2f * size;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    text(lines[i], place.x + pad, y, i == 0 ? size : small * size);
+    text(lines[i], area.x + pad, y, i == 0 ? size : small * size);
     y += i == 0 ? size : small * size;
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written on the picture: laid out in pixels, as rectangles that one draw call paints in order.
+// Text, legend, clock and scale on the picture, laid out in pixels. Everything is a rectangle (OverlayQuad); one draw
+// call paints all of them in order.
 #pragma once
 
 #include <span>
@@ -12,26 +13,26 @@
 
 namespace mercury::render {
 
-// Pixels from the upper left corner.
+// In pixels, from the upper left corner.
 struct Rectangle {
   float x = 0, y = 0, width = 0, height = 0;
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
-// As shaders/overlay.vert reads it.
+// The layout of shaders/overlay.vert.
 struct OverlayQuad {
   enum Kind : std::uint32_t { glyph, box, scale };
-  Rectangle place;
+  Rectangle rectangle;
   Rectangle source;               // glyph: texels of the atlas. box: corner radius in x. scale: unused
   float color[4] = {1, 1, 1, 1};  // linear, opacity
   float edge[4] = {0, 0, 0, 0};   // glyph: colour of the outline
   std::uint32_t kind = box;
-  float sharpness = 1;    // glyph: pixels of the picture that 255 steps of the atlas span
+  float sharpness = 1;    // glyph: pixels of the picture per 255 steps of grey
   std::uint32_t map = 0;  // scale: Colormap
   std::uint32_t padding = 0;
 };
 
-// Collects quads.
+// Lays out one picture's text and collects its quads.
 class Overlay {
  public:
   Overlay(int width, int height, float text_size, const Style& style);
@@ -39,14 +40,14 @@ class Overlay {
   float text_size() const { return text_size_; }
   std::span<const OverlayQuad> quads() const { return quads_; }
 
-  // One line; (x, y) is its upper left corner, or upper middle or upper right one for align 0.5 or 1.
+  // One line of text. (x, y) is its upper left corner, or its upper middle (align 0.5) or upper right corner (align 1).
   void text(std::string_view utf8, float x, float y, float size, float align = 0, float opacity = 1);
-  void box(const Rectangle& place, float radius, Color color, float opacity);
-  // A vertical bar, the scale's high end up.
-  void scale_bar(const Rectangle& place, Colormap map);
+  void box(const Rectangle& area, float radius, Color color, float opacity);
+  // A vertical bar with the high end of the scale at the top.
+  void scale_bar(const Rectangle& area, Colormap map);
 
-  // Names above bodies, given the box of each as it stands in the picture. Labels of bodies behind others, outside the
-  // picture, or that would cover a label in front of them, are left out.
+  // Labels above bodies, given each body's box in the picture. Leaves out labels outside the picture and those that
+  // would cover the label of a nearer body.
   void labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera);
   void legend(const Legend& legend);
   void clock(std::string_view text);
@@ -55,15 +56,15 @@ class Overlay {
   void length(const Camera& camera);
 
  private:
-  void backing(const Rectangle& place, float opacity);
-  void label(const Rectangle& place, std::span<const std::string_view> lines);
+  void backing(const Rectangle& area, float opacity);
+  void label(const Rectangle& area, std::span<const std::string_view> lines);
 
   float width_, height_, text_size_;
   Style style_;
   std::vector<OverlayQuad> quads_;
 };
 
-// "0.25", "1e-05": as short as tells neighbouring ticks apart.
+// "0.25", "1e-05": as few digits as distinguish neighbouring ticks.
 std::string tick_text(float value, float step);
 
 // The longest of 1, 2, 5 times a power of ten that is not above `most`.

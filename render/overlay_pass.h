@@ -10,7 +10,7 @@ namespace mercury::render {
 class OverlayPass {
  public:
   OverlayPass();
-  // `colormaps` has one map a row. Into an sRGB framebuffer.
+  // `colormaps`: a texture with one map per row. Draws into an sRGB framebuffer.
   void draw(const Overlay& overlay, GLuint framebuffer, int width, int height, GLuint colormaps);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets the processor be at most two pictures ahead of the card, as StreamBuffer wants it.
+// Keeps the CPU at most two pictures ahead of the GPU, as StreamBuffer requires.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -15,7 +15,7 @@ class Pace {
       if (fence) glDeleteSync(fence);
   }
   void begin() {
-    constexpr GLuint64 patience = 20'000'000'000;  // [ns], as for reading back
+    constexpr GLuint64 patience = 20'000'000'000;  // [ns]
     GLsync& fence = fences_[next_];
     if (fence) {
       glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, patience);

@@ -37,7 +37,7 @@ void PassTimer::end() {
   current_ = (current_ + 1) % ring_.size();
 }
 
-// Times that are not there yet are given up rather than waited for.
+// Drops times that have not arrived yet; never waits.
 void PassTimer::collect(Picture& picture) {
   if (!picture.pending) return;
   picture.pending = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the card takes for the parts of a picture, told some pictures later so that nothing waits.
+// GPU times of the parts of a picture. They are read some pictures later, so that nothing waits.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct PassTime {
 class PassTimer {
  public:
   PassTimer();
-  // Begins a picture, ends a part of it, ends the picture.
+  // begin() a picture, mark() the end of each part, end() the picture.
   void begin();
   void mark(const char* name);
   void end();

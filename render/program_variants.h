@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One program in the forms that scenes need, each compiled when it is first needed.
+// One program in several variants, each compiled when it is first needed.
 #pragma once
 
 #include <initializer_list>
@@ -12,13 +12,13 @@
 
 namespace mercury::render {
 
-// What is known of a picture before it is drawn is decided in the shader's text: Mesa's software renderer executes both
-// sides of every branch.
+// Decisions that hold for a whole picture are made by #define in the shader's text and not by branches, because Mesa's
+// software renderer executes both sides of every branch.
 class ProgramVariants {
  public:
-  // `defines` hold for all variants.
+  // `defines`: for all variants.
   ProgramVariants(std::initializer_list<std::string_view> shaders, std::string defines);
-  // The program with further lines of #define.
+  // The program with these additional lines of #define.
   GLuint get(const std::string& defines) const;
 
  private:

@@ -28,7 +28,7 @@ std::string_view name_of(Quality quality) {
 Quality quality_named(std::string_view name) {
   for (const auto& [value, known] : quality_names)
     if (known == name) return value;
-  throw std::invalid_argument("'" + std::string(name) + "' is no quality; give auto, low, medium or high");
+  throw std::invalid_argument("'" + std::string(name) + "' is not a quality; give auto, low, medium or high");
 }
 
 QualitySettings settings_of(Quality quality) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each level of quality spends where.
+// The settings of each level of quality.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 namespace mercury::render {
 
 struct QualitySettings {
-  int samples = 4;                           // a pixel
+  int samples = 4;                           // per pixel
   int shadow_side = 1024;                    // texels
-  int ground_side = 512;                     // texels of the floor's map of light
+  int ground_side = 512;                     // texels of the floor's light map
   int caustics_side = 320;                   // texels of a tile
   int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
   int occlusion_taps = 7;
   int particles = 500;
   int skin_blockers = 0, skin_taps = 4;  // of shadows on skins
-  bool front_light = false;              // shadows on skins are found once a pixel, before skins are drawn
+  bool front_light = false;              // shadows on skins: once per pixel, before skins are drawn
   std::string defines() const;           // for the shaders
   std::string skin_defines() const;      // for the shaders of bodies
 };

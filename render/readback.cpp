@@ -56,7 +56,7 @@ bool Readback::full() const { return parts_->pending == parts_->slots.size(); }
 
 void Readback::start(const Renderer& renderer) {
   Parts& p = *parts_;
-  if (full()) throw std::logic_error("Readback::start: every buffer of the ring is under way");
+  if (full()) throw std::logic_error("Readback::start: every buffer of the ring is pending");
   if (renderer.width() != p.width || renderer.height() != p.height)
     throw std::invalid_argument("Readback::start: the picture has another size");
   GLuint name = 0;
@@ -79,7 +79,7 @@ void Readback::start(const Renderer& renderer) {
 
 void Readback::finish(Image& into) {
   Parts& p = *parts_;
-  if (p.pending == 0) throw std::logic_error("Readback::finish: no picture is under way");
+  if (p.pending == 0) throw std::logic_error("Readback::finish: no picture is pending");
   HostBuffer& slot = p.slots[p.first];
   p.first = (p.first + 1) % p.slots.size();
   --p.pending;

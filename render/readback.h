@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures from the card to the processor without making either wait.
+// Copies pictures from the GPU to the CPU without making either wait.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace mercury::render {
 class Renderer;
 
 enum class PixelFormat {
-  rgb,     // 3 bytes a pixel, upper row first
-  rgba,    // 4 bytes a pixel, upper row first
+  rgb,     // 3 bytes per pixel, upper row first
+  rgba,    // 4 bytes per pixel, upper row first
   yuv420,  // planes Y, U, V as encoders take them (I420): BT.709, limited range; width and height must be even
 };
 
@@ -26,20 +26,20 @@ struct Image {
 // Bytes of one picture.
 std::size_t image_size(PixelFormat format, int width, int height);
 
-// A ring of buffers that pictures pass through: start() after draw(), finish() some frames later.
+// A ring of buffers: start() a copy after draw(), finish() it some frames later.
 class Readback {
  public:
-  // `ring`: how many pictures may be under way. Throws std::invalid_argument for odd sizes with yuv420.
+  // `ring`: how many copies may be pending. Throws std::invalid_argument for odd sizes with yuv420.
   Readback(PixelFormat format, int width, int height, int ring = 3);
   ~Readback();
   Readback(Readback&&) noexcept;
   Readback& operator=(Readback&&) noexcept;
 
-  // Begins to read the renderer's picture. At most `ring` may be pending: call finish() first when full().
+  // Starts to copy the renderer's picture. Call finish() first when full().
   void start(const Renderer& renderer);
   std::size_t pending() const;
   bool full() const;
-  // The oldest picture under way, in the order of start(); waits for it. `into` keeps its memory if it is large enough.
+  // Waits for the oldest pending picture. `into` keeps its memory if that is large enough.
   void finish(Image& into);
 
  private:
@@ -47,7 +47,7 @@ class Readback {
   std::unique_ptr<Parts> parts_;
 };
 
-// The renderer's picture, now.
+// Reads the renderer's picture and waits for it.
 Image read(const Renderer& renderer, PixelFormat format = PixelFormat::rgb);
 
 }  // namespace mercury::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a scene into a picture of its own, from which it can be read back, shown in a window or filmed.
+// Draws a scene into a picture of its own. Read it back (render/readback.h) or show it in a window (present()).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace mercury::render {
 
-// automatic: high on a card, low where the processor draws.
+// automatic: high on a GPU, low with a software renderer.
 enum class Quality { automatic, low, medium, high };
 
 // "auto", "low", "medium", "high".
@@ -30,7 +30,7 @@ struct RendererOptions {
   float text_size = 0;  // height of a line of text in pixels; 0 = from the picture's height
 };
 
-// All members need the context that was current at construction to be current.
+// Every member, the destructor included, needs the context of the constructor to be current.
 class Renderer {
  public:
   // Throws ContextError when the driver refuses a shader or the picture is larger than it can draw.
@@ -45,10 +45,10 @@ class Renderer {
   int height() const;
   Quality quality() const;  // never automatic
 
-  // Replaces all bodies; positions are those at rest until told otherwise.
+  // Replaces all bodies, with their positions at rest.
   // Throws std::invalid_argument for an index out of range or a length that does not fit.
   void set_bodies(std::span<const Body> bodies);
-  // The same for bodies that were made ready before, as on another thread: takes no longer than the copy to the card.
+  // The same with bodies that were prepared before, perhaps on another thread: costs only the copy to the GPU.
   void set_bodies(std::shared_ptr<const BodyData> bodies);
   std::size_t body_count() const;
   std::size_t mass_count() const;  // of all bodies together
@@ -57,20 +57,20 @@ class Renderer {
   // Body i's masses are those from mass_offsets()[i] to mass_offsets()[i + 1].
   std::span<const std::uint32_t> mass_offsets() const;
 
-  // The GL buffer of 3 * mass_count() floats from which everything is drawn: fill it with CUDA, glNamedBufferSubData or
-  // Scene::positions. Its storage is made anew in set_bodies() and only there: unregister it from CUDA before.
+  // The GL buffer with the positions that are drawn, 3 * mass_count() floats: fill it with CUDA, glNamedBufferSubData
+  // or Scene::positions. Only set_bodies() replaces its storage: unregister the buffer from CUDA before that call.
   unsigned position_buffer() const;
 
-  // The box around each body in its own coordinates, as position_buffer() stands now. Waits for the card.
+  // The box around each body in its own coordinates, from position_buffer(). Waits for the GPU.
   std::vector<Bounds> body_bounds();
 
   // Draws the picture.
   void draw(const Scene& scene, const Camera& camera);
 
-  // How long the parts of a recent picture took the card, in the order in which they are drawn; empty at first.
+  // GPU time of each part of a recent picture, in drawing order; empty at first.
   const std::vector<PassTime>& times() const;
 
-  // The finished picture: an sRGB8_ALPHA8 texture, lower row first as OpenGL has it. Changes in resize().
+  // The finished picture: an sRGB8_ALPHA8 texture, lower row first as usual in OpenGL. resize() replaces it.
   unsigned picture() const;
   // Copies the picture into a framebuffer (0 = the window's), scaled to the rectangle.
   void present(unsigned framebuffer, int x, int y, int width, int height) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be drawn, as plain numbers: bodies that deform, what they look like now, and what is written beside them.
+// The scene to draw, as plain numbers: bodies that deform, their colours, and the text beside them.
 //
-// Lengths in metres, axes right-handed with z up. Each body lives in its own coordinates and is set into the picture by
-// a placement. Spans are read during the call they are given to and not kept.
+// Lengths in metres, axes right-handed with z up. Each body has coordinates of its own; a placement moves it into the
+// picture. Functions read spans during the call and do not keep them.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,28 @@
 
 namespace mercury::render {
 
-// The parts of a body that stay while it moves. Indices count the body's own masses.
+// The parts of a body that stay the same while it moves. Indices count the body's own masses.
 struct Body {
-  std::span<const float> rest_positions;        // 3 a mass; tells which edges of the skin are sharp
-  std::span<const std::uint32_t> faces;         // 3 masses a face, counter-clockwise seen from outside
-  std::span<const std::uint32_t> springs;       // 2 masses a spring
-  std::span<const std::uint32_t> face_materials;    // one a face, index into Scene::materials; empty = all 0
-  std::span<const std::uint32_t> spring_materials;  // one a spring, the same
+  std::span<const float> rest_positions;            // 3 per mass; they decide which edges of the skin are sharp
+  std::span<const std::uint32_t> faces;             // 3 masses per face, counter-clockwise seen from outside
+  std::span<const std::uint32_t> springs;           // 2 masses per spring
+  std::span<const std::uint32_t> face_materials;    // one per face, index into Scene::materials; empty = all 0
+  std::span<const std::uint32_t> spring_materials;  // one per spring, the same
 };
 
-// What the faces and springs of one material look like at this moment.
+// How the faces and springs of one material are drawn at this time.
 struct RenderMaterial {
   Color color;
   float activation = 0;  // of a muscle, -1 stretched to +1 contracted; it lights up as it contracts
 };
 
-// Where a body stands in the picture, and how.
+// Where and how a body is drawn.
 struct Placement {
   Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
-  bool selected = false;         // drawn with a bright rim
-  bool faulty = false;           // drawn grey, with a red rim: it has exploded
-  bool smooth = false;           // skin rounded rather than with its edges
+  bool selected = false;             // drawn with a bright rim
+  bool faulty = false;               // drawn grey, with a red rim: it has exploded
+  bool smooth = false;               // skin rounded rather than with its edges
   std::uint32_t first_material = 0;  // added to the body's face_materials and spring_materials, below 2^24
 };
 
@@ -56,7 +56,7 @@ enum class Surroundings {
 
 enum class Theme { dark, light };
 
-// An arrow fixed to a body's coordinates.
+// An arrow in a body's coordinates.
 struct Arrow {
   std::uint32_t body = 0;
   Eigen::Vector3f from{0, 0, 0};
@@ -64,14 +64,14 @@ struct Arrow {
   Color color;
 };
 
-// A line through a body's coordinates, such as the way of its centre of mass.
+// A line in a body's coordinates, such as the path of its centre of mass.
 struct Path {
   std::uint32_t body = 0;
-  std::span<const float> points;  // 3 a point, oldest first; older points fade
+  std::span<const float> points;  // 3 per point, oldest first; older points fade
   Color color;
 };
 
-// Text that hovers above a body; '\n' begins a new, smaller line.
+// Text above a body; '\n' starts a new, smaller line.
 struct Label {
   std::uint32_t body = 0;
   std::string text;
@@ -85,7 +85,7 @@ struct Legend {
   std::vector<std::pair<Color, std::string>> swatches;
 };
 
-// Everything on the side of normal . x > offset is cut away, in the picture's coordinates.
+// Cuts away everything with normal . x > offset, in the picture's coordinates.
 struct CutPlane {
   Eigen::Vector3f normal{1, 0, 0};
   float offset = 0;  // [m]
@@ -98,13 +98,13 @@ struct Show {
 };
 
 struct Scene {
-  // 3 floats a mass of all bodies, one body after the other, in each body's own coordinates.
-  // Empty = Renderer::position_buffer() holds them already.
+  // 3 floats per mass, one body after the other, each in its own coordinates.
+  // Empty = Renderer::position_buffer() already holds them.
   std::span<const float> positions;
-  std::span<const Placement> placements;  // one a body; empty = all at their own coordinates
-  std::span<const RenderMaterial> materials;            // by Body::face_materials and spring_materials; empty = one neutral look
+  std::span<const Placement> placements;      // one per body; empty = no offset for any
+  std::span<const RenderMaterial> materials;  // by Body::face_materials and spring_materials; empty = grey
 
-  // Numbers to colour by, through `scale`, one a face / mass / spring of all bodies; empty = looks.
+  // Values to colour by, through `scale`, one per face, mass or spring of all bodies; empty = colours of `materials`.
   // Skin takes face_values, else mass_values; springs take spring_values, else mass_values; masses take mass_values.
   std::span<const float> face_values, mass_values, spring_values;
   Scale scale;
@@ -117,14 +117,14 @@ struct Scene {
   Surroundings surroundings = Surroundings::water;
   Theme theme = Theme::dark;
   float floor = 0;                // height of the ground or sand [m]
-  Eigen::Vector3f flow{0, 0, 0};  // of the water, seen in drifting particles [m/s]
-  double time = 0;                // drives caustics and particles [s]
+  Eigen::Vector3f flow{0, 0, 0};  // of the water; particles drift with it [m/s]
+  double time = 0;                // moves caustics and particles [s]
 
   std::span<const Arrow> arrows;
   std::span<const Path> paths;
   std::span<const Label> labels;
   std::optional<Legend> legend;
-  std::string clock;       // text in the lower left corner, as "12.3 s   x4"; empty = none
+  std::string clock;       // text in the lower left corner, such as "12.3 s   x4"; empty = none
   std::string caption;     // text in the upper left corner; empty = none
   bool scale_bar = false;  // a length in metres, at the depth of the camera's target
 };

@@ -13,15 +13,15 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-// As shaders/bodies.glsl has it.
+// The layout of shaders/bodies.glsl.
 struct PlacementRecord {
   float x = 0, y = 0, z = 0;
   std::uint32_t flags = 0;
 };
 
-std::uint32_t flags_of(const Placement& place) {
-  return (place.hidden ? 1u : 0u) | (place.selected ? 2u : 0u) | (place.faulty ? 4u : 0u) | (place.smooth ? 8u : 0u) |
-         place.first_material << 8;
+std::uint32_t flags_of(const Placement& placement) {
+  return (placement.hidden ? 1u : 0u) | (placement.selected ? 2u : 0u) | (placement.faulty ? 4u : 0u) |
+         (placement.smooth ? 8u : 0u) | placement.first_material << 8;
 }
 
 std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
@@ -60,7 +60,8 @@ void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   if (!scene.positions.empty())
     glNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(scene.positions.size_bytes()), scene.positions.data());
   else
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // whoever has written them
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // makes earlier writes to them visible
   placements_.write(placement_records(scene.placements, bodies.body_count()));
   materials_.write(material_records(scene.materials));
   face_values_.write(scene.face_values);

@@ -10,7 +10,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr float reach_of_springs = 1.6f;  // typical springs; beyond, the inside of a body has no look of its own
+constexpr float reach_of_springs = 1.6f;  // [typical spring lengths]; farther from any spring, the inside is plain grey
 
 }  // namespace
 
@@ -44,9 +44,9 @@ void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
   glUniform1f(0, reach_of_springs * bodies.typical_spring());
   glUniform1i(1, !scene.mass_values.empty() ? 1 : !scene.face_values.empty() ? 2 : 0);
   set_scale(2, scene.scale);
-  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_a_call) {
+  for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_per_call) {
     glUniform1ui(3, GLuint(first));
-    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_a_call, bodies.spring_count() - first)));
+    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_per_call, bodies.spring_count() - first)));
   }
   glBindTextureUnit(binding::section, colors_.get());
 }

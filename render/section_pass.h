@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bodies look like inside, where a plane cuts them.
+// The inside of bodies where a plane cuts them.
 #pragma once
 
 #include "render/bodies.h"
@@ -8,8 +8,9 @@
 
 namespace mercury::render {
 
-// A map of the picture's size of the cut's plane: each place takes the look of the spring nearest to it (a Voronoi
-// diagram, drawn as Hoff et al. 1999 do).
+// Draws a map of the cut's plane at the picture's size: each point takes the material, or the value's colour, of the
+// nearest spring. This is a Voronoi diagram, drawn with the depth test as in Hoff et al. 1999: each spring draws a
+// square whose depth is the distance to the spring's middle, and the nearest wins.
 class SectionPass {
  public:
   SectionPass();

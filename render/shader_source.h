@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shaders of shaders/, embedded at build time.
+// The files of shaders/, embedded at build time.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ struct ShaderSource {
 
 std::span<const ShaderSource> shader_sources();
 
-// The text of one shader: #version first, then `defines`, each line #include "file" replaced by that file, once.
-// Throws std::out_of_range for a name that is not there.
+// The text of one shader: #version, `defines`, then the file, with each #include "file" replaced by that file at its
+// first occurrence. Throws std::out_of_range for an unknown name.
 std::string shader_text(std::string_view name, const std::string& defines = "");
 
 }  // namespace mercury::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Skins of all bodies: one call for the picture, one for the shadow map, one for depth alone.
+// Draws the skins of all bodies: one call for the picture, one for the shadow map, one for depth alone.
 #pragma once
 
 #include "render/bodies.h"
@@ -15,15 +15,15 @@ class SkinPass {
   explicit SkinPass(const std::string& defines);
   // Call when the bodies have been replaced.
   void attach(const Bodies& bodies);
-  // Computes what follows from the positions and the frame's block: frames of faces, if wanted normals at masses, and
-  // which faces are to be drawn. `cut`: a part of what is drawn next is cut away.
+  // Computes from the positions and the frame block: a FaceFrame per face, normals at masses if `smooth`, and the lists
+  // of faces to draw. `cut`: a plane cuts the bodies of this picture.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
   enum class ColorBy { materials, face_values, mass_values };
-  // `variant`: lines of #define that tell of the scene, as shaders/skin.frag lists them.
+  // `variant`: lines of #define; shaders/skin.frag explains them.
   void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
-  // And, where there is a colour, the number of the face, counted from 1. `variant`: "" or, with a cut whose inside is
-  // drawn, cut_variant; its number is the largest.
+  // Draws depth and, into a colour attachment if there is one, the number of the face, counted from 1. `variant`: "",
+  // or cut_variant for the backs that show a cut; their number is the largest.
   void draw_depth(const std::string& variant) const;
   void draw_shadow() const;
 
@@ -41,7 +41,7 @@ class SkinPass {
 
 inline constexpr const char* cut_variant = "#define CUT\n";
 
-// Runs the current compute program, whose local size is 64, for at least `count` invocations.
+// Runs the current compute program, with a local size of 64, for at least `count` invocations.
 void dispatch(std::size_t count);
 
 }  // namespace mercury::render

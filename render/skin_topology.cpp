@@ -30,10 +30,10 @@ struct Skin {
   std::uint32_t mass(std::uint32_t face, std::uint32_t corner) const {
     return faces[3 * std::size_t(face) + corner % 3];
   }
-  Vector3f place(std::uint32_t mass) const { return Vector3f(positions.data() + 3 * std::size_t(mass)); }
+  Vector3f position(std::uint32_t mass) const { return Vector3f(positions.data() + 3 * std::size_t(mass)); }
   Vector3f normal(std::uint32_t face) const {
-    const Vector3f a = place(mass(face, 0));
-    return (place(mass(face, 1)) - a).cross(place(mass(face, 2)) - a).normalized();
+    const Vector3f a = position(mass(face, 0));
+    return (position(mass(face, 1)) - a).cross(position(mass(face, 2)) - a).normalized();
   }
 };
 
@@ -53,7 +53,7 @@ std::vector<HalfEdge> half_edges(std::span<const std::uint32_t> faces) {
   return edges;
 }
 
-// The face that runs along the edge from b to a while `face` runs from a to b.
+// The neighbour of `face` across its edge from a to b: it has the edge from b to a.
 std::uint32_t across(const Skin& skin, std::uint32_t face, std::uint32_t a, std::uint32_t b) {
   const std::uint64_t key = key_of(a, b);
   auto edge = std::lower_bound(skin.edges.begin(), skin.edges.end(), key,
@@ -64,13 +64,13 @@ std::uint32_t across(const Skin& skin, std::uint32_t face, std::uint32_t a, std:
 }
 
 float corner_cosine(const Skin& skin, std::uint32_t face, std::uint32_t corner) {
-  const Vector3f at = skin.place(skin.mass(face, corner));
-  const Vector3f u = skin.place(skin.mass(face, corner + 1)) - at;
-  const Vector3f v = skin.place(skin.mass(face, corner + 2)) - at;
+  const Vector3f at = skin.position(skin.mass(face, corner));
+  const Vector3f u = skin.position(skin.mass(face, corner + 1)) - at;
+  const Vector3f v = skin.position(skin.mass(face, corner + 2)) - at;
   return u.dot(v) / std::max(u.norm() * v.norm(), 1e-20f);
 }
 
-// The corner whose opposite edge could be a quadrilateral's diagonal: the one nearest to a right angle.
+// The corner nearest to a right angle: its opposite edge may be the diagonal of a quadrilateral.
 std::uint32_t squarest_corner(const Skin& skin, std::uint32_t face) {
   std::uint32_t best = 0;
   for (std::uint32_t corner = 1; corner < 3; ++corner)
@@ -82,7 +82,7 @@ struct Partner {
   std::uint32_t face = no_face, corner = 0;
 };
 
-// The other half of the quadrilateral that `face` may be half of.
+// The other half of the quadrilateral, if `face` is half of one.
 Partner partner_of(const Skin& skin, std::uint32_t face, std::uint32_t corner) {
   const std::uint32_t b = skin.mass(face, corner + 1), c = skin.mass(face, corner + 2);
   const std::uint32_t other = across(skin, face, b, c);

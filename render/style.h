@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light and colours of a theme in its surroundings.
+// Light and colours of each theme and surroundings.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,15 +8,15 @@
 
 namespace mercury::render {
 
-// Linear light throughout.
+// All colours of light are linear.
 struct Style {
   Eigen::Vector3f to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
   Eigen::Vector3f key_light, sky_light, ground_light;
-  float key_size = 0.08f;                       // tangent of the key light's half angle: how soft shadows get
-  Eigen::Vector3f backdrop_high, backdrop_low;  // far away, level and above; straight down
+  float key_size = 0.08f;                       // tangent of the key light's half angle; larger = softer shadows
+  Eigen::Vector3f backdrop_high, backdrop_low;  // far away: level and above; straight down
   Eigen::Vector3f floor_color, line_color;
-  Eigen::Vector3f fog{0, 0, 0};  // how fast colours drown [1 / distance from eye to target]
-  float caustics = 0;            // strength of the light's pattern under water
+  Eigen::Vector3f fog{0, 0, 0};  // extinction of each colour [1 / distance from eye to target]
+  float caustics = 0;            // contrast of the light pattern under water
   float glow = 1;                // of contracting muscles
   float vignette = 0.25f;
   Color text, text_edge;  // of labels and legends

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The textures that a picture is drawn into.
+// The textures of one picture.
 #pragma once
 
 #include "render/gl_objects.h"

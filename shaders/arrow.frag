@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arrow: bright, so that it is read before it is seen as a thing.
+// An arrow: brightly and evenly shaded, because it is a sign and not an object.
 #include "frame.glsl"
 #include "shading.glsl"
 layout(location = 0) in float across;

@@ -4,7 +4,7 @@
 #include "bodies.glsl"
 #include "ribbon.glsl"
 struct Arrow {
-  vec4 from;    // body's coordinates; w = body as bits
+  vec4 from;    // in the body's coordinates; w = bits of the body's index
   vec4 vector;
   vec4 color;   // linear
 };
@@ -27,7 +27,7 @@ void main() {
   vec3 tail = arrow.from.xyz + placement.offset;
   float size = length(arrow.vector.xyz);
   float pixel = pixel_size(tail);
-  // Slender, but never thinner than can be seen.
+  // Slender, but never thinner than a visible line.
   float shaft = max(0.022 * size, 0.9 * pixel);
   float head = min(max(5.0 * shaft, 6.0 * pixel), 0.6 * size);
   axis = arrow.vector.xyz / max(size, 1e-12);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Half of a Gaussian blur: along one axis.
+// One of the two passes of a Gaussian blur: along one axis.
 layout(binding = 0) uniform sampler2D source;
-layout(location = 0) in vec2 place;
+layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 result;
 layout(location = 0) uniform vec2 stride;  // between samples, in texture coordinates
 
@@ -10,7 +10,7 @@ void main() {
   float weights = 0.0;
   for (int i = -6; i <= 6; ++i) {
     float weight = exp(-0.09 * float(i * i));
-    sum += weight * textureLod(source, place + float(i) * stride, 0.0).rgb;
+    sum += weight * textureLod(source, uv + float(i) * stride, 0.0).rgb;
     weights += weight;
   }
   result = vec4(sum / weights, 1.0);

@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies' buffers, as render/bodies.h fills them, and what is computed from them each frame.
+// The bodies' buffers (render/bodies.h), the scene's placements and materials (render/scene_buffers.h), and the records
+// that compute passes write for each picture.
 #define NO_FACE 0xffffffffu
 
 struct Placement {
   vec3 offset;
-  uint flags;  // PLACEMENT_..., and from bit 8 on what is added to the body's looks
+  uint flags;  // PLACEMENT_...; from bit 8 on, what is added to the body's material indices
 };
 #define PLACEMENT_HIDDEN 1u
 #define PLACEMENT_SELECTED 2u
 #define PLACEMENT_FAULTY 4u
 #define PLACEMENT_SMOOTH 8u
 
+// See render/skin_topology.h.
 struct FaceRecord {
   uvec4 neighbours;
   uint material;
   uint shape;
 };
 
-// A face as it stands now, in its body's coordinates: a point p of it has u = dot(p, along_u.xyz) + along_u.w, v likewise.
-// Its first corner has u = v = 0, the next u = 1, the last v = 1.
+// Coordinates u and v on a face at this time: a point p in the body's coordinates has u = dot(p, along_u.xyz) + along_u.w
+// and v likewise. The first corner has u = v = 0, the second u = 1, the third v = 1.
 struct FaceFrame {
   vec4 along_u;
   vec4 along_v;
 };
 
-// A direction as two numbers from -1 to 1 (octahedral; Meyer et al. 2010), and in 32 bits.
+// A direction as two numbers from -1 to 1 (octahedral map; Meyer et al. 2010); packed_direction stores them in 32 bits.
 vec2 octahedral(vec3 n) {
   vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
   if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
@@ -32,7 +34,7 @@ vec2 octahedral(vec3 n) {
 }
 uint packed_direction(vec3 n) { return packSnorm2x16(octahedral(n)); }
 
-// Not of length 1.
+// The direction; not normalized.
 vec3 unpacked_direction(uint bits) {
   vec2 p = unpackSnorm2x16(bits);
   float z = 1.0 - abs(p.x) - abs(p.y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The box around each body's finite masses, in its own coordinates: one work group a body.
+// The box around each body's finite masses, in its own coordinates: one work group per body.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;
 
@@ -18,7 +18,7 @@ void main() {
   vec3 low = vec3(1e30), high = vec3(-1e30);
   for (uint mass = mass_offsets[body] + lane; mass < mass_offsets[body + 1u]; mass += 64u) {
     vec3 p = position_of(mass);
-    if (!all(lessThan(abs(p), vec3(1e9)))) continue;  // also false where p is not a number
+    if (!all(lessThan(abs(p), vec3(1e9)))) continue;  // also false for NaN
     low = min(low, p);
     high = max(high, p);
   }

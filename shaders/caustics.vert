@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray of light for each corner of a grid, bent by the waves above and followed down to the tile.
+// One ray of light per corner of a grid: the waves bend it, and it ends in the tile.
 #include "frame.glsl"
-layout(location = 0) uniform int cells;  // of the grid along a side
+layout(location = 0) uniform int cells;  // per side of the grid
 
 layout(location = 0) out vec2 source;  // where the ray met the surface, in tiles
 out gl_PerVertex { vec4 gl_Position; };
 
 const int waves = 12;
-// Whole numbers of waves a tile, so that it repeats without a seam.
+// Whole numbers of waves per tile, so that tiles join without a seam.
 const vec2 vectors[waves] = vec2[](vec2(1, 2), vec2(2, -1), vec2(-2, 2), vec2(3, 1), vec2(-1, -3), vec2(3, -3),
                                    vec2(-4, 1), vec2(2, 4), vec2(4, 3), vec2(-3, 5), vec2(-5, -3), vec2(6, -2));
 
 void main() {
-  // The grid reaches beyond the tile as far as rays are bent.
+  // The grid is larger than the tile, by the distance that rays are bent.
   const float beyond = 0.2;
   vec2 corner = vec2(gl_VertexID % (cells + 1), gl_VertexID / (cells + 1)) / float(cells);
   source = corner * (1.0 + 2.0 * beyond) - beyond;

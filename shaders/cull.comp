@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which faces turn towards the eye and which towards the key light, in their order: lists to draw by, so that the card
-// sets up half the triangles. STAGE 0 counts them in groups of 256, 1 adds the counts up, 2 writes the lists.
+// Lists of the faces that turn towards the eye and towards the key light; render/cull_pass.h explains the stages.
+// STAGE 0 counts the faces in groups of 256, 1 sums the counts, 2 writes the lists.
 #include "frame.glsl"
 #include "bodies.glsl"
 layout(local_size_x = 256) in;
 layout(std430, binding = 7) readonly buffer Faces { uint faces[]; };
-layout(std430, binding = 11) buffer Counts { uvec2 counts[]; };  // a group; then faces in the groups before it
+layout(std430, binding = 11) buffer Counts { uvec2 counts[]; };  // per group: its faces; after stage 1: faces in earlier groups
 layout(std430, binding = 12) writeonly buffer Commands { uint commands[10]; };  // DrawElementsIndirectCommand, twice
 layout(std430, binding = 13) writeonly buffer SeenCorners { uint seen_corners[]; };
 layout(std430, binding = 14) writeonly buffer LitCorners { uint lit_corners[]; };
 layout(std430, binding = 15) writeonly buffer SeenFaces { uint seen_faces[]; };
 layout(location = 0) uniform uint count;
 layout(location = 1) uniform uint groups;
-layout(location = 2) uniform bool all_sides;  // backs are seen, too
+layout(location = 2) uniform bool all_sides;  // lists also faces that turn away
 
 shared uvec2 sums[256];
 
-// Sum over the lanes up to this one.
+// The sum over all lanes up to this one.
 uvec2 running_sum(uvec2 own) {
   uint lane = gl_LocalInvocationID.x;
   sums[lane] = own;
@@ -61,24 +61,24 @@ void main() {
     Placement placement = placements[mass_bodies[corners.x]];
     vec3 a = position_of(corners.x), u = position_of(corners.y) - a, v = position_of(corners.z) - a;
     vec3 normal = cross(u, v), from_eye = a + placement.offset - frame.eye.xyz;
-    // Close to the edge, whether it is seen is the rasterizer's to say.
+    // Keeps faces that are nearly edge-on: the rasterizer decides about those.
     float margin = 1e-4 * length(normal);
     bool shown = (placement.flags & PLACEMENT_HIDDEN) == 0u;
     turned.x = uint(shown && (all_sides || dot(normal, from_eye) < margin * length(from_eye)));
     turned.y = uint(shown && (all_sides || dot(normal, frame.to_key.xyz) > -margin));
   }
-  uvec2 place = running_sum(turned);
+  uvec2 index = running_sum(turned);
 #if STAGE == 0
-  if (gl_LocalInvocationID.x == 255u && group < groups) counts[group] = place;
+  if (gl_LocalInvocationID.x == 255u && group < groups) counts[group] = index;
 #else
   if (face >= count) return;
-  place += counts[group] - turned;
+  index += counts[group] - turned;
   if (turned.x != 0u) {
-    seen_faces[place.x] = face;
-    for (uint i = 0u; i < 3u; ++i) seen_corners[3u * place.x + i] = corners[i];
+    seen_faces[index.x] = face;
+    for (uint i = 0u; i < 3u; ++i) seen_corners[3u * index.x + i] = corners[i];
   }
   if (turned.y != 0u)
-    for (uint i = 0u; i < 3u; ++i) lit_corners[3u * place.y + i] = corners[i];
+    for (uint i = 0u; i < 3u; ++i) lit_corners[3u * index.y + i] = corners[i];
 #endif
 }
 #endif

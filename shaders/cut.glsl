@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies are solid: where a cut lets the eye see the back of a skin, it sees the cut instead. Needs frame.glsl.
+// Cut bodies are drawn as solid: where the back of a skin is visible through the cut, the cut's plane is drawn instead.
+// Needs frame.glsl.
 
-// Where the line of sight comes through the cut, which the eye is beyond.
+// The point where a line of sight crosses the cut's plane. The eye is on the removed side.
 vec3 point_of_cut(vec3 sight) {
   float share = (frame.cut.w - dot(frame.cut.xyz, frame.eye.xyz)) / min(dot(frame.cut.xyz, sight), -1e-6);
   return frame.eye.xyz + share * sight;
 }
 
-// In the depth buffer.
+// The value of a point in the depth buffer.
 float depth_of(vec3 point) {
   vec4 clip = frame.view_projection * vec4(point, 1.0);
   return clip.z / clip.w;

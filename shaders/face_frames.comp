@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of each face as its masses stand now.
+// The FaceFrame, normal and area of each face, from the positions.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = 5) writeonly buffer FaceFrames { FaceFrame face_frames[]; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the frame's block follows from where bodies are: what the shadow map and the floor's map of light cover.
-// One work group. An answer read back to the processor would make it wait for the card in every picture.
+// Fills in the part of the frame block that depends on where bodies are: what the shadow map and the floor's light map
+// cover. One work group. On the GPU, because reading boxes back would make the CPU wait in every picture.
 #define FITS_FRAME
 #include "frame.glsl"
 #include "bodies.glsl"
@@ -11,12 +11,12 @@ struct Box {
 };
 layout(std430, binding = 11) readonly buffer Boxes { Box boxes[]; };
 layout(location = 0) uniform uint bodies;
-layout(location = 1) uniform vec2 sides;  // of the shadow map and of the floor's map of light [texels]
+layout(location = 1) uniform vec2 sides;  // of the shadow map and of the floor's light map [texels]
 
 shared vec3 lows[256];
 shared vec3 highs[256];
 
-// Rounded up to a multiple of an eighth of its power of two, so that it changes in steps and not every frame.
+// Rounds up to a multiple of an eighth of the power of two below it, so that the size rarely changes.
 float stepped(float size) {
   int exponent;
   frexp(max(size, 1e-6), exponent);
@@ -26,7 +26,7 @@ float stepped(float size) {
 
 float rounded(float x, float unit) { return unit * floor(x / unit + 0.5); }
 
-// The light's view of all that can throw a shadow.
+// The light's view covers everything that can cast a shadow.
 void fit_shadow(bool any, vec3 low, vec3 high) {
   vec3 back = frame.to_key.xyz;
   vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), back));
@@ -46,7 +46,7 @@ void fit_shadow(bool any, vec3 low, vec3 high) {
   frame.shadow_size = vec4(width, depth, 0.0, 0.0);
 }
 
-// The floor's map of light reaches as far as shadows can fall.
+// The floor's light map covers every place where shadows can fall.
 void fit_ground(bool any, vec3 low, vec3 high) {
   vec3 to_key = frame.to_key.xyz;
   float drop = any ? max(0.0, high.z - frame.ground.w) / max(to_key.z, 0.2) : 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all shaders of one picture share: FrameBlock of render/frame_block.h.
-// fit.comp, which fills in a part of it, defines FITS_FRAME.
+// The data that all shaders of one picture share: FrameBlock of render/frame_block.h.
+// FITS_FRAME: writable, for fit.comp, which fills in a part of it.
 #ifdef FITS_FRAME
 layout(std140, binding = 0) buffer Frame {
 #else
@@ -15,7 +15,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 key_light;                // linear light; w = strength of muscles' glow
   vec4 sky_light;                // from straight above
   vec4 ground_light;             // from straight below
-  vec4 backdrop_high;            // what is seen far away, looking up and level
+  vec4 backdrop_high;            // light from far away, looking up and level
   vec4 backdrop_low;             // the same, looking down
   vec4 floor_color;
   vec4 line_color;               // of the grid on land
@@ -24,17 +24,17 @@ layout(std140, binding = 0) uniform Frame {
   vec4 screen;                   // width, height, 1/width, 1/height [pixels]
   vec4 depth;                    // near, far [m]; half width and height of the picture at distance 1
   vec4 shadow_size;              // width and depth of what the shadow map covers [m]
-  vec4 ground;                   // corner x, y and side of the floor's map of light, height of the floor [m]
+  vec4 ground;                   // corner x, y and side of the floor's light map, height of the floor [m]
   vec4 water;                    // Surroundings, strength of caustics, height of the highest body, distance to target
-  vec4 octave;                   // a power of two near the distance to the target, its double, weight of the latter
+  vec4 octave;                   // Octave: size, its double, share of the double
 } frame;
 
-// What AROUND can be, where a shader depends on it.
+// Values of AROUND (Surroundings in render/scene.h), for shaders that depend on it.
 #define AROUND_NONE 0
 #define AROUND_WATER 1
 #define AROUND_LAND 2
 
-// Distance along the line of sight of a depth in the depth buffer; far away for the backdrop.
+// The distance along the camera's axis of a value in the depth buffer; `far` for the backdrop.
 float distance_of_depth(float d) {
   return frame.depth.x * frame.depth.y / (frame.depth.x + d * (frame.depth.y - frame.depth.x));
 }
@@ -43,11 +43,11 @@ vec3 backdrop(vec3 sight) {
   return mix(frame.backdrop_low.rgb, frame.backdrop_high.rgb, smoothstep(-0.75, 0.15, sight.z));
 }
 
-// What is left of light from a point at that distance, and the water's or air's own light in its stead.
+// Light from a point at that distance, after absorption, plus the light that water or air scatters into the line of sight.
 vec3 through_fog(vec3 light, vec3 sight, float range) {
   vec3 left = exp(-frame.fog.rgb * max(0.0, range - frame.fog.w));
   return light * left + backdrop(sight) * (1.0 - left);
 }
 
-// Evenly spread over [0, 1) in the neighbourhood of a pixel.
+// A number in [0, 1) per pixel, evenly spread within each neighbourhood (interleaved gradient noise, Jimenez 2014).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of the key light reaches the nearest surface of each pixel, once a pixel: soft shadows cost too much to be
-// looked up by every sample of every edge.
+// How much of the key light reaches the nearest surface in each pixel. Soft shadows are too expensive for each of the 4
+// samples of a pixel, so this runs once per pixel.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "shadow.glsl"
@@ -19,11 +19,11 @@ void main() {
     return;
   }
   float range = distance_of_depth(texelFetch(depths, texel, 0).r);
-  vec2 place = (vec2(texel) + 0.5) / vec2(size);
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0);
+  vec2 uv = (vec2(texel) + 0.5) / vec2(size);
+  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
   vec3 normal = face == 0xffffffffu ? frame.cut.xyz : normalize(unpacked_direction(face_normals[face - 1u]));
   if (dot(normal, sight) > 0.0) normal = -normal;
-  float visibility = 0.0;  // of what has turned its back to the light
+  float visibility = 0.0;  // 0 for surfaces that turn away from the light
   if (dot(normal, frame.to_key.xyz) > -0.6)
     visibility = key_visibility(frame.eye.xyz + range * sight, normal, pixel_noise(vec2(texel) + 0.5));
   imageStore(map, texel, vec4(visibility, range, octahedral(normal)));

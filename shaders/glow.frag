@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the glowing light out of the picture, a quarter of its size, to be spread.
+// Extracts the glowing light from the picture, at a quarter of its size; blur.frag spreads it.
 layout(binding = 0) uniform sampler2DMS samples;
-layout(location = 0) in vec2 place;
+layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 light;
 
 void main() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mass as a square of 6 vertices that its ball fits into.
+// A mass as a square of 6 vertices around its ball.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "ribbon.glsl"
@@ -9,7 +9,7 @@ layout(location = 1) uniform int color_by;      // 0 plain, 1 mass values
 layout(location = 2) uniform vec3 value_scale;
 layout(binding = 7) uniform sampler2D colormap;
 
-layout(location = 0) out vec2 place;  // -1 to 1 over the ball
+layout(location = 0) out vec2 on_ball;  // -1 to 1 over the ball
 layout(location = 1) flat out vec3 center;
 layout(location = 2) flat out vec3 albedo;
 layout(location = 3) flat out float ball_radius;
@@ -33,8 +33,8 @@ void main() {
 #endif
   vec3 right = normalize(cross(abs(to_eye.z) > 0.99 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), to_eye));
   vec3 up = cross(to_eye, right);
-  place = vec2(2.0 * corner.x - 1.0, corner.y) * 1.08;
-  vec3 world = center + ball_radius * (right * place.x + up * place.y);
+  on_ball = vec2(2.0 * corner.x - 1.0, corner.y) * 1.08;
+  vec3 world = center + ball_radius * (right * on_ball.x + up * on_ball.y);
   albedo = color_by == 1 ? textureLod(colormap, vec2(mass_values[mass] * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb
                          : vec3(0.62, 0.66, 0.70);
   if ((placement.flags & PLACEMENT_FAULTY) != 0u) albedo = vec3(0.8, 0.08, 0.05);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal of a smooth skin at each mass: the mean of its faces', weighted by their areas.
+// The normal of a smooth skin at each mass: the mean over its faces, weighted by area.
 #include "bodies.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball's round shadow.
-layout(location = 0) in vec2 place;
+// The round shadow of a ball.
+layout(location = 0) in vec2 on_ball;
 
 void main() {
-  if (dot(place, place) > 1.0) discard;
+  if (dot(on_ball, on_ball) > 1.0) discard;
 }

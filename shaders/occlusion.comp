@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How open each point of the half-size picture is to ambient light: horizon-free obscurance (McGuire et al. 2011).
+// Ambient occlusion at half the picture's size: the obscurance of McGuire et al. 2011.
 #include "frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depths;
-layout(binding = 0, rg16f) writeonly uniform image2D map;  // openness, distance
+layout(binding = 0, rg16f) writeonly uniform image2D map;  // share of ambient light that arrives, depth
 
 layout(location = 0) uniform float radius;  // [m]
 
@@ -14,7 +14,7 @@ layout(location = 0) uniform float radius;  // [m]
 #define DEPTH_STEP 1
 #endif
 
-// A texel of the half-size picture stands for one texel of `depths`, which has DEPTH_STEP times its size.
+// The point of a texel of the half-size picture, from one texel of `depths`, which has DEPTH_STEP times the resolution.
 vec3 at(ivec2 texel) {
   ivec2 size = textureSize(depths, 0);
   ivec2 from = DEPTH_STEP * texel;
@@ -22,7 +22,7 @@ vec3 at(ivec2 texel) {
   return vec3((2.0 * (vec2(from) + 0.5) / vec2(size) - 1.0) * frame.depth.zw, -1.0) * range;
 }
 
-// The flatter of two differences: the one that does not cross an edge.
+// The flatter of two differences, which does not cross an edge.
 vec3 flatter(vec3 a, vec3 b) { return abs(a.z) < abs(b.z) ? a : b; }
 
 void main() {
@@ -38,7 +38,7 @@ void main() {
   vec3 up = flatter(at(texel + ivec2(0, 1)) - point, point - at(texel - ivec2(0, 1)));
   vec3 normal = normalize(cross(right, up));
   float reach = radius / (range * frame.depth.w) * 0.5 * float(textureSize(depths, 0).y) / float(DEPTH_STEP);  // [texels]
-  // A pattern of 4 x 4, which the blur that follows takes out again.
+  // Neighbouring texels use different sample patterns, repeating every 4 x 4; occlusion_blur.comp averages them.
   int cell = (texel.x & 3) + 4 * ((texel.y ^ (texel.x << 1)) & 3);
   float turn = 6.2831853 * (float(cell) + 0.5) / 16.0;
   float hidden = 0.0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ambient light that nearby things leave, from the half-size map of occlusion.comp. Needs frame.glsl.
-layout(binding = 3) uniform sampler2D occlusion_map;  // openness, distance along the line of sight
+// The share of ambient light that arrives, from the half-size map of occlusion.comp. Needs frame.glsl.
+layout(binding = 3) uniform sampler2D occlusion_map;  // share of ambient light, depth
 
-// Of the four nearest values those count that lie at this pixel's own distance.
+// The mean of the four nearest texels, weighted towards those at this pixel's depth.
 float openness(vec2 pixel, float range) {
   vec2 size = vec2(textureSize(occlusion_map, 0));
   vec2 at = 0.5 * pixel;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages the 4 x 4 pattern of occlusion.comp, over what lies at the same distance.
+// Averages the 4 x 4 sample patterns of occlusion.comp over texels at the same depth.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D source;
 layout(binding = 0, rg16f) writeonly uniform image2D map;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rectangle of text, colour or scale, 6 vertices each.
+// A quad of render/overlay.h as 6 vertices.
 struct Quad {
-  vec4 place;   // x, y, width, height; pixels from the upper left corner
+  vec4 rectangle;   // x, y, width, height; pixels from the upper left corner
   vec4 source;
   vec4 color;
   vec4 edge;
@@ -22,7 +22,7 @@ void main() {
   int vertex = gl_VertexID % 6;
   vec2 corner = vec2(vertex == 1 || vertex == 3 || vertex == 4, vertex == 2 || vertex == 4 || vertex == 5);
   Quad quad = quads[index];
-  vec2 pixel = quad.place.xy + corner * quad.place.zw;
+  vec2 pixel = quad.rectangle.xy + corner * quad.rectangle.zw;
   at = quad.kind == 0u ? quad.source.xy + corner * quad.source.zw : corner;
   gl_Position = vec4(2.0 * pixel.x / screen.x - 1.0, 1.0 - 2.0 * pixel.y / screen.y, 0.0, 1.0);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One piece of a path, a strip of 6 vertices as wide on the screen wherever it is.
+// One segment of a path: a strip of 6 vertices with a constant width on the screen.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "ribbon.glsl"
 struct PathPoint {
-  vec4 place;  // body's coordinates; w = body as bits
+  vec4 position;  // in the body's coordinates; w = bits of the body's index
   vec4 color;  // linear, opacity; opacity < 0 = the path ends here
 };
 layout(std430, binding = 11) readonly buffer PathPoints { PathPoint points[]; };
@@ -15,12 +15,12 @@ layout(location = 1) out vec3 world;
 out gl_PerVertex { vec4 gl_Position; };
 
 void main() {
-  int piece = gl_VertexID / 6;
+  int segment = gl_VertexID / 6;
   vec2 corner = ribbon_corner(gl_VertexID % 6);
-  PathPoint a = points[piece], b = points[piece + 1];
-  Placement placement = placements[floatBitsToUint(a.place.w)];
-  vec3 point = mix(a.place.xyz, b.place.xyz, corner.x) + placement.offset;
-  vec3 side = across_of(normalize(b.place.xyz - a.place.xyz + vec3(1e-12)), frame.eye.xyz - point);
+  PathPoint a = points[segment], b = points[segment + 1];
+  Placement placement = placements[floatBitsToUint(a.position.w)];
+  vec3 point = mix(a.position.xyz, b.position.xyz, corner.x) + placement.offset;
+  vec3 side = across_of(normalize(b.position.xyz - a.position.xyz + vec3(1e-12)), frame.eye.xyz - point);
   world = point + side * corner.y * 0.5 * width * pixel_size(point);
   tint = vec4(a.color.rgb, mix(abs(a.color.a), abs(b.color.a), corner.x));
   gl_Position = frame.view_projection * vec4(world, 1.0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packs the picture into the bytes that a file or an encoder wants, upper row first, four bytes an invocation.
+// Packs the picture into the bytes of a file or an encoder, upper row first; four bytes per invocation.
 layout(local_size_x = 64) in;
 
-layout(binding = 0) uniform sampler2D picture;  // gamma-encoded bytes, seen without decoding
+layout(binding = 0) uniform sampler2D picture;  // gamma-encoded bytes, read without decoding
 layout(std430, binding = 0) writeonly buffer Bytes { uint words[]; };
 layout(location = 0) uniform ivec2 size;
 layout(location = 1) uniform int format;  // PixelFormat
@@ -15,7 +15,7 @@ float limited_luma(vec3 c) { return (16.0 + 219.0 * luma(c)) / 255.0; }
 float blue_difference(vec3 c) { return (128.0 + 224.0 * (c.b - luma(c)) / 1.8556) / 255.0; }
 float red_difference(vec3 c) { return (128.0 + 224.0 * (c.r - luma(c)) / 1.5748) / 255.0; }
 
-// Chroma is sited at the left pixel of a pair, halfway between two rows, as decoders assume of H.264.
+// Chroma is sited at the left pixel of a pair and halfway between two rows, the default of H.264.
 vec3 chroma_average(int i, int j) {
   vec3 sum = vec3(0.0);
   for (int row = 0; row < 2; ++row)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many samples of linear light to one pixel of the picture: tone-mapped first, so that bright edges stay smooth.
+// Resolves samples of linear light to one pixel. Applies the tone curve to each sample before averaging, so that edges of
+// bright things stay smooth.
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2DMS samples;
 layout(binding = 8) uniform sampler2D glow;
-layout(location = 0) in vec2 place;
+layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 layout(location = 0) uniform float vignette;
 
-// Identity up to `shoulder`, then bends towards 1, brighter colours towards white: as film does, and colours that stand
-// for numbers keep their values where they are not bright.
+// Identity up to `shoulder`, so that colours of values keep their meaning; above it, bends towards 1 and towards white,
+// like photographic film.
 vec3 tone_mapped(vec3 light) {
   const float shoulder = 0.62;
   float peak = max(light.r, max(light.g, light.b));
@@ -20,8 +21,8 @@ vec3 tone_mapped(vec3 light) {
 }
 
 void main() {
-  vec3 spread = textureLod(glow, place, 0.0).rgb;
-  vec2 off = (place - 0.5) * vec2(1.0, 0.8);
+  vec3 spread = textureLod(glow, uv, 0.0).rgb;
+  vec2 off = (uv - 0.5) * vec2(1.0, 0.8);
   float dim = 1.0 - vignette * smoothstep(0.1, 0.75, dot(off, off) * 2.0);
   vec3 light[SAMPLES];
   bool edge = false;
@@ -34,7 +35,7 @@ void main() {
     for (int i = 1; i < SAMPLES; ++i) mapped += tone_mapped(dim * (max(light[i], vec3(0.0)) + spread));
     mapped /= float(SAMPLES);
   }
-  // One step of the 8-bit code, as light: steeper where it is bright.
+  // Dithering: one step of the 8-bit sRGB code, in linear light.
   vec3 step_size = (0.08 + 2.2 * sqrt(mapped)) / 255.0;
   color = vec4(mapped + (pixel_noise(gl_FragCoord.xy) - 0.5) * step_size, 1.0);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flat strips that face the eye and are shaded as round. Needs frame.glsl.
+// Flat strips that face the eye and are shaded as if round. Needs frame.glsl.
 
-// Corner 0..5 of two triangles: x along 0 or 1, y across -1 or 1.
+// Corner 0..5 of the strip's two triangles: x along it, 0 or 1; y across it, -1 or 1.
 vec2 ribbon_corner(int vertex) {
   return vec2((vertex == 1 || vertex == 3 || vertex == 4) ? 1.0 : 0.0, (vertex == 2 || vertex == 4 || vertex == 5) ? 1.0 : -1.0);
 }
@@ -12,7 +12,7 @@ float pixel_size(vec3 point) {
   return max(range, frame.depth.x) * 2.0 * frame.depth.w * frame.screen.w;
 }
 
-// Direction across a strip along `axis`, seen from `to_eye`.
+// The direction across a strip along `axis` that faces `to_eye`.
 vec3 across_of(vec3 axis, vec3 to_eye) {
   vec3 side = cross(axis, to_eye);
   float size = length(side);

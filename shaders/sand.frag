@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tile of sand: slopes of its ripples and a grain, made once.
-layout(location = 0) in vec2 place;
+// One tile of sand: the slopes of its ripples, and grain. Drawn once.
+layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 tile;
 
 float hash(ivec2 p, int period) {
@@ -11,7 +11,7 @@ float hash(ivec2 p, int period) {
   return float(n & 0xffffffu) / float(0xffffff);
 }
 
-// Smooth noise with `period` cells a tile, repeating.
+// Smooth, repeating noise with `period` cells per tile.
 float noise(vec2 p, int period) {
   p *= float(period);
   ivec2 cell = ivec2(floor(p));
@@ -29,8 +29,8 @@ float height(vec2 p) {
 
 void main() {
   const float d = 1.0 / 512.0;
-  vec2 slope = vec2(height(place + vec2(d, 0.0)) - height(place - vec2(d, 0.0)),
-                    height(place + vec2(0.0, d)) - height(place - vec2(0.0, d))) / (2.0 * d);
-  float grain = 0.5 + 0.30 * (noise(place, 160) - 0.5) + 0.25 * (noise(place, 6) - 0.5) + 0.2 * (noise(place, 40) - 0.5);
+  vec2 slope = vec2(height(uv + vec2(d, 0.0)) - height(uv - vec2(d, 0.0)),
+                    height(uv + vec2(0.0, d)) - height(uv - vec2(0.0, d))) / (2.0 * d);
+  float grain = 0.5 + 0.30 * (noise(uv, 160) - 0.5) + 0.25 * (noise(uv, 6) - 0.5) + 0.2 * (noise(uv, 40) - 0.5);
   tile = vec4(0.5 + 0.5 * slope, grain, 1.0);
 }

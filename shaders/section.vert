@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spring near the cut as a square in the cut's plane, 6 vertices, around the place nearest to the spring's middle.
+// A spring near the cut: a square of 6 vertices in the cut's plane, around the point nearest to the spring's middle.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "ribbon.glsl"
@@ -7,12 +7,12 @@ layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; }
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
 layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
 layout(location = 0) uniform float reach;       // [m]
-layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 nothing that masses or springs have
+layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 grey, for values of faces
 layout(location = 2) uniform vec3 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
 
-layout(location = 0) out vec3 off;   // from the spring's middle
+layout(location = 0) out vec3 offset;  // from the spring's middle
 layout(location = 1) flat out vec4 material;  // colour, activation
 out gl_PerVertex { vec4 gl_Position; };
 
@@ -33,8 +33,8 @@ void main() {
   float height = dot(normal, middle) - frame.cut.w;
   vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
   float half_side = sqrt(max(0.0, reach * reach - height * height));
-  off = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
+  offset = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
   material = material_of(spring, a, b, placement.flags);
-  gl_Position = frame.view_projection * vec4(middle + off, 1.0);
+  gl_Position = frame.view_projection * vec4(middle + offset, 1.0);
   if (abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on soft skin. Needs frame.glsl.
+// Light on soft skin: key light, sky and ground. Needs frame.glsl.
 const float pi = 3.14159265;
 
 float fifth(float x) { return x * x * x * x * x; }
@@ -22,19 +22,19 @@ struct Surface {
   vec3 albedo;
   vec3 normal;
   float roughness;
-  float softness;  // how far light creeps around the terminator, 0 to 1
+  float softness;  // how far light scatters past the terminator, 0 to 1
 };
 
-// Key light of that colour (shadow and caustics included), sky and ground dimmed by `open` (1 = nothing in the way).
+// `key`: colour of the key light, with shadow and caustics. `open`: share of the light of sky and ground that arrives.
 vec3 lit(Surface s, vec3 to_eye, vec3 key, float open) {
   float n_l = dot(s.normal, frame.to_key.xyz);
   float wrap = 0.4 * s.softness;
   float wrapped = clamp((n_l + wrap) / (1.0 + wrap), 0.0, 1.0);
-  // Light that has crept through the body takes on its colour.
-  vec3 creep = mix(vec3(1.0), s.albedo, s.softness * smoothstep(0.5, 0.0, wrapped));
-  vec3 diffuse = key * mix(max(n_l, 0.0), wrapped, s.softness) * creep / 1.6;
+  // Light that has scattered inside the body takes on its colour.
+  vec3 scattered = mix(vec3(1.0), s.albedo, s.softness * smoothstep(0.5, 0.0, wrapped));
+  vec3 diffuse = key * mix(max(n_l, 0.0), wrapped, s.softness) * scattered / 1.6;
   float upward = 0.5 + 0.5 * s.normal.z;
-  // Between bright bodies, dark corners are filled with their own colour.
+  // Light that is reflected between bright surfaces brightens corners in the surfaces' own colour.
   vec3 filled = open / (1.0 - s.albedo * (1.0 - open) * 0.8);
   vec3 ambient = mix(frame.ground_light.rgb, frame.sky_light.rgb, upward) * filled;
   vec3 mirrored = reflect(-to_eye, s.normal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skin's corner as the light sees it.
+// A corner of a skin in the light's view.
 #include "frame.glsl"
 #include "bodies.glsl"
 layout(location = 0) in vec3 position;
@@ -13,8 +13,8 @@ out gl_PerVertex {
 void main() {
   Placement placement = placements[body];
   vec3 world = position + placement.offset;
-  vec3 place = (frame.shadow * vec4(world, 1.0)).xyz;
+  vec3 on_map = (frame.shadow * vec4(world, 1.0)).xyz;
   bool hidden = (placement.flags & PLACEMENT_HIDDEN) != 0u;
-  gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * place.xy - 1.0, place.z, 1.0);
+  gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * on_map.xy - 1.0, on_map.z, 1.0);
   gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, world);
 }

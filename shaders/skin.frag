@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skin: coloured by looks or numbers, its edges rounded off by light alone.
+// A skin, coloured by materials or values. Edges look rounded because normals are blended; the geometry stays flat.
+//
+// COLOR_BY      0 materials, 1 face values, 2 mass values
+// ROUNDED       some bodies are smooth
+// MARKED        some bodies are selected or faulty
+// FRONT_LIGHT   front_light.comp has computed how much key light arrives
+// CUT           draws the backs of skins, in place of which the cut's plane shows
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "shadow.glsl"
@@ -11,14 +17,12 @@
 #endif
 #ifdef CUT
 #include "cut.glsl"
-layout(binding = 10) uniform sampler2D section;  // looks of bodies' insides, where the cut is seen
+layout(binding = 10) uniform sampler2D section;  // colours of bodies' insides in the cut's plane
 #endif
 layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]; };
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
-layout(std430, binding = 15) readonly buffer SeenFaces { uint seen_faces[]; };  // that are drawn
+layout(std430, binding = 15) readonly buffer SeenFaces { uint seen_faces[]; };  // the faces that are drawn
 
-// COLOR_BY: 0 materials, 1 face values, 2 mass values. ROUNDED: some bodies are smooth. MARKED: some are selected or faulty.
-// FRONT_LIGHT: what of the key light arrives has been found before. CUT: it is a skin's back that is drawn, and stands for what a cut lays open.
 layout(location = 0) in vec3 local;
 layout(location = 1) in vec3 skin_point;
 layout(location = 2) flat in uint flags;
@@ -40,7 +44,7 @@ const float bevel = 0.11;  // of the shorter side
 
 vec3 face_normal(uint face) { return normalize(unpacked_direction(face_normals[face])); }
 
-// The face's normal, blended with its neighbours' towards the edges so that both sides agree there.
+// The face's normal; towards the edges it is blended with the neighbours', so that both sides of an edge agree.
 vec3 beveled_normal(FaceRecord record, FaceFrame face, vec3 normal, out float seam) {
   vec2 uv = vec2(dot(local, face.along_u.xyz) + face.along_u.w, dot(local, face.along_v.xyz) + face.along_v.w);
   vec2 height = 1.0 / vec2(length(face.along_u.xyz), length(face.along_v.xyz));
@@ -54,7 +58,7 @@ vec3 beveled_normal(FaceRecord record, FaceFrame face, vec3 normal, out float se
     size = 0.6 * min(size, third);
     off = vec4((1.0 - uv.x - uv.y) * third, uv * height, 1e9);
   }
-  // A fine groove between voxels shows how a flat side is stretched; it is gone before it is thinner than a pixel.
+  // A fine groove between voxels shows how a flat side is stretched. It fades out before it is thinner than a pixel.
   float nearest = min(min(off.x, off.y), min(off.z, off.w));
   float pixel = fwidth(nearest) + 1e-6 * size;
   float groove = 0.022 * size;
@@ -74,9 +78,9 @@ void main() {
   FaceFrame face_frame = face_frames[face];
   vec3 world = skin_point;
 #ifdef CUT
-  // From the pixel, not from the skin: neighbours across an edge of the skin see one plane.
-  vec2 place = gl_FragCoord.xy * frame.screen.zw;
-  world = point_of_cut(transpose(mat3(frame.view)) * vec3((2.0 * place - 1.0) * frame.depth.zw, -1.0));
+  // Computed from the pixel and not from the skin, so that all faces in the cut share one plane.
+  vec2 uv = gl_FragCoord.xy * frame.screen.zw;
+  world = point_of_cut(transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0));
   gl_FragDepth = depth_of(world);
 #endif
   vec3 from_eye = world - frame.eye.xyz;
@@ -138,7 +142,7 @@ void main() {
     key *= caustics(world, 1.0);
 #endif
   } else {
-    key = vec3(0.0);  // its own back is turned to the light
+    key = vec3(0.0);  // it turns away from the light
   }
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skin's corner, set into the picture.
+// A corner of a skin in the picture.
 #include "frame.glsl"
 #include "bodies.glsl"
 layout(location = 0) in vec3 position;  // in the body's coordinates

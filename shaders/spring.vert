@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spring as a strip of 6 vertices, as the eye or (with SHADOW) the key light sees it.
+// A spring as a strip of 6 vertices that faces the eye or, with SHADOW, the key light.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "ribbon.glsl"
@@ -54,8 +54,8 @@ void main() {
   world = point + side * corner.y * thickness * (1.0 + 0.25 * material.a);
   flags = placement.flags;
 #ifdef SHADOW
-  vec3 place = (frame.shadow * vec4(world, 1.0)).xyz;
-  gl_Position = vec4(2.0 * place.xy - 1.0, place.z, 1.0);
+  vec3 on_map = (frame.shadow * vec4(world, 1.0)).xyz;
+  gl_Position = vec4(2.0 * on_map.xy - 1.0, on_map.z, 1.0);
 #else
   gl_Position = frame.view_projection * vec4(world, 1.0);
 #endif

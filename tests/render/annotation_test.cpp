@@ -10,7 +10,7 @@ using Eigen::Vector2f;
 
 class AnnotationTest : public Offscreen {};
 
-TEST_F(AnnotationTest, ArrowsAndPathsAreDrawnWhereTheyPoint) {
+TEST_F(AnnotationTest, ArrowsAndPathsAreDrawnAtTheirProjectedPositions) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});

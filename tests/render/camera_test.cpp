@@ -15,7 +15,7 @@ using Eigen::Vector4f;
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-// A pinhole in the test's own words: similar triangles along and across the line of sight.
+// An independent pinhole camera: similar triangles along and across the line of sight.
 Vector3f pinhole(const Camera& camera, const Vector3f& point, int width, int height) {
   const Vector3f forward = (camera.target - camera.eye).normalized();
   const Vector3f right = forward.cross(camera.up).normalized();
@@ -32,7 +32,7 @@ TEST(Camera, ProjectsAsAPinhole) {
     EXPECT_LT((camera.project(point, 640, 360) - pinhole(camera, point, 640, 360)).norm(), 2e-3f);
 }
 
-TEST(Camera, TargetIsInTheMiddle) {
+TEST(Camera, TargetIsInTheMiddleOfThePicture) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}};
   const Vector3f seen = camera.project(camera.target, 640, 360);
   EXPECT_NEAR(seen.x(), 320, 1e-3);
@@ -50,7 +50,7 @@ TEST(Camera, DepthIsOneAtTheNearestAndZeroAtTheFarthest) {
   EXPECT_GT(depth(1), depth(0));
 }
 
-TEST(Camera, RayRunsThroughWhatIsSeenThere) {
+TEST(Camera, RayRunsThroughThePointThatProjectsThere) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}};
   const Vector3f point(-0.3f, 0.9f, 0.4f);
   const Vector3f seen = camera.project(point, 640, 360);
@@ -59,12 +59,12 @@ TEST(Camera, RayRunsThroughWhatIsSeenThere) {
   EXPECT_NEAR(ray.direction.norm(), 1, 1e-5);
 }
 
-TEST(Orbit, EyeStandsWhereTheAnglesSay) {
+TEST(Orbit, EyeLiesInTheDirectionOfTheAngles) {
   const Orbit orbit{.target = {1, 2, 3}, .azimuth = 0, .elevation = pi / 6, .distance = 4};
   EXPECT_LT((orbit.camera().eye - Vector3f(1 + 4 * std::cos(pi / 6), 2, 3 + 2)).norm(), 1e-5f);
 }
 
-TEST(Orbit, FrameHoldsAllCornersAndTouchesAnEdge) {
+TEST(Orbit, FrameContainsAllCornersAndTouchesAnEdge) {
   const Bounds box{Vector3f(-1, -2, 0), Vector3f(3, 1, 0.5f)};
   for (const float elevation : {0.0f, 0.5f, pi / 2}) {
     Orbit orbit{.azimuth = 0.7f, .elevation = elevation};
@@ -106,19 +106,19 @@ TEST(Orbit, PanMovesThePictureByThatPartOfItsHeight) {
   EXPECT_NEAR(orbit.camera().project(point, 800, 400).x(), 400 - 100, 0.5);
 }
 
-TEST(Orbit, TurntableIsBackAfterAPeriod) {
+TEST(Orbit, TurntableReturnsAfterAPeriod) {
   const Orbit start{.azimuth = 0.3f};
   EXPECT_NEAR(turntable(start, 20, 20).azimuth, 0.3f, 1e-5);
   EXPECT_NEAR(turntable(start, 5, 20).azimuth, 0.3f + pi / 2, 1e-5);
 }
 
-TEST(Orbit, FollowNearsItsTargetExponentially) {
+TEST(Orbit, FollowApproachesItsTargetExponentially) {
   Orbit orbit;
   follow(orbit, {1, 0, 0}, 0.5, 0.5);
   EXPECT_NEAR(orbit.target.x(), 1 - std::exp(-1.0), 1e-5);
 }
 
-TEST(Bounds, LeavesOutWhatIsNotFinite) {
+TEST(Bounds, IgnoresPointsThatAreNotFinite) {
   const float nan = std::nanf("");
   const Bounds bounds = bounds_of(std::vector<float>{0, 0, 0, nan, 5, 5, 1, 2, 3});
   EXPECT_EQ(bounds.high, Vector3f(1, 2, 3));

@@ -10,7 +10,7 @@ using Eigen::Vector2f;
 
 class ColorTest : public Offscreen {};
 
-TEST_F(ColorTest, APlacementChoosesAmongLooksWithoutNewBodies) {
+TEST_F(ColorTest, APlacementSelectsMaterialsWithoutNewBodies) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();
   const std::array<std::uint32_t, 1> face_material{1};
@@ -22,7 +22,8 @@ TEST_F(ColorTest, APlacementChoosesAmongLooksWithoutNewBodies) {
   const std::array prepared{prepare_body(body)};
   renderer.set_bodies(assemble(prepared));
   EXPECT_EQ(renderer.spring_count(), 3u);
-  const std::array materials{RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0xd01010)}, RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0x1010d0)}};
+  const std::array materials{RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0xd01010)},
+                             RenderMaterial{rgb(0x101010)}, RenderMaterial{rgb(0x1010d0)}};
   for (const bool springs : {false, true}) {
     Scene scene = plain();
     scene.show = {.skin = !springs, .springs = springs};
@@ -90,14 +91,14 @@ TEST_F(ColorTest, ValuesColorSkinsSpringsAndMassesByTheScale) {
   check(masses, [&](Scene& s, bool warm) { s.mass_values = warm ? high : low; });
 }
 
-TEST_F(ColorTest, LegendsColorsAreThoseOfItsValues) {
+TEST_F(ColorTest, LegendHasTheColorsOfItsValues) {
   Renderer renderer = make_renderer(320, 240);
   for (int map = 0; map < colormap_count; ++map) {
     Scene scene = plain();
     const Image without = drawn(renderer, scene);
     scene.legend = Legend{"speed", "m/s", Scale{0, 1, Colormap(map)}, {}};
     const Image image = drawn(renderer, scene);
-    // The bar is found by its colours: a column in which the high end's and the low end's both stand.
+    // Finds the bar by its colours: a column that contains both the high end's and the low end's.
     const auto close = [&](int x, int y, float t) {
       const Color c = color_at(Colormap(map), t);
       return largest_difference(pixel(image, x, y), {c.r, c.g, c.b}) <= 6;

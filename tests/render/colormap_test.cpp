@@ -26,7 +26,7 @@ std::array<float, 3> lab(std::array<float, 3> c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// What eyes without the medium-wave cones see (Machado, Oliveira and Fernandes 2009, severity 1).
+// Colours for people without medium-wave cones (Machado, Oliveira and Fernandes 2009, severity 1).
 std::array<float, 3> deuteranope(Color color) {
   const auto c = linear_of(color);
   return {std::max(0.0f, 0.367322f * c[0] + 0.860646f * c[1] - 0.227968f * c[2]),
@@ -38,24 +38,24 @@ float distance(std::array<float, 3> a, std::array<float, 3> b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-TEST(Color, EveryCodeSurvivesLinearLight) {
+TEST(Color, LinearLightRoundTripsEveryCode) {
   for (int i = 0; i < 256; ++i) {
     const Color grey{std::uint8_t(i), std::uint8_t(i), std::uint8_t(i), 255};
     EXPECT_EQ(color_of_linear(linear_of(grey)), grey);
   }
-  EXPECT_NEAR(linear_of(rgb(0xbcbcbc))[0], 0.5f, 0.005f);  // sRGB's middle grey of light
+  EXPECT_NEAR(linear_of(rgb(0xbcbcbc))[0], 0.5f, 0.005f);  // half of the light in sRGB
 }
 
 TEST(Colormap, ViridisIsThePublishedOne) {
   EXPECT_EQ(color_at(Colormap::viridis, 0), rgb(0x440154));
   EXPECT_EQ(color_at(Colormap::viridis, 1), rgb(0xfde725));
-  const Color middle = color_at(Colormap::viridis, 0.5f);  // (33, 145, 140) there
+  const Color middle = color_at(Colormap::viridis, 0.5f);  // published as (33, 145, 140)
   EXPECT_NEAR(middle.r, 33, 4);
   EXPECT_NEAR(middle.g, 145, 4);
   EXPECT_NEAR(middle.b, 140, 4);
 }
 
-TEST(Colormap, AmountsGetLighterAllTheWay) {
+TEST(Colormap, MapsForAmountsGetLighterMonotonically) {
   for (const Colormap map : {Colormap::viridis, Colormap::magma})
     for (int i = 1; i <= 64; ++i)
       EXPECT_GT(lightness(color_at(map, float(i) / 64)), lightness(color_at(map, float(i - 1) / 64)) - 0.1f);
@@ -67,7 +67,7 @@ TEST(Colormap, DivergingIsGreyInTheMiddleAndEquallyDarkAtBothEnds) {
   EXPECT_NEAR(lightness(color_at(Colormap::diverging, 0)), lightness(color_at(Colormap::diverging, 1)), 4);
 }
 
-TEST(Colormap, ClampsAndToleratesOddScales) {
+TEST(Colormap, ClampsAndAcceptsOddScales) {
   EXPECT_EQ(color_at(Colormap::turbo, 7.0f, 0, 1), color_at(Colormap::turbo, 1));
   EXPECT_EQ(color_at(Colormap::turbo, -7.0f, 0, 1), color_at(Colormap::turbo, 0));
   EXPECT_EQ(color_at(Colormap::turbo, 3.0f, 3, 3), color_at(Colormap::turbo, 0.5f));
@@ -75,12 +75,12 @@ TEST(Colormap, ClampsAndToleratesOddScales) {
   EXPECT_EQ(color_at(Colormap::turbo, std::nanf("")), rgb(0x808080));
 }
 
-TEST(Colormap, NamesGoBothWays) {
+TEST(Colormap, NamesRoundTrip) {
   for (int i = 0; i < colormap_count; ++i) EXPECT_EQ(colormap_named(name_of(Colormap(i))), Colormap(i));
   EXPECT_THROW(colormap_named("jet"), std::invalid_argument);
 }
 
-TEST(MuscleColor, PhasesAreToldApartWithAndWithoutGreenCones) {
+TEST(MuscleColor, PhasesDifferWithAndWithoutGreenCones) {
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < a; ++b) {
       const Color first = muscle_color(float(a) * pi / 2, 0.5f), second = muscle_color(float(b) * pi / 2, 0.5f);
@@ -94,13 +94,13 @@ TEST(MuscleColor, FasterIsDarker) {
     EXPECT_GT(lightness(muscle_color(float(phase) * pi / 2, 0)), lightness(muscle_color(float(phase) * pi / 2, 1)) + 8);
 }
 
-TEST(MuscleColor, TurnsWithThePhase) {
+TEST(MuscleColor, HueTurnsWithThePhase) {
   EXPECT_EQ(muscle_color(0.3f, 0.5f), muscle_color(0.3f + 2 * pi, 0.5f));
   EXPECT_EQ(muscle_color(-pi / 2, 0.5f), muscle_color(3 * pi / 2, 0.5f));
 }
 
-TEST(Oklch, KeepsToColorsThatCanBeShown) {
-  const Color strong = oklch(0.6f, 0.5f, 2.5f);  // no screen shows this chroma
+TEST(Oklch, StaysInsideSrgb) {
+  const Color strong = oklch(0.6f, 0.5f, 2.5f);  // beyond any screen
   EXPECT_NEAR(lightness(strong), lightness(oklch(0.6f, 0.05f, 2.5f)), 6);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(ContextKind, NamesGoBothWaysAndOthersAreRefusedWithAList) {
+TEST(ContextKind, NamesRoundTripAndUnknownOnesThrowAList) {
   for (const ContextKind kind : {ContextKind::automatic, ContextKind::egl, ContextKind::mesa, ContextKind::osmesa})
     EXPECT_EQ(context_kind_named(name_of(kind)), kind);
   try {
@@ -28,7 +28,7 @@ TEST(ContextKind, NamesGoBothWaysAndOthersAreRefusedWithAList) {
 class ContextTest : public testing::TestWithParam<ContextKind> {
  protected:
   void SetUp() override {
-    // The shared context of other tests must not be current while OSMesa is.
+    // The shared context of the other tests must not be current while OSMesa is.
     if (Context* shared = shared_context()) shared->release();
     try {
       context_ = make_context({.kind = GetParam()});
@@ -39,7 +39,7 @@ class ContextTest : public testing::TestWithParam<ContextKind> {
   std::unique_ptr<Context> context_;
 };
 
-TEST_P(ContextTest, SaysWhatItIs) {
+TEST_P(ContextTest, DescribesItself) {
   EXPECT_THAT(context_->describe(), HasSubstr("OpenGL 4."));
   EXPECT_EQ(context_->describe().find('\n'), std::string::npos);
   if (GetParam() != ContextKind::automatic) {
@@ -55,13 +55,13 @@ TEST_P(ContextTest, ReportsMisuseOnce) {
   EXPECT_TRUE(context_->take_messages().empty());
 }
 
-TEST_P(ContextTest, IsTakenUpAgainAfterRelease) {
+TEST_P(ContextTest, CanBeMadeCurrentAgainAfterRelease) {
   context_->release();
   context_->make_current();
   EXPECT_NE(glGetString(GL_VERSION), nullptr);
 }
 
-TEST_P(ContextTest, DrawsTheSameAsTheOthers) {
+TEST_P(ContextTest, DrawsTheSamePictureAsTheOtherKinds) {
   const WobblingGroup group = make_wobbling_group(2, 4, 3, 0.8f);
   const auto picture = [&](Context& context) {
     Renderer renderer(context, {.width = 120, .height = 80, .quality = Quality::low});

@@ -13,7 +13,7 @@ using Eigen::Vector3i;
 
 class CutTest : public Offscreen {};
 
-TEST_F(CutTest, ACutTakesAwayTheSideItsNormalPointsTo) {
+TEST_F(CutTest, ACutRemovesTheSideItsNormalPointsTo) {
   Renderer renderer = make_renderer();
   const Image empty = drawn(renderer, plain());
   const Mesh mesh = triangle();
@@ -29,7 +29,7 @@ TEST_F(CutTest, ACutTakesAwayTheSideItsNormalPointsTo) {
       largest_difference(pixel(cut, int(below.x()), int(below.y())), pixel(whole, int(below.x()), int(below.y()))), 6);
 }
 
-// A cube of side 1 about the origin: faces of look 0, springs along its edges and through its middle of look 1.
+// A cube of side 1 about the origin: faces of material 0; springs of material 1 along its edges and through its middle.
 struct Cube {
   std::vector<float> positions;
   std::vector<std::uint32_t> faces{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -45,7 +45,7 @@ struct Cube {
   Body body() const { return {positions, faces, springs, {}, spring_materials}; }
 };
 
-TEST_F(CutTest, ACutShowsBodiesAsSolidInTheLooksOfTheirSprings) {
+TEST_F(CutTest, ACutShowsSolidBodiesInTheMaterialsOfTheirSprings) {
   Renderer renderer = make_renderer();
   const Cube cube;
   renderer.set_bodies(std::array{cube.body()});
@@ -57,18 +57,18 @@ TEST_F(CutTest, ACutShowsBodiesAsSolidInTheLooksOfTheirSprings) {
   const Image whole = drawn(renderer, scene);
   scene.cut = CutPlane{{0, -1, 0}, 0};  // its near half is gone
   const Image cut = drawn(renderer, scene);
-  // The square that the plane cuts out of the cube, but for its rim.
+  // The square where the plane cuts the cube, without its rim.
   for (const float x : {-0.44f, -0.2f, 0.0f, 0.2f, 0.44f})
     for (const float z : {-0.44f, -0.2f, 0.0f, 0.2f, 0.44f}) {
       const Vector2f at = pinhole(front(), {x, 0, z}, 160, 120);
       EXPECT_TRUE(is_red(pixel(whole, int(at.x()), int(at.y())))) << x << " " << z;
       EXPECT_TRUE(is_green(pixel(cut, int(at.x()), int(at.y())))) << x << " " << z;
     }
-  // From behind, the cut is not seen.
+  // From behind, the cut is not visible.
   const Camera behind{.eye = {0.2f, 4, 0.1f}};
   const Vector2f middle = pinhole(behind, {0, 0.5f, 0}, 160, 120);
   EXPECT_TRUE(is_red(pixel(drawn(renderer, scene, behind), int(middle.x()), int(middle.y()))));
-  // With springs shown, it is a window: between them, the far wall.
+  // With springs shown, bodies are hollow: between the springs, the far wall is visible.
   scene.show.springs = true;
   scene.spring_radius = 0.005f;
   const Vector2f between = pinhole(front(), {0.13f, 0.5f, 0.33f}, 160, 120);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the wobbling group to a PNG, to look at: draw_wobbling OUT.png [name=value ...]
+// Draws the wobbling group to a PNG: draw_wobbling OUT.png [name=value ...]
 // Names: count side seed time frames width height quality theme around show spacing azimuth elevation context map cut
 #include <chrono>
 #include <cmath>

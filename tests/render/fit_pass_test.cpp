@@ -27,7 +27,7 @@ struct Body {
 
 class FitPassTest : public Offscreen {
  protected:
-  // The block as the pass leaves it.
+  // The frame block after the pass.
   FrameBlock fitted(const std::vector<Body>& bodies, const Vector3f& to_key, int side, float floor = 0) {
     FrameBlock block{};
     const Vector3f direction = to_key.normalized();
@@ -62,8 +62,8 @@ class FitPassTest : public Offscreen {
   std::optional<FitPass> pass_;
 };
 
-TEST_F(FitPassTest, ShadowMapHoldsEveryCornerOfEveryBody) {
-  // More bodies than lanes, so that each lane has to look at several.
+TEST_F(FitPassTest, ShadowMapCoversEveryCornerOfEveryBody) {
+  // More bodies than lanes, so that each lane handles several.
   std::vector<Body> bodies;
   for (int i = 0; i < 700; ++i)
     bodies.push_back({{Vector3f(-1, -1, 0), Vector3f(1, 1, 0.4f)}, {float(i % 30), -float(i % 7), 0.01f * float(i)}});
@@ -87,7 +87,7 @@ TEST_F(FitPassTest, DepthGrowsAwayFromTheLight) {
   EXPECT_NEAR(place(block, -0.5f * to_key).z() - place(block, 0.5f * to_key).z(), 1 / block.shadow_size.y(), 1e-5);
 }
 
-TEST_F(FitPassTest, MovesByWholeTexels) {
+TEST_F(FitPassTest, ShadowMapMovesByWholeTexels) {
   const auto fit = [&](float x) {
     return fitted({{{Vector3f(x - 1, -1, 0), Vector3f(x + 1, 1, 0.5f)}}}, Vector3f(0, 0, 1), 256);
   };
@@ -101,7 +101,7 @@ TEST_F(FitPassTest, MovesByWholeTexels) {
   EXPECT_GT(std::abs(ground_texels), 1);
 }
 
-TEST_F(FitPassTest, HiddenAndEmptyBodiesDoNotCount) {
+TEST_F(FitPassTest, HiddenAndEmptyBodiesAreIgnored) {
   const Body seen{{Vector3f(-1, -1, 0), Vector3f(1, 1, 1)}};
   const Body hidden{{Vector3f(50, 50, 50), Vector3f(60, 60, 60)}, {0, 0, 0}, true};
   const Body broken{Bounds{}};
@@ -111,7 +111,7 @@ TEST_F(FitPassTest, HiddenAndEmptyBodiesDoNotCount) {
   EXPECT_EQ(alone.ground, among.ground);
 }
 
-TEST_F(FitPassTest, FloorsMapHoldsTheShadowsOfBodiesHighAbove) {
+TEST_F(FitPassTest, FloorsMapCoversTheShadowsOfHighBodies) {
   const Vector3f to_key = Vector3f(-0.5f, -0.3f, 0.8f).normalized();
   const Bounds box{Vector3f(-1, -1, 4), Vector3f(1, 1, 5)};
   const FrameBlock block = fitted({{box}}, to_key, 512, -2);
@@ -126,7 +126,7 @@ TEST_F(FitPassTest, FloorsMapHoldsTheShadowsOfBodiesHighAbove) {
   EXPECT_EQ(block.ground.w(), -2);
 }
 
-TEST_F(FitPassTest, WithoutBodiesSomethingIsThere) {
+TEST_F(FitPassTest, WithoutBodiesTheMapsAreStillValid) {
   const FrameBlock block = fitted({}, Vector3f(0, 0, 1), 512);
   EXPECT_TRUE(block.shadow.allFinite());
   EXPECT_GT(block.ground.z(), 1);

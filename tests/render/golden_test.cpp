@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures as a whole, against ones that were looked at and found good. After a wanted change of the look, write them
-// anew with MERCURY_WRITE_GOLDEN=1 and look at them before they are committed.
+// Whole pictures, compared with reference pictures that people have checked. After an intended change, write the
+// references again with MERCURY_WRITE_GOLDEN=1, and look at them before you commit them.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -34,7 +34,7 @@ Eigen::Vector3f perceived(const Image& image, int x, int y, int side) {
 }
 
 struct Difference {
-  float mean = 0, largest = 0;  // of squares of 4 pixels, in steps of L*a*b*; about 2 can just be seen
+  float mean = 0, largest = 0;  // over squares of 4 pixels, in units of L*a*b*; about 2 is just visible
 };
 
 Difference difference(const Image& a, const Image& b) {
@@ -58,7 +58,7 @@ struct Case {
 
 class GoldenTest : public Offscreen, public testing::WithParamInterface<Case> {};
 
-TEST_P(GoldenTest, PictureLooksAsItDid) {
+TEST_P(GoldenTest, PictureMatchesItsReference) {
   const Case& c = GetParam();
   Renderer renderer = make_renderer(width, height);
   const WobblingGroup group = make_wobbling_group(6, 6, 4, 0.9f);

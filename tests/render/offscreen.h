@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests that draw have in common: a context, shared because making one takes long, and ways to look at pictures.
+// Shared by tests that draw: one context, because making one takes long, and functions that inspect pictures.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace mercury::render {
 
-// Null where no context can be had; `why` then says why.
+// nullptr if no context is available; then `why` is the reason.
 inline Context* shared_context(std::string* why = nullptr) {
   static std::string reason;
   static const std::unique_ptr<Context> context = [] {
@@ -31,7 +31,7 @@ inline Context* shared_context(std::string* why = nullptr) {
   return context.get();
 }
 
-// Skips its tests without a context, and fails them on any message of the driver.
+// Skips its tests if there is no context, and fails them on any message of the driver.
 class Offscreen : public testing::Test {
  protected:
   void SetUp() override {
@@ -60,7 +60,7 @@ inline int largest_difference(const Eigen::Vector3i& a, const Eigen::Vector3i& b
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-// Pixels that differ by more than `tolerance` steps in some channel.
+// The number of pixels that differ by more than `tolerance` steps in some channel.
 inline int count_differing(const Image& a, const Image& b, int tolerance) {
   int count = 0;
   for (int y = 0; y < a.height; ++y)

@@ -15,7 +15,7 @@ Overlay make_overlay() { return Overlay(640, 360, 16, style_of(Surroundings::wat
 std::vector<Rectangle> boxes_of(const Overlay& overlay) {
   std::vector<Rectangle> boxes;
   for (const OverlayQuad& quad : overlay.quads())
-    if (quad.kind == OverlayQuad::box) boxes.push_back(quad.place);
+    if (quad.kind == OverlayQuad::box) boxes.push_back(quad.rectangle);
   return boxes;
 }
 
@@ -39,7 +39,7 @@ TEST(Font, WidthGrowsWithTextAndSize) {
   EXPECT_FLOAT_EQ(text_width("ab", 32), 2 * text_width("ab", 16));
 }
 
-TEST(TickText, TellsNeighboursApartAndNoMore) {
+TEST(TickText, HasJustEnoughDigitsToDistinguishNeighbours) {
   EXPECT_EQ(tick_text(0.2f, 0.2f), "0.2");
   EXPECT_EQ(tick_text(0.25f, 0.25f), "0.25");
   EXPECT_EQ(tick_text(20, 5), "20");
@@ -55,7 +55,7 @@ TEST(RoundLength, IsOneTwoOrFive) {
   EXPECT_FLOAT_EQ(round_length(0.0071f), 0.005f);
 }
 
-TEST(Overlay, LabelStandsAboveItsBody) {
+TEST(Overlay, LabelIsAboveItsBody) {
   Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
   Overlay overlay = make_overlay();
   const std::vector<Bounds> bodies{box_at(0, 0)};
@@ -68,7 +68,7 @@ TEST(Overlay, LabelStandsAboveItsBody) {
   EXPECT_LT(boxes[0].y + boxes[0].height, middle.y());
 }
 
-TEST(Overlay, OfTwoLabelsAtOnePlaceTheNearerStays) {
+TEST(Overlay, OfTwoOverlappingLabelsTheNearerStays) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.02f, .distance = 5};
   Overlay overlay = make_overlay();
   const std::vector<Bounds> bodies{box_at(0, 0.5f), box_at(0, 0)};
@@ -78,7 +78,7 @@ TEST(Overlay, OfTwoLabelsAtOnePlaceTheNearerStays) {
   EXPECT_EQ(overlay.quads().size(), 1 + std::string("before").size());
 }
 
-TEST(Overlay, NoLabelForWhatIsBehindTheCameraOrHidden) {
+TEST(Overlay, BodiesBehindTheCameraOrHiddenHaveNoLabel) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
   Overlay overlay = make_overlay();
   const std::vector<Bounds> bodies{box_at(0, -20), Bounds{}};
@@ -94,22 +94,22 @@ TEST(Overlay, EverythingStaysInsideThePicture) {
   overlay.caption("Mercury\n12 robots");
   overlay.length(Orbit{}.camera());
   for (const OverlayQuad& quad : overlay.quads()) {
-    if (quad.kind == OverlayQuad::glyph) continue;  // their margins may reach over the edge
-    EXPECT_GE(quad.place.x, 0);
-    EXPECT_GE(quad.place.y, 0);
-    EXPECT_LE(quad.place.x + quad.place.width, 640);
-    EXPECT_LE(quad.place.y + quad.place.height, 360);
+    if (quad.kind == OverlayQuad::glyph) continue;  // their margins may cross the edge
+    EXPECT_GE(quad.rectangle.x, 0);
+    EXPECT_GE(quad.rectangle.y, 0);
+    EXPECT_LE(quad.rectangle.x + quad.rectangle.width, 640);
+    EXPECT_LE(quad.rectangle.y + quad.rectangle.height, 360);
   }
 }
 
-TEST(Overlay, ScaleBarIsAsLongAsItSays) {
+TEST(Overlay, ScaleBarHasTheLengthThatItShows) {
   Orbit orbit{.target = {0, 0, 0}, .azimuth = -1.5707963f, .elevation = 0, .distance = 8};
   Overlay overlay = make_overlay();
   overlay.length(orbit.camera());
-  // The longest box without round corners is the bar; it stands for a round length at the target's distance.
+  // The bar is the longest box without round corners; it has a round length at the target's distance.
   float across = 0;
   for (const OverlayQuad& quad : overlay.quads())
-    if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.place.width);
+    if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.rectangle.width);
   const float pixels_a_metre =
       orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
   const float metres = across / pixels_a_metre;

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-// Distance of a point from a triangle's edges in pixels, positive inside, for corners in either order.
+// The distance of a point from a triangle's edges in pixels, positive inside; corners in either order.
 float depth_inside(const Vector2f& point, const std::array<Vector2f, 3>& corners) {
   const auto cross = [](const Vector2f& a, const Vector2f& b) { return a.x() * b.y() - a.y() * b.x(); };
   const float sign = cross(corners[1] - corners[0], corners[2] - corners[0]) > 0 ? 1.0f : -1.0f;
@@ -24,7 +24,7 @@ float depth_inside(const Vector2f& point, const std::array<Vector2f, 3>& corners
 
 class PlacementTest : public Offscreen {};
 
-TEST_F(PlacementTest, ATriangleLandsWhereTheCameraSays) {
+TEST_F(PlacementTest, ATriangleIsDrawnWhereTheCameraProjectsIt) {
   Renderer renderer = make_renderer(200, 150);
   const Image empty = drawn(renderer, plain());
   const Mesh mesh = triangle();
@@ -44,7 +44,7 @@ TEST_F(PlacementTest, ATriangleLandsWhereTheCameraSays) {
     }
 }
 
-TEST_F(PlacementTest, EdgesAreSmooth) {
+TEST_F(PlacementTest, EdgesAreAntialiased) {
   Renderer renderer = make_renderer();
   const Image empty = drawn(renderer, plain());
   const Mesh mesh = triangle();
@@ -92,7 +92,7 @@ TEST_F(PlacementTest, TheNearerBodyHidesTheFartherInEitherOrder) {
   EXPECT_GT(near_color.x(), near_color.z() + 80);
 }
 
-TEST_F(PlacementTest, AHiddenBodyLeavesNoTrace) {
+TEST_F(PlacementTest, AHiddenBodyIsNotDrawn) {
   Renderer renderer = make_renderer();
   Scene scene = plain();
   scene.surroundings = Surroundings::land;

@@ -38,7 +38,7 @@ TEST_F(Png, LeavesNothingBehindWhenItCannotWrite) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
-TEST_F(Png, RefusesPlanes) {
+TEST_F(Png, PlanarPicturesThrow) {
   EXPECT_THROW(write_png(folder_ / "a.png", Image{2, 2, PixelFormat::yuv420, {0, 0, 0, 0, 0, 0}}),
                std::invalid_argument);
 }

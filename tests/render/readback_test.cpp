@@ -12,7 +12,7 @@ namespace {
 
 class ReadbackTest : public Offscreen {
  protected:
-  // Something with all kinds of colours, other on every frame.
+  // A picture of many colours, different in every frame.
   void draw(Renderer& renderer, double time) {
     if (renderer.body_count() == 0) renderer.set_bodies(group_.views());
     const std::vector<RenderMaterial> materials = wobbling_materials(time);
@@ -28,8 +28,8 @@ class ReadbackTest : public Offscreen {
   WobblingGroup group_ = make_wobbling_group(4, 5, 3, 0.8f);
 };
 
-TEST_F(ReadbackTest, RgbaIsRgbWithOpacity) {
-  Renderer renderer = make_renderer(61, 43);  // odd, so that rows do not fall on whole words
+TEST_F(ReadbackTest, RgbaIsRgbWithOpaqueAlpha) {
+  Renderer renderer = make_renderer(61, 43);  // odd, so that rows do not start at whole words
   draw(renderer, 1);
   const Image rgb = read(renderer), rgba = read(renderer, PixelFormat::rgba);
   ASSERT_EQ(rgb.bytes.size(), 3u * 61 * 43);
@@ -60,8 +60,8 @@ TEST_F(ReadbackTest, UpperRowComesFirst) {
   EXPECT_EQ(lower, 0);
 }
 
-// BT.709, limited range, by the standard's formulas.
-TEST_F(ReadbackTest, PlanesAreWhatTheStandardSays) {
+// BT.709, limited range, from the standard's formulas.
+TEST_F(ReadbackTest, PlanesFollowTheStandard) {
   const int width = 64, height = 48;
   Renderer renderer = make_renderer(width, height);
   draw(renderer, 1);
@@ -89,7 +89,7 @@ TEST_F(ReadbackTest, PlanesAreWhatTheStandardSays) {
     }
 }
 
-TEST_F(ReadbackTest, PicturesComeInTheOrderTheyWereStarted) {
+TEST_F(ReadbackTest, PicturesArriveInTheOrderOfStart) {
   Renderer renderer = make_renderer();
   std::vector<Image> expected;
   for (int i = 0; i < 5; ++i) {
@@ -116,7 +116,7 @@ TEST_F(ReadbackTest, PicturesComeInTheOrderTheyWereStarted) {
   EXPECT_NE(got[0].bytes, got[4].bytes);
 }
 
-TEST_F(ReadbackTest, MisuseIsRefused) {
+TEST_F(ReadbackTest, MisuseThrows) {
   Renderer renderer = make_renderer();
   EXPECT_THROW(Readback(PixelFormat::yuv420, 161, 120), std::invalid_argument);
   Readback other(PixelFormat::rgb, 80, 60);

@@ -63,7 +63,7 @@ TEST_F(RendererTest, BoundsAreThoseOfThePositions) {
   }
 }
 
-TEST_F(RendererTest, EveryModeIsDrawnWithoutAWordFromTheDriver) {
+TEST_F(RendererTest, EveryModeIsDrawnWithoutMessagesFromTheDriver) {
   const WobblingGroup group = make_wobbling_group(2, 4, 3, 0.8f);
   const std::array labels{Label{0, "one"}, Label{1, "two\n1.2 m"}};
   for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
@@ -91,7 +91,7 @@ TEST_F(RendererTest, EveryModeIsDrawnWithoutAWordFromTheDriver) {
   }
 }
 
-TEST_F(RendererTest, SizeAndQualityChangeWithoutLosingTheScene) {
+TEST_F(RendererTest, ChangesOfSizeAndQualityKeepTheBodies) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
@@ -106,7 +106,7 @@ TEST_F(RendererTest, SizeAndQualityChangeWithoutLosingTheScene) {
   EXPECT_EQ(drawn(renderer, plain()).bytes, before.bytes);
 }
 
-TEST_F(RendererTest, PositionsThatAreNotFiniteHarmNoOtherBody) {
+TEST_F(RendererTest, PositionsThatAreNotFiniteAffectNoOtherBody) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
@@ -135,7 +135,7 @@ TEST_F(RendererTest, AThousandBodiesAreDrawnAsOneGroup) {
   EXPECT_GT(count_differing(many, one, 20), 1000);
 }
 
-TEST_F(RendererTest, TellsHowLongThePartsOfAPictureTook) {
+TEST_F(RendererTest, ReportsTheTimesOfThePartsOfAPicture) {
   Renderer renderer = make_renderer();
   EXPECT_TRUE(renderer.times().empty());
   for (int i = 0; i < 6; ++i) {
@@ -147,7 +147,7 @@ TEST_F(RendererTest, TellsHowLongThePartsOfAPictureTook) {
   for (const PassTime& part : renderer.times()) EXPECT_GE(part.milliseconds, 0) << part.name;
 }
 
-TEST_F(RendererTest, LeavesDepthAsOthersExpectIt) {
+TEST_F(RendererTest, RestoresDepthStateForOthers) {
   Renderer renderer = make_renderer();
   renderer.draw(plain(), front());
   GLint value = 0;
@@ -158,7 +158,7 @@ TEST_F(RendererTest, LeavesDepthAsOthersExpectIt) {
   EXPECT_FALSE(glIsEnabled(GL_BLEND));
 }
 
-TEST_F(RendererTest, WrongLengthsAndIndicesAreRefused) {
+TEST_F(RendererTest, WrongLengthsAndIndicesThrow) {
   Renderer renderer = make_renderer();
   Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});

@@ -10,7 +10,7 @@
 namespace mercury::render {
 namespace {
 
-// A unit cube, two triangles a side.
+// A unit cube, two triangles per side.
 const std::vector<float> cube{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1};
 const std::vector<std::uint32_t> cube_faces{1, 3, 7, 1, 7, 5, 0, 4, 6, 0, 6, 2, 2, 6, 7, 2, 7, 3,
                                             0, 1, 5, 0, 5, 4, 4, 5, 7, 4, 7, 6, 0, 2, 3, 0, 3, 1};
@@ -19,7 +19,7 @@ TEST(SkinTopology, SidesOfACubeAreQuadrilaterals) {
   for (const FaceRecord& record : skin_topology(cube, cube_faces)) EXPECT_LT(record.shape, 3u);
 }
 
-TEST(SkinTopology, ASideOfACubeMeetsTheFourOthersButNotItselfOrItsOpposite) {
+TEST(SkinTopology, ASideOfACubeHasTheFourAdjacentSidesAsNeighbours) {
   const std::vector<FaceRecord> records = skin_topology(cube, cube_faces);
   for (std::size_t face = 0; face < records.size(); ++face) {
     std::set<std::uint32_t> sides;
@@ -31,7 +31,7 @@ TEST(SkinTopology, ASideOfACubeMeetsTheFourOthersButNotItselfOrItsOpposite) {
   }
 }
 
-TEST(SkinTopology, NeighboursLieAcrossTheEdgeTheyStandFor) {
+TEST(SkinTopology, NeighboursLieAcrossTheirEdge) {
   const std::vector<FaceRecord> records = skin_topology(cube, cube_faces);
   for (std::size_t face = 0; face < records.size(); ++face) {
     const std::uint32_t corner = records[face].shape;
@@ -43,7 +43,7 @@ TEST(SkinTopology, NeighboursLieAcrossTheEdgeTheyStandFor) {
   }
 }
 
-TEST(SkinTopology, ATetrahedronHasTrianglesAlone) {
+TEST(SkinTopology, ATetrahedronHasOnlyTriangles) {
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0.5f, 1, 0, 0.5f, 0.4f, 1};
   const std::vector<FaceRecord> records =
       skin_topology(corners, std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3});

@@ -8,7 +8,7 @@ namespace {
 
 class SurroundingsTest : public Offscreen {};
 
-TEST_F(SurroundingsTest, AShadowFallsBesideABodyOnTheGround) {
+TEST_F(SurroundingsTest, ABodyOnTheGroundCastsAShadow) {
   Renderer renderer = make_renderer();
   const WobblingGroup group = make_wobbling_group(1, 6, 3, 1);
   Scene scene;
@@ -25,7 +25,7 @@ TEST_F(SurroundingsTest, AShadowFallsBesideABodyOnTheGround) {
   EXPECT_LE(largest_difference(pixel(image, 2, 2), pixel(empty, 2, 2)), 1);
 }
 
-TEST_F(SurroundingsTest, SpecksDriftWithTheFlow) {
+TEST_F(SurroundingsTest, ParticlesDriftWithTheFlow) {
   Renderer renderer = make_renderer();
   Scene scene;
   scene.floor = -100;

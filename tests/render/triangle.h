@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simplest scene: one triangle before a camera, and where the camera must show its points.
+// The simplest scene: one triangle in front of a camera, and where its points must be in the picture.
 #pragma once
 
 #include <cmath>
@@ -16,14 +16,14 @@ struct Mesh {
   Body body() const { return {positions, faces, springs, {}, {}}; }
 };
 
-// Faces the eye of `front()`.
+// A triangle that faces the camera `front()`.
 inline Mesh triangle(float y = 0) {
   return {{-0.8f, y, -0.5f, 0.9f, y, -0.4f, 0.1f, y, 0.8f}, {0, 1, 2}, {0, 1, 1, 2, 2, 0}};
 }
 
 inline Camera front() { return {.eye = {0.4f, -4, 0.3f}, .target = {0, 0, 0.1f}}; }
 
-// Nothing but the bodies.
+// A scene without surroundings.
 inline Scene plain() {
   Scene scene;
   scene.surroundings = Surroundings::none;
@@ -35,7 +35,7 @@ inline Image drawn(Renderer& renderer, const Scene& scene, const Camera& camera 
   return read(renderer);
 }
 
-// Similar triangles, in the test's own words.
+// An independent pinhole camera: similar triangles.
 inline Eigen::Vector2f pinhole(const Camera& camera, const Eigen::Vector3f& point, int width, int height) {
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
   const Eigen::Vector3f right = Eigen::Vector3f(forward.y(), -forward.x(), 0).normalized();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window's context adopted, and a picture presented in it: with a hidden window, on a display that the test starts
-// for itself where there is none.
+// Adopts the context of a hidden window and presents a picture in it. Without a display, the test starts one.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -26,7 +25,7 @@ extern char** environ;
 namespace mercury::render {
 namespace {
 
-// A display of its own, while it lives, unless there is one.
+// Starts a display for its lifetime, unless there is one.
 class Display {
  public:
   Display() {
@@ -34,7 +33,7 @@ class Display {
     int ends[2];
     if (pipe(ends) != 0) return;
     const std::string end = std::to_string(ends[1]);
-    // Without -noreset it starts over whenever a test ends, and refuses the next one meanwhile.
+    // Without -noreset the server restarts when a client ends, and refuses the next client meanwhile.
     std::array<const char*, 9> arguments{"Xvfb",       "-displayfd", end.c_str(), "-screen", "0",
                                          "640x480x24", "-nolisten",  "tcp",       "-noreset"};
     std::vector<char*> argv;
@@ -42,7 +41,7 @@ class Display {
     argv.push_back(nullptr);
     if (posix_spawnp(&server_, "Xvfb", nullptr, nullptr, argv.data(), environ) != 0) server_ = -1;
     close(ends[1]);
-    // The server writes the display's number when it is ready, and nothing if it is not there.
+    // The server writes the display's number when it is ready, and nothing if it is not installed.
     std::string number;
     for (char c; ::read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
     close(ends[0]);
@@ -111,7 +110,7 @@ class WindowTest : public testing::Test {
   std::unique_ptr<Context> context_;
 };
 
-TEST_F(WindowTest, AnAdoptedContextSaysWhatItIs) {
+TEST_F(WindowTest, AnAdoptedContextDescribesItself) {
   EXPECT_EQ(context_->kind(), ContextKind::window);
   EXPECT_THAT(context_->describe(), testing::HasSubstr("OpenGL 4."));
   context_->release();
@@ -127,7 +126,7 @@ TEST_F(WindowTest, PresentedPixelsAreThoseOfThePicture) {
   EXPECT_EQ(window_pixels().bytes, picture.bytes);
 }
 
-TEST_F(WindowTest, AHalfOfTheWindowShowsAllOfThePictureAndTheRestStays) {
+TEST_F(WindowTest, PresentingIntoAPartOfTheWindowScalesThePictureAndKeepsTheRest) {
   const Renderer renderer = drawn(width, height);
   const Image picture = render::read(renderer);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);

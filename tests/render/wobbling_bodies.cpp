@@ -23,7 +23,7 @@ struct Grid {
   }
 };
 
-// Lobes around a spine, in patches of one kind each, mirrored left and right.
+// Lobes around a spine, in patches of one material each, mirrored left and right.
 Grid random_grid(int side, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);

@@ -14,20 +14,20 @@ struct WobblingBody {
   std::vector<std::uint32_t> faces, springs, face_materials, spring_materials;
 
   Body body() const { return {rest, faces, springs, face_materials, spring_materials}; }
-  // Masses at a time [s]: stretched and bent by travelling waves, smooth in space.
+  // The positions at a time [s]: travelling waves stretch and bend the body.
   std::vector<float> positions(double time, float phase) const;
 };
 
-// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; every voxel one of 22 materials.
+// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; each voxel has one of 22 materials.
 WobblingBody make_wobbling_body(int side, std::uint32_t seed);
 
-// A bumpy ball of about half a metre, of triangles alone: an icosahedron, each side split into 4 `splits` times.
+// A bumpy ball of about half a metre, made of triangles: an icosahedron whose sides are split into 4, `splits` times.
 WobblingBody make_blob(int splits, std::uint32_t seed);
 
-// The 22 looks: muscles at their activation, tissue, bone.
+// The 22 materials: muscles with their activation at that time, tissue, bone.
 std::vector<RenderMaterial> wobbling_materials(double time);
 
-// `count` bodies and where they stand: in rows that fill a picture of that aspect.
+// `count` bodies and their placements, in rows that fill a picture of that aspect.
 struct WobblingGroup {
   std::vector<WobblingBody> bodies;
   std::vector<Placement> placements;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Renderer consists of, and how it draws one picture.
+//
+//   positions           each body's box; each face's normal and axes; what the shadow map and the floor's light map
+//                       cover; lists of the faces that turn towards the eye and towards the light
+//   shadow map          depth, seen from the key light
+//   light on the floor  soft shadows on the floor as a map; under water, a tile of caustics
+//   nearest surfaces    depth and face of the first surface in each pixel, one sample per pixel
+//   light on skins      soft shadows on those surfaces
+//   occlusion           ambient occlusion of those surfaces, at half the picture's size
+//   skins, springs and masses, surroundings
+//                       linear light, 4 samples per pixel
+//   finish              paths and particles; then glow, tone curve, average of the samples; then text
+//
+// 1. What costs much per pixel is computed once per pixel, before the 4 samples are drawn.
+// 2. No pass waits for an answer from the GPU. What depends on the positions stays there, in FrameBlock. Only labels
+//    need the boxes on the CPU; they are read last, when the GPU has other work.
+// 3. The CPU is at most two pictures ahead of the GPU (Pace). Until then, what it wrote stays (StreamBuffer).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "render/annotation_pass.h"
+#include "render/bodies.h"
+#include "render/bounds_pass.h"
+#include "render/finish_pass.h"
+#include "render/fit_pass.h"
+#include "render/front_pass.h"
+#include "render/lattice_pass.h"
+#include "render/light_pass.h"
+#include "render/occlusion_pass.h"
+#include "render/overlay_pass.h"
+#include "render/pace.h"
+#include "render/quality.h"
+#include "render/renderer.h"
+#include "render/scene_buffers.h"
+#include "render/section_pass.h"
+#include "render/skin_pass.h"
+#include "render/style.h"
+#include "render/targets.h"
+
+namespace mercury::render {
+
+// The passes that depend on quality; set_quality() builds them from scratch.
+struct Passes {
+  explicit Passes(const QualitySettings& settings)
+      : skin(settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "")),
+        lattice(settings.skin_defines()), light(settings), front(settings), occlusion(settings), finish(settings),
+        backdrop("backdrop.frag") {}
+  void resize(int width, int height) {
+    front.resize(width, height);
+    occlusion.resize(width, height);
+    finish.resize(width, height);
+  }
+  SkinPass skin;
+  LatticePass lattice;
+  AnnotationPass annotation;
+  LightPass light;
+  FrontPass front;
+  OcclusionPass occlusion;
+  FinishPass finish;
+  Fullscreen backdrop;
+};
+
+// All colour maps, one per row, from the middle of the first texel to the middle of the last.
+Texture make_colormaps();
+
+struct Renderer::Parts {
+  int width = 0, height = 0;
+  Quality quality = Quality::automatic;
+  bool software = false;
+  QualitySettings settings;
+  Targets targets;
+  Bodies bodies;
+  StreamBuffer frame;
+  SceneBuffers scene_buffers;
+  Texture colormaps = make_colormaps();
+  OverlayPass overlay;
+  float text_size = 0;
+  std::optional<Passes> passes;
+  BoundsPass bounds;
+  FitPass fit;
+  SectionPass section;
+  PassTimer timer;
+  Pace pace;
+  std::string variant;  // lines of #define for this picture
+
+  void prepare(const Scene& scene, const Camera& camera, const Style& style);
+  template <typename Draw>
+  void draw_sides(const Scene& scene, const Camera& camera, Draw draw_skins);
+  void draw_light(const Scene& scene, const Camera& camera);
+  void draw_solid(const Scene& scene, const Camera& camera);
+};
+
+}  // namespace mercury::render
