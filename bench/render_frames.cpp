@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast groups are drawn, and what of a picture takes how long: bench_render_frames [name=value ...].
+// How fast groups are drawn, and the GPU time of each part of a picture: bench_render_frames [name=value ...].
 // Names: bodies side width height frames quality (auto, low, medium, high) context (auto, egl, mesa, osmesa)
 //        around (water, land, none) read (none, rgb, yuv) upload (0, 1: positions through the host) json (0, 1)
 //
 // Bodies are full lattices of side^3 voxels, as in the simulator's own benchmark: side 10 has 1,331 masses, 14,230
-// springs and 1,200 faces. Positions stand still; everything that depends on them is computed anew in each frame.
+// springs and 1,200 faces. Positions do not change, but everything that depends on them is computed in each frame.
 #include <epoxy/gl.h>
 
 #include <chrono>
@@ -41,7 +41,7 @@ Lattice make_lattice(int side) {
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
-        for (int d = 1; d < 27; ++d) {  // the half of the neighbours that comes later
+        for (int d = 1; d < 27; ++d) {  // the half of the neighbours with higher indices
           const int dx = d % 3 - 1, dy = (d / 3) % 3 - 1, dz = d / 9 - 1;
           if (dz * 9 + dy * 3 + dx <= 0) continue;
           const int a = x + dx, b = y + dy, c = z + dz;
@@ -112,7 +112,7 @@ struct Group {
   Scene scene;
 };
 
-// The mean of each part over the pictures in which its time was known.
+// The mean time of each part, over the pictures whose times arrived.
 class MeanTimes {
  public:
   void add(const std::vector<PassTime>& times) {
@@ -136,7 +136,7 @@ class MeanTimes {
 };
 
 struct Result {
-  double setup = 0, seconds = 0;  // of set_bodies, of a picture
+  double setup = 0, seconds = 0;  // of set_bodies; per picture
   std::vector<PassTime> parts;
 };
 
@@ -179,7 +179,7 @@ Result measure(const Options& options, Renderer& renderer, const Lattice& lattic
 void print_text(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
                 const Result& result) {
   std::printf(
-      "%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms a picture, %.1f pictures/s (set up in %.2f "
+      "%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms per picture, %.1f pictures/s (set up in %.2f "
       "s)\n",
       context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
       lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(), 1e3 * result.seconds,

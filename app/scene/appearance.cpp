@@ -8,8 +8,8 @@
 namespace mercury {
 namespace {
 
-// The springs that begin at each mass, the lower of their two: a window builds these again and again, and a hash table
-// of all springs would take it many times as long.
+// The springs at each mass, listed at the lower of their two masses. A window builds this often, and a hash table of
+// all springs takes many times as long.
 class SpringsByMass {
  public:
   explicit SpringsByMass(const Robot& robot) : first_(robot.masses.size() + 1), springs_(robot.springs.size()) {
@@ -18,7 +18,7 @@ class SpringsByMass {
     std::vector<std::uint32_t> next(first_);
     for (const Spring& spring : robot.springs) springs_[next[lower(spring)]++] = &spring;
   }
-  // The first of the robot's springs that joins them; nullptr without one.
+  // The first spring that joins them, or nullptr.
   const Spring* between(std::uint16_t a, std::uint16_t b) const {
     if (a > b) std::swap(a, b);
     for (std::uint32_t i = first_[a]; i < first_[a + 1u]; ++i)
@@ -32,20 +32,20 @@ class SpringsByMass {
   std::vector<const Spring*> springs_;
 };
 
-// From the lowest value seen to the highest.
+// The range of the values added so far.
 struct Range {
   float low = INFINITY, high = -INFINITY;
   void add(float value) {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  float place_of(float value) const { return high > low ? (value - low) / (high - low) : 0.5f; }
+  float share_of(float value) const { return high > low ? (value - low) / (high - low) : 0.5f; }
 };
 
 render::Color color_of(const Material& material, const Range& frequencies, const Range& passive) {
-  if (material.amplitude != 0) return render::muscle_color(material.phase, frequencies.place_of(material.frequency));
-  // The softest passive material of the table looks like tissue, the stiffest like bone.
-  return render::mix(render::tissue_color, render::bone_color, passive.place_of(material.stiffness));
+  if (material.amplitude != 0) return render::muscle_color(material.phase, frequencies.share_of(material.frequency));
+  // From the softest passive material, coloured as tissue, to the stiffest, coloured as bone.
+  return render::mix(render::tissue_color, render::bone_color, passive.share_of(material.stiffness));
 }
 
 }  // namespace

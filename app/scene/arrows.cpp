@@ -22,8 +22,8 @@ constexpr render::Color velocity_color = render::rgb(0xaed581);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
 constexpr render::Color contact_color = render::rgb(0xffca28);
 
-// The largest of the middle one of the robots that have any, so that one strong robot does not make all others'
-// invisible.
+// The largest arrow of each robot, and of these the median, so that one strong robot does not make the arrows of all
+// others invisible.
 float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
   std::vector<float> largest(robots);
   for (const render::Arrow& arrow : arrows)
@@ -61,7 +61,7 @@ Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
                                            kinds.drag ? "drag" : "lift", name_of(environment)));
 }
 
-// Metres an arrow of one unit is long.
+// The length of an arrow of one unit, as a share of the longest.
 float Arrows::Gauge::fit(float largest) {
   if (largest > most) most = round_up(largest);
   return most > 0 ? 1 / most : 0;
@@ -80,7 +80,6 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
   }
 }
 
-// From the mass up.
 void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const {
   const std::size_t first = simulation_.mass_offsets()[robot];
   for (const FloorForce& contact : floor_forces(simulation_, robot, state))

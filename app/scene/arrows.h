@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrows that show forces and motion.
+// Arrows of forces and velocities.
 #pragma once
 
 #include <string>
@@ -15,28 +15,27 @@ struct ArrowKinds {
   bool drag = false, lift = false;  // on each face
   bool velocity = false;            // of each robot's centre of mass
   bool gravity = false;             // at each robot's centre of mass
-  bool contact = false;             // of the floor with each mass on it
+  bool contact = false;             // force of the floor on each mass
 
   bool any() const { return drag || lift || velocity || gravity || contact; }
 };
 
-// Turns forces and velocities into arrows. The scale is chosen so that the longest arrow of the middle robot is about
-// half a robot long, and changes only by steps of 1, 2 and 5 as larger ones come; no arrow is drawn more than twice as
-// long.
+// Turns forces and velocities into arrows. The scale makes the longest arrow of the median robot about half a robot
+// long. It grows with larger values by steps of 1, 2 and 5. No arrow is longer than one robot.
 class Arrows {
  public:
-  // Throws InputError("--show: ...") for drag or lift in an environment that does not act on faces, and for contact in
-  // one without a floor.
+  // Throws InputError("--show: ...") for drag or lift in an environment without forces on faces, and for contact in one
+  // without a floor.
   Arrows(const Simulation& simulation, ArrowKinds kinds);
 
-  // `telemetry` one a robot. Exploded robots have none.
+  // All arrows at this time. `telemetry`: one per robot. Exploded robots have no arrows.
   std::vector<render::Arrow> at(const GroupState& state, std::span<const Telemetry> telemetry);
 
-  // What the lengths mean, at the last at(): "drag: 0.1 m = 2 N". Empty without arrows.
+  // What the lengths of the last at() mean: "drag: 0.1 m = 2 N". Empty without arrows.
   std::string key() const;
 
  private:
-  // Grows with the largest value seen.
+  // The scale of one kind of arrow; it grows with the largest value so far.
   struct Gauge {
     const char* name;
     const char* unit;

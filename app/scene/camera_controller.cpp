@@ -15,11 +15,11 @@
 namespace mercury {
 namespace {
 
-constexpr double lag = 0.8;     // of the camera behind what it should see [s]
-constexpr float margin = 1.1f;  // of the framing, as a share of the distance
+constexpr double lag = 0.8;     // time constant with which the camera follows [s]
+constexpr float margin = 1.1f;  // of the distance, around what is in view
 constexpr float follow_margin = 1.8f;
 
-// The eye's axes in the world, as rows: right, up and forward.
+// The camera's axes in the world, as rows: right, up and forward.
 Eigen::Matrix3f axes_of(const render::Orbit& orbit) {
   const render::Camera camera = orbit.camera();
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
@@ -29,7 +29,8 @@ Eigen::Matrix3f axes_of(const render::Orbit& orbit) {
   return axes;
 }
 
-// The distance at which an orbit sees all boxes, its target staying where it is: |x| <= tan_x (depth) for every corner.
+// The smallest distance at which all boxes are in view of an orbit with this target: |x| <= tan_x depth for each
+// corner.
 float least_distance(std::span<const render::Bounds> boxes, const render::Orbit& orbit, float aspect) {
   const Eigen::Matrix3f axes = axes_of(orbit);
   const Eigen::Array2f tangents = std::tan(orbit.field_of_view / 2) * Eigen::Array2f(aspect, 1);
@@ -90,7 +91,7 @@ render::Camera CameraController::at(std::span<const render::Bounds> robots, doub
       keep_in_view(robots, dt);
       break;
     case CameraMode::follow:
-      go_along(robots, dt);
+      follow(robots, dt);
       break;
     case CameraMode::turntable:
       circle(robots, dt);
@@ -107,7 +108,7 @@ render::Camera CameraController::at(std::span<const render::Bounds> robots, doub
 }
 
 void CameraController::keep_in_view(std::span<const render::Bounds> robots, double dt) {
-  constexpr float least_margin = 1.02f;  // what the lag may leave
+  constexpr float least_margin = 1.02f;  // that the lag may not go below
   render::Orbit wanted = orbit_;
   wanted.frame(robots, picture_.aspect, margin / plan_.zoom, picture_.free);
   const auto share = static_cast<float>(started_ ? 1 - std::exp(-dt / lag) : 1);
@@ -117,10 +118,10 @@ void CameraController::keep_in_view(std::span<const render::Bounds> robots, doub
     orbit_.distance = std::max(orbit_.distance, least_margin * least_distance(robots, orbit_, picture_.aspect));
 }
 
-void CameraController::go_along(std::span<const render::Bounds> robots, double dt) {
+void CameraController::follow(std::span<const render::Bounds> robots, double dt) {
   const auto followed = robot_ ? robots.subspan(*robot_, 1) : robots;
   const render::Bounds box = all_of(followed);
-  if (box.empty()) return;  // it has exploded: the camera stays
+  if (box.empty()) return;  // it has exploded: the camera stays where it is
   if (!started_) orbit_.frame(followed, picture_.aspect, (robot_ ? follow_margin : margin) / plan_.zoom, picture_.free);
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   int count = 0;
@@ -136,7 +137,7 @@ void CameraController::go_along(std::span<const render::Bounds> robots, double d
 void CameraController::circle(std::span<const render::Bounds> robots, double dt) {
   const render::Bounds box = all_of(robots);
   if (box.empty()) return;
-  // A sphere looks the same from all sides, so that nothing pulses while the camera turns.
+  // Frames a sphere, which is the same from all sides, so that the distance does not vary as the camera turns.
   const float smaller_side = std::min(1.0f, picture_.aspect);
   const float half_angle = std::atan(smaller_side * std::tan(plan_.field_of_view / 2));
   const float distance = margin / plan_.zoom * box.radius() / std::sin(half_angle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carries a camera plan out, frame by frame.
+// Moves the camera of a video, frame by frame, as a CameraPlan says.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,33 +13,33 @@
 
 namespace mercury {
 
-// The picture that the camera makes.
+// The properties of the picture that matter to the camera.
 struct PictureFrame {
   float aspect = 16.0f / 9;
-  render::Insets free;     // parts of it that are covered by a legend and the like
-  bool on_ground = false;  // robots stand on the ground, seen from higher up than swimming ones
+  render::Insets free;     // edges that a legend or other text covers
+  bool on_ground = false;  // robots stand on the ground; the camera is higher than for swimmers
 };
 
-// The direction a plan begins with: its angles, or those that suit the mode; target and distance are not set.
+// The direction at the start: the plan's angles, or defaults for its mode. Target and distance are not set.
 render::Orbit direction_of(const CameraPlan& plan, bool on_ground);
 
 class CameraController {
  public:
-  // `names`: of the robots. Throws InputError("--camera: ...") when the plan follows one that is not there.
+  // `names`: of the robots. Throws InputError("--camera: ...") when the plan follows an unknown robot.
   CameraController(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names);
 
-  // Once a frame, with the boxes of the robots and the time since the last frame [s of video]. Boxes that are empty are
-  // left out. The first call begins without a lag.
+  // The camera of the next frame. Call it once per frame with the boxes of the robots and the time since the last frame
+  // [s of video]. Ignores empty boxes. The first call has no lag.
   render::Camera at(std::span<const render::Bounds> robots, double dt);
 
  private:
   void keep_in_view(std::span<const render::Bounds> robots, double dt);
-  void go_along(std::span<const render::Bounds> robots, double dt);
+  void follow(std::span<const render::Bounds> robots, double dt);
   void circle(std::span<const render::Bounds> robots, double dt);
 
   CameraPlan plan_;
   PictureFrame picture_;
-  std::optional<std::size_t> robot_;  // that is followed
+  std::optional<std::size_t> robot_;  // the robot to follow; none = the group
   render::Orbit orbit_;
   bool started_ = false;
 };

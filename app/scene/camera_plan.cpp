@@ -36,7 +36,7 @@ std::string mode_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// Reads the members of a camera file; every error says which.
+// Reads the members of a camera file. Errors name the member.
 class Reader {
  public:
   Reader(std::string path, const Json& json) : path_(std::move(path)), json_(json) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the camera behaves: given on the command line, kept in a file.
+// How the camera moves: an option of the command line, or a camera file.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +15,10 @@ namespace mercury {
 
 enum class CameraMode {
   group,      // keeps all robots in view
-  follow,     // goes along with one robot, or with the middle of the group
+  follow,     // moves with one robot, or with the middle of the group
   turntable,  // circles the group
   top,        // looks straight down, all robots in view
-  still,      // stays where it begins
+  still,      // does not move
 };
 
 struct CameraPlan {
@@ -40,8 +40,8 @@ std::string_view name_of(CameraMode mode);
 CameraPlan camera_named(const std::string& text);
 
 // A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1],
-// ...}, members as in CameraPlan, angles in radians; all but the format may be left out. Throws InputError in one line
-// that says where and why.
+// ...}, members as in CameraPlan, angles in radians; only the format and version are required. Throws InputError in one
+// line that says where and why.
 CameraPlan load_camera(const std::filesystem::path& path);
 void save_camera(const std::filesystem::path& path, const CameraPlan& plan);
 

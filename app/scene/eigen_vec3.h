@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the simulation's vectors and the renderer's.
+// Converts the simulation's vectors to the renderer's.
 #pragma once
 
 #include <Eigen/Core>

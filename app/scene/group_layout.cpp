@@ -27,7 +27,7 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
     const float fill = static_cast<float>(cells) / static_cast<float>(columns * rows);
     const float scale =
         std::min(picture_aspect / (static_cast<float>(columns) * cell_aspect), 1 / static_cast<float>(rows));
-    // Empty cells look unfinished: they are avoided where that costs little size.
+    // Empty cells look unfinished, so a layout without them wins if it costs little size.
     if (scale * (0.6f + 0.4f * fill) <= best_scale) continue;
     best_scale = scale * (0.6f + 0.4f * fill);
     best = {columns, rows};
@@ -37,7 +37,7 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
 
 namespace {
 
-// The directions that lie right and up in the picture.
+// The directions to the right and up in the picture.
 struct Axes {
   Eigen::Vector3f right, up;
 };
@@ -48,12 +48,12 @@ Axes axes_of(const render::Orbit& view) {
   return {{-sin_a, cos_a, 0}, {-cos_a * sin_e, -sin_a * sin_e, cos_e}};
 }
 
-// Extent of a box along a direction.
+// The extent of a box along a direction.
 float extent(const render::Bounds& box, const Eigen::Vector3f& direction) {
   return box.empty() ? 0 : (box.high - box.low).dot(direction.cwiseAbs());
 }
 
-// Middles of strips of these widths, side by side, the middle of all at 0.
+// The middles of strips with these widths, side by side and centred at 0.
 std::vector<float> middles_of(const std::vector<float>& widths) {
   std::vector<float> middles;
   float edge = -0.5f * std::accumulate(widths.begin(), widths.end(), 0.0f);
@@ -79,7 +79,7 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   if (robots.size() > columns * rows)
     throw InputError("--grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows", robots.size(),
                                            grid.columns, grid.rows));
-  // Each column is as wide, and each row as high, as its largest robot needs.
+  // The largest robot of each column and row decides its size.
   std::vector<float> widths(columns, 0.4f * width), heights(rows, 0.4f * height);
   for (std::size_t i = 0; i < robots.size(); ++i) {
     widths[i % columns] = std::max(widths[i % columns], options.spacing * extent(robots[i], axes.right));
@@ -88,7 +88,7 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   const std::vector<float> across = middles_of(widths), down = middles_of(heights);
   Eigen::Vector3f up = axes.up;
   if (options.on_ground) {
-    // On the ground a row lies so far behind the one before it that it appears one row higher.
+    // On the ground, a row lies behind the previous one, at the distance at which it appears one row higher.
     const Eigen::Vector3f away(-std::cos(options.view.azimuth), -std::sin(options.view.azimuth), 0);
     up = away / std::max(0.1f, std::sin(options.view.elevation));
   }

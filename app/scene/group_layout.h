@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the robots of a group stand in the picture.
+// Where the robots of a group are in the picture.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,26 +20,26 @@ struct Grid {
   int columns = 1, rows = 1;
 };
 
-// The number of columns and rows for `count` cells of that width over height that fills a picture best.
+// The number of columns and rows with which `count` cells fill a picture best. Aspects are width / height.
 Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect);
 
 enum class Layout {
   grid,
-  race,  // one lane a robot, side by side across the picture
+  race,  // one lane per robot, side by side across the picture
 };
 
 struct LayoutOptions {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;  // absent = grid_for
-  float spacing = 1.45f;     // size of a cell over that of the largest robot of its row and column
+  float spacing = 1.45f;     // size of a cell / size of the largest robot in its row or column
   float aspect = 16.0f / 9;  // of the picture
-  render::Orbit view;        // its angles are those that the group is seen from
-  bool on_ground = false;    // a grid on the ground rather than one that faces the eye; heights stay as they are
+  render::Orbit view;        // its angles are the direction of view
+  bool on_ground = false;    // the grid lies on the ground and does not face the eye; heights do not change
 };
 
-// What to add to each robot's coordinates so that, seen from the view's direction, they stand in a grid, the first
-// one at the upper left, and none hides another while it stays in its cell. The grid's middle is at the origin.
-// Throws InputError("--grid: ...") if the robots do not fit into the grid.
+// The offset of each robot. Seen from the view's direction, the robots then form a grid, the first one at the upper
+// left, and none hides another while it stays in its cell. The middle of the grid is at the origin. Throws
+// InputError("--grid: ...") if the robots do not fit into the grid.
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
 
 }  // namespace mercury

@@ -33,7 +33,7 @@ Vec3 flow_of(const Environment& environment) {
       environment);
 }
 
-// Height of the sand under a group that swims: half the group's height below it, and twice its tallest robot.
+// The height of the sand below a swimming group: lower than the group by half its height plus twice its tallest robot.
 float sand_below(std::span<const render::Bounds> robots) {
   render::Bounds group;
   float tallest = 0;
@@ -45,8 +45,8 @@ float sand_below(std::span<const render::Bounds> robots) {
   return group.empty() ? 0 : group.low.z() - 0.5f * (group.high.z() - group.low.z()) - 2 * tallest;
 }
 
-// Materials of the legend: the base materials that the group's springs are of, alone or in pairs, if they are the
-// defaults.
+// The legend of materials: the base materials of the group's springs, alone or in pairs, for robots with the default
+// table.
 std::vector<std::pair<render::Color, std::string>> swatches_of(const Group& group) {
   std::array<bool, max_materials> springs_of{};  // by id
   for (std::size_t i = 0; i < group.robots.size(); ++i) {
@@ -73,7 +73,7 @@ std::string distance_text(float metres) {
   return fmt::format("{:.2f} m", metres);
 }
 
-// In slow motion so many digits that the last one is seen to move.
+// In slow motion with enough digits that the last one changes visibly.
 std::string clock_of(double time, double speed) {
   const int digits = speed >= 1 ? 1 : std::clamp(1 + static_cast<int>(std::ceil(-std::log10(speed) - 1e-9)), 1, 5);
   return speed == 1 ? fmt::format("{:.1f} s", time) : fmt::format("{:.{}f} s   x{:g}", time, digits, speed);
@@ -111,7 +111,7 @@ void GroupScene::place_floor() {
   scene_.floor = scene_.surroundings == render::Surroundings::land ? 0 : sand_below(bounds_);
 }
 
-// What the settings and the environment say, and no moment changes.
+// The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {
   scene_.surroundings = surroundings_of(environment_);
   scene_.flow = eigen(flow_of(environment_));
@@ -125,8 +125,8 @@ void GroupScene::set_settings(const ViewSettings& settings) {
   if (settings.color != settings_.color || settings.scale != settings_.scale)
     scale_ = {*settings.color, settings.scale};
   settings_ = settings;
-  for (std::size_t i = 0; i < placements_.size(); ++i) placements_[i].smooth = settings.smooth || grown_[i];
-  // What is no longer shown.
+  for (std::size_t i = 0; i < placements_.size(); ++i) placements_[i].smooth = settings.smooth || smooth_[i];
+  // Clears what may no longer be shown.
   scene_.clock.clear();
   scene_.paths = {};
   scene_.labels = {};
@@ -158,7 +158,7 @@ void GroupScene::set_materials(std::size_t robot, std::span<const Material> mate
   use_table(robot, table_for(own, materials, defaults));
 }
 
-// One that is as wanted, or a free one made so.
+// A table with these materials: an existing one, or a free or new one filled with them.
 std::size_t GroupScene::table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults) {
   const auto same = [&](const Table& table) {
     return table.robots > 0 && table.defaults == defaults && std::ranges::equal(table.materials, materials) &&
@@ -199,11 +199,11 @@ void GroupScene::restart(std::span<const Telemetry> telemetry) {
 
 void GroupScene::add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
                      const Eigen::Vector3f& offset) {
-  grown_.push_back(shape.grown);
-  placements_.push_back({.offset = offset, .smooth = settings_.smooth || shape.grown});
+  smooth_.push_back(shape.smooth);
+  placements_.push_back({.offset = offset, .smooth = settings_.smooth || shape.smooth});
   table_of_.push_back(0);
   use_table(placements_.size() - 1, table_for(materials_of(robot), materials, robot.materials.empty()));
-  render::Bounds rest = shape.box.moved(-shape.middle);
+  render::Bounds rest = shape.box.moved(-shape.center);
   rest.low *= room_to_deform;
   rest.high *= room_to_deform;
   rest_.push_back(rest);
@@ -258,7 +258,7 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   std::vector<float> distances;
   for (std::size_t i = 0; i < trails_.size(); ++i)
     distances.push_back(telemetry[i].exploded ? -1 : (eigen(telemetry[i].center_of_mass) - trails_[i].start).norm());
-  // Nobody leads before somebody has moved.
+  // No ranks before a robot has moved.
   const bool ranked = trails_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
   labels_.clear();
   for (std::size_t i = 0; i < trails_.size(); ++i) {

@@ -20,63 +20,64 @@
 
 namespace mercury {
 
-// The robots of a group when its scene is made; referred to only until then.
+// The robots of a group, for making its scene. The scene does not refer to it afterwards.
 struct Group {
   std::vector<const Robot*> robots;
-  std::vector<std::string> names;                    // one a robot
-  std::vector<std::span<const Material>> materials;  // one table a robot, as they are now
-  std::vector<Telemetry> telemetry;                  // one a robot
+  std::vector<std::string> names;                    // one per robot
+  std::vector<std::span<const Material>> materials;  // one table per robot, as the simulation has them now
+  std::vector<Telemetry> telemetry;                  // one per robot
   Environment environment;
-  std::vector<std::shared_ptr<const RobotShape>> shapes;  // one a robot; empty = to be made
-  std::shared_ptr<const render::BodyData> bodies;         // of the shapes; nothing = to be made
+  std::vector<std::shared_ptr<const RobotShape>> shapes;  // one per robot; empty = the scene makes them
+  std::shared_ptr<const render::BodyData> bodies;         // of the shapes; nullptr = the scene makes them
 };
 Group group_of(const Simulation& simulation);
 
-// The way that a robot's centre of mass went.
+// The path of a robot's centre of mass.
 struct Trail {
   Eigen::Vector3f start{0, 0, 0};  // [m]
   std::vector<float> points;       // 3 each
 };
 
-// Keeps what Scene's spans refer to. Knows no OpenGL.
+// Owns the data of a render::Scene and updates it. Uses no OpenGL.
 class GroupScene {
  public:
-  // `offsets`: one a robot, added to its coordinates.
+  // `offsets`: one per robot, added to its coordinates.
   GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
   GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
       : GroupScene(group_of(simulation), std::move(offsets), settings) {}
 
-  // Changes that need no new bodies; from the next update() on.
+  // Changes that need no new bodies; they take effect at the next update().
   void set_settings(const ViewSettings& settings);
   void set_environment(const Environment& environment);
   void set_offsets(std::span<const Eigen::Vector3f> offsets);
   void set_materials(std::size_t robot, std::span<const Material> materials);
   void set_name(std::size_t robot, const std::string& name) { names_[robot] = name; }
   void mark(std::size_t robot, bool selected, bool hidden);
-  // Trails begin anew.
+  // Starts all trails again at these positions.
   void restart(std::span<const Telemetry> telemetry);
   const std::vector<Trail>& trails() const { return trails_; }
   void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
 
-  // Gives the robots to a renderer; once, and again when the robots change.
+  // Gives the robots to a renderer. Call it once, and again when the robots change.
   void set_bodies(render::Renderer& renderer) const;
 
-  // Brings everything but the positions to a moment of the simulation.
+  // Updates everything except the positions to a time of the simulation.
   void update(double time, std::span<const Telemetry> telemetry, SceneDetails details);
 
   render::Scene& scene() { return scene_; }
 
-  // The box around each robot in the picture at the last update(), told from its centre of mass and size at rest.
-  // Those of exploded robots are empty, unless all have exploded.
+  // The box around each robot in the picture at the last update(), estimated from its centre of mass and its size at
+  // rest. Boxes of exploded robots are empty, unless all robots have exploded.
   std::span<const render::Bounds> bounds() const { return bounds_; }
 
  private:
-  // Looks of robots that have the same materials now and the same of their own, which give the colours.
+  // The render materials of robots with the same materials. `own` are those of the robot's file, which give the
+  // colours; `materials` are those of the simulation now.
   struct Table {
     std::size_t first_material = 0;
     std::vector<Material> own, materials;
-    bool defaults = true;    // it has the default table
-    std::size_t robots = 0;  // that use it; 0 = free for others
+    bool defaults = true;    // `own` is the default table
+    std::size_t robots = 0;  // that use it; 0 = free
   };
   void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
            const Eigen::Vector3f& offset);
@@ -96,15 +97,15 @@ class GroupScene {
   std::vector<Table> tables_;
   std::vector<render::RenderMaterial> materials_;
   std::vector<render::Placement> placements_;
-  std::vector<render::Bounds> rest_;  // about the centre of mass at rest
+  std::vector<render::Bounds> rest_;  // around the centre of mass, at rest
   std::vector<render::Bounds> bounds_;
-  std::vector<std::size_t> table_of_;  // one a robot
-  std::vector<bool> grown_;            // robots drawn smooth whatever the settings
+  std::vector<std::size_t> table_of_;  // one per robot
+  std::vector<bool> smooth_;           // robots that are drawn smooth whatever the settings
   Environment environment_;
   std::vector<Trail> trails_;
   std::vector<render::Path> paths_;
   std::vector<render::Label> labels_;
-  std::vector<std::pair<render::Color, std::string>> swatches_;  // of the legend of materials
+  std::vector<std::pair<render::Color, std::string>> swatches_;  // the legend of materials
   SceneDetails details_;
   render::Scene scene_;
 };

@@ -14,9 +14,9 @@ std::shared_ptr<const RobotShape> shape_of(const Robot& robot) {
   shape->box = rest_bounds(robot);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
-  shape->middle = (sum / static_cast<double>(robot.masses.size())).cast<float>();
+  shape->center = (sum / static_cast<double>(robot.masses.size())).cast<float>();
   const Generator* generator = generator_of(robot);
-  shape->grown = generator && generator->smooth;
+  shape->smooth = generator && generator->smooth;
   for (const Spring& spring : robot.springs) shape->materials[spring.material] = true;
   return shape;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot looks like whatever it does: made once, on whatever thread, and shared by all scenes that show it.
+// The part of a robot's drawing that does not change while it moves: made once, on any thread, and shared by all scenes
+// that show the robot.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,15 +16,15 @@
 namespace mercury {
 
 struct RobotShape {
-  std::shared_ptr<const render::PreparedBody> body;  // its looks are material ids
+  std::shared_ptr<const render::PreparedBody> body;  // its material indices are material ids
   render::Bounds box;                                // at rest [m]
-  Eigen::Vector3f middle{0, 0, 0};                   // mean of its masses at rest [m]
-  bool grown = false;                                // from a network: drawn smooth
-  std::array<bool, max_materials> materials{};       // those that its springs are of
+  Eigen::Vector3f center{0, 0, 0};                   // mean of its masses at rest [m]
+  bool smooth = false;                               // grown by a network: drawn with a smooth skin
+  std::array<bool, max_materials> materials{};       // ids of its springs' materials
 };
 
 std::shared_ptr<const RobotShape> shape_of(const Robot& robot);
-// Of all of them, for a renderer.
+// All of them together, for a renderer.
 std::shared_ptr<const render::BodyData> bodies_of(std::span<const std::shared_ptr<const RobotShape>> shapes);
 
 }  // namespace mercury

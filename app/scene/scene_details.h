@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is shown of a moment beside the robots' shapes: values to colour by, and arrows.
+// What a scene shows besides the robots' shapes: values to colour by, and arrows.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,11 @@ struct SceneDetails {
   std::string arrow_key;  // what their lengths mean
 };
 
-// Computes them by the thread that simulates, so that it overlaps with drawing. When nothing but shapes is shown,
-// positions and velocities are not even read.
+// Computes them on the simulating thread, so that this overlaps with drawing. Does not read positions and velocities
+// when only shapes are shown.
 class DetailObserver {
  public:
-  // Throws InputError when the environment has no such quantity.
+  // Throws InputError when the environment does not have a colour quantity or kind of arrow.
   DetailObserver(const Simulation& simulation, const ViewSettings& settings);
   SceneDetails observe(std::span<const Telemetry> telemetry);
   // The quantity whose values observe() returns.

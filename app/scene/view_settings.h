@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of a group, and how: the choices that a window and a video share.
+// What is shown of a group, and how: the settings that windows and videos share.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct Shown {
 
 struct ViewSettings {
   const ColorQuantity* color = &material_color();
-  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits what was seen so far
+  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits all values so far
   Shown shown;
   render::Theme theme = render::Theme::dark;
   bool smooth = false;
@@ -33,8 +33,8 @@ struct ViewSettings {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;
-  bool interop = true;  // let CUDA write into OpenGL's memory where it can
-  double speed = 1;     // simulated seconds a second, for the clock
+  bool interop = true;  // let CUDA write into OpenGL's memory if possible
+  double speed = 1;     // simulated seconds per second of the video, for the clock
 };
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours and shapes that are made from a robot.
+// Colours and shapes of a robot.
 #include "app/scene/appearance.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(FaceMaterials, FaceWithoutSpringsIsAir) {
   EXPECT_EQ(face_materials(robot), std::vector<MaterialId>{air});
 }
 
-TEST(MaterialColors, PairLiesBetweenItsParents) {
+TEST(MaterialColors, PairIsABlendOfItsTwoMaterials) {
   const auto colors = material_colors(default_materials(), true);
   ASSERT_EQ(colors.size(), 254u);
   EXPECT_EQ(colors[tissue], render::tissue_color);
@@ -48,8 +48,8 @@ TEST(MaterialColors, MusclesDiffer) {
     for (std::size_t b = 1; b < a; ++b) EXPECT_NE(colors[a], colors[b]) << a << " and " << b;
 }
 
-// A spring is shortest where sin(omega t + phi) = -1, that is contracted by 1.
-TEST(Activation, IsOneWhereTheMuscleIsShortest) {
+// A spring is shortest, and its activation 1, when sin(omega t + phi) = -1.
+TEST(Activation, IsOneWhenTheMuscleIsShortest) {
   const std::vector<Material> materials{{}, {50, 0.14f, 2, 0}, {50, 0.07f, 2, 0}, {100, 0, 0, 0}};
   std::vector<render::RenderMaterial> drawn(materials.size());
   set_activations(materials, 1.5 * M_PI / 2, drawn);
@@ -60,7 +60,7 @@ TEST(Activation, IsOneWhereTheMuscleIsShortest) {
   EXPECT_NEAR(drawn[1].activation, -1, 1e-6);
 }
 
-TEST(BodyShape, HoldsTheRobotsArrays) {
+TEST(BodyShape, HasTheRobotsArrays) {
   const Robot robot = two_voxels();
   const BodyShape shape(robot, 100);
   const render::Body body = shape.body();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera sees what its plan says, as large as fits.
+// The camera shows what its plan requests, as large as fits.
 #include "app/scene/camera_controller.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ std::vector<Bounds> scattered(unsigned seed, float spread) {
   return boxes;
 }
 
-// The farthest corner from the picture's middle, over the distance of the border: 1 touches it, above 1 is cut off.
+// How much of the picture the boxes fill: 1 = a corner touches the border, above 1 = it is cut off.
 float fill_of(const render::Camera& camera, const std::vector<Bounds>& boxes) {
   float fill = 0;
   for (const Bounds& b : boxes)
@@ -59,7 +59,7 @@ TEST_P(GroupInView, FirstFrameFillsThePicture) {
   }
 }
 
-TEST_P(GroupInView, RobotsThatRunAreNeverCutOff) {
+TEST_P(GroupInView, MovingRobotsAreNeverCutOff) {
   std::vector<Bounds> boxes = scattered(1, 2);
   CameraController camera({.mode = GetParam()}, {}, {});
   for (int frame = 0; frame < 200; ++frame) {
@@ -72,11 +72,11 @@ TEST_P(GroupInView, RobotsThatRunAreNeverCutOff) {
 INSTANTIATE_TEST_SUITE_P(CameraController, GroupInView, testing::Values(CameraMode::group, CameraMode::top),
                          [](const auto& tested) { return std::string(name_of(tested.param)); });
 
-TEST(CameraController, MovesWithoutJerks) {
+TEST(CameraController, MovesSmoothly) {
   std::vector<Bounds> boxes = scattered(2, 2);
   CameraController camera({}, {}, {});
   Eigen::Vector3f before = camera.at(boxes, tick).eye;
-  boxes[0] = boxes[0].moved({0.05f, 0, 0});  // less than the margin, so that nothing must be caught up with at once
+  boxes[0] = boxes[0].moved({0.05f, 0, 0});  // less than the margin, so that the camera need not catch up at once
   for (int frame = 0; frame < 100; ++frame) {
     const Eigen::Vector3f eye = camera.at(boxes, tick).eye;
     EXPECT_LT((eye - before).norm(), 0.02f);
@@ -86,7 +86,7 @@ TEST(CameraController, MovesWithoutJerks) {
   EXPECT_LT((there.at(boxes, 0).eye - before).norm(), 0.02f);
 }
 
-TEST(CameraController, EmptyBoxesAreLeftOut) {
+TEST(CameraController, EmptyBoxesAreIgnored) {
   std::vector<Bounds> boxes = scattered(3, 2);
   CameraController without({}, {}, {}), with({}, {}, {});
   const Eigen::Vector3f eye = without.at(boxes, 0).eye;
@@ -116,14 +116,14 @@ TEST(CameraController, FollowKeepsItsDistanceToTheRobot) {
   EXPECT_NEAR((last.eye - last.target).norm(), (first.eye - first.target).norm(), 1e-4);
 }
 
-TEST(CameraController, RobotToFollowMustBeThere) {
+TEST(CameraController, UnknownRobotToFollowThrows) {
   const std::vector<std::string> names{"ray", "eel"};
   EXPECT_NO_THROW(CameraController({.mode = CameraMode::follow, .robot = "1"}, {}, names));
   EXPECT_THROW(CameraController({.mode = CameraMode::follow, .robot = "2"}, {}, names), InputError);
   EXPECT_THROW(CameraController({.mode = CameraMode::follow, .robot = "cod"}, {}, names), InputError);
 }
 
-TEST(CameraController, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
+TEST(CameraController, TurntableTurnsOncePerPeriodWithAllRobotsInView) {
   const std::vector<Bounds> boxes = scattered(5, 1);
   CameraController camera({.mode = CameraMode::turntable, .period = 2}, {}, {});
   const Eigen::Vector3f start = camera.at(boxes, 0.1).eye;
@@ -137,7 +137,7 @@ TEST(CameraController, TurntableTurnsOnceAPeriodAndSeesAllAllTheWay) {
   EXPECT_LT((camera.at(boxes, 0.1).eye - start).norm(), 0.01f);
 }
 
-TEST(CameraController, StillStaysWhereItWasTold) {
+TEST(CameraController, StillKeepsThePlansPosition) {
   CameraController camera(
       {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5}, {},
       {});

@@ -11,7 +11,7 @@ namespace {
 
 class CameraFile : public FolderTest {};
 
-TEST_F(CameraFile, ComesBackAsItWasSaved) {
+TEST_F(CameraFile, LoadsWhatWasSaved) {
   const CameraPlan plan{.mode = CameraMode::still,
                         .robot = "eel",
                         .azimuth = 0.1f,
@@ -34,13 +34,13 @@ TEST_F(CameraFile, ComesBackAsItWasSaved) {
   EXPECT_EQ(loaded.distance, plan.distance);
 }
 
-TEST_F(CameraFile, WhatIsMissingIsAsByDefault) {
+TEST_F(CameraFile, MissingMembersHaveDefaults) {
   write("a.json", R"({"format": "mercury-camera", "version": 1})");
   EXPECT_EQ(load_camera(path("a.json")).mode, CameraMode::group);
   EXPECT_FALSE(load_camera(path("a.json")).azimuth.has_value());
 }
 
-TEST_F(CameraFile, ErrorsSayWhere) {
+TEST_F(CameraFile, ErrorsNameTheMember) {
   const auto message = [&](const std::string& text) -> std::string {
     write("a.json", text);
     try {
@@ -62,7 +62,7 @@ TEST_F(CameraFile, ErrorsSayWhere) {
   EXPECT_EQ(message(start + R"("target": [1, 2]})"), file + ": /target is not a list of three numbers");
 }
 
-TEST(CameraNamed, KnowsModesAndWhoToFollow) {
+TEST(CameraNamed, AcceptsModesAndARobotToFollow) {
   EXPECT_EQ(camera_named("turntable").mode, CameraMode::turntable);
   EXPECT_EQ(camera_named("follow").robot, "");
   EXPECT_EQ(camera_named("follow:eel").robot, "eel");

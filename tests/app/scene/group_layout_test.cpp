@@ -35,7 +35,7 @@ struct Rectangle {
   float left, right, bottom, top;
 };
 
-// What a box covers, seen from infinitely far along the view's direction.
+// The rectangle that a box covers in an orthographic view along the view's direction.
 Rectangle seen(const Bounds& b, const render::Orbit& view) {
   const render::Camera camera = view.camera();
   const Eigen::Matrix4f eye = camera.view();
@@ -66,7 +66,7 @@ TEST_P(Layout, NoRobotHidesAnother) {
   }
 }
 
-TEST_P(Layout, FirstIsUpperLeftAndRowsFillFromThere) {
+TEST_P(Layout, FirstIsUpperLeftAndRowsFillFirst) {
   const render::Orbit view{.azimuth = -1.3f, .elevation = 0.5f};
   const std::vector<Bounds> boxes = robots(6);
   const auto offsets = grid_layout(boxes, {.grid = Grid{3, 2}, .view = view, .on_ground = GetParam()});
@@ -79,17 +79,17 @@ TEST_P(Layout, FirstIsUpperLeftAndRowsFillFromThere) {
 INSTANTIATE_TEST_SUITE_P(Grid, Layout, testing::Values(false, true),
                          [](const auto& tested) { return tested.param ? "OnTheGround" : "InWater"; });
 
-TEST(GridLayout, OnTheGroundHeightsStay) {
+TEST(GridLayout, OnTheGroundHeightsDoNotChange) {
   for (const auto& offset : grid_layout(robots(8), {.view = {.elevation = 0.5f}, .on_ground = true}))
     EXPECT_EQ(offset.z(), 0);
 }
 
-TEST(GridLayout, GridThatIsTooSmallIsRefused) {
+TEST(GridLayout, GridThatIsTooSmallThrows) {
   EXPECT_THROW(grid_layout(robots(7), {.grid = Grid{3, 2}}), InputError);
   EXPECT_NO_THROW(grid_layout(robots(6), {.grid = Grid{3, 2}}));
 }
 
-TEST(RaceLayout, HasOneLaneARobotFromOneStartLine) {
+TEST(RaceLayout, HasOneLanePerRobotFromOneStartLine) {
   const auto boxes = robots(5);
   const auto offsets = grid_layout(
       boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Videos and folders of pictures: what is in the files, and what happens when something fails.
+// Videos and folders of pictures: the contents of the files, and failures.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::array<std::uint8_t, 3> yuv_of(Rgb color) {
   return {byte(16 + 219 * y), byte(128 + 224 * u), byte(128 + 224 * v)};
 }
 
-// A frame of one colour, in the format that the kind of video takes.
+// A frame of one colour, in the format for that kind of video.
 Image plain(VideoKind kind, PictureSize size, Rgb color) {
   Image image{.width = size.width, .height = size.height, .format = pixel_format_of(kind), .bytes = {}};
   image.bytes.resize(render::image_size(image.format, size.width, size.height));
@@ -49,7 +49,7 @@ Image plain(VideoKind kind, PictureSize size, Rgb color) {
   return image;
 }
 
-// Noise, which no codec makes small.
+// Noise, which no codec can compress.
 Image noise(VideoKind kind, PictureSize size, std::uint32_t seed) {
   Image image = plain(kind, size, {});
   for (std::uint8_t& byte : image.bytes) {
@@ -70,7 +70,7 @@ class VideoTest : public FolderTest {
 
 constexpr PictureSize small{160, 90};
 
-TEST_F(VideoTest, Mp4IsWhatEveryPlayerOpens) {
+TEST_F(VideoTest, Mp4IsH264InYuv420) {
   write_video("a.mp4", {.size = small, .frames_per_second = 25}, 10);
   const auto stream = probe(path("a.mp4"));
   EXPECT_EQ(stream["codec_name"], "h264");
@@ -84,7 +84,7 @@ TEST_F(VideoTest, Mp4IsWhatEveryPlayerOpens) {
   EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
 }
 
-// ISO 14496-12: a file is a row of boxes, each its size in 4 bytes, most significant first, and its type.
+// ISO 14496-12: a file is a sequence of boxes; each begins with its size in 4 bytes, big-endian, and its type.
 TEST_F(VideoTest, Mp4HasItsIndexBeforeItsData) {
   write_video("a.mp4", {.size = small}, 5);
   const std::string file = read("a.mp4");
@@ -101,8 +101,8 @@ TEST_F(VideoTest, Mp4HasItsIndexBeforeItsData) {
   EXPECT_LT(place("moov"), place("mdat"));
 }
 
-// A player that honours the tags must show the colours that were put in.
-TEST_F(VideoTest, ColoursComeOutAsTheyWentIn) {
+// A player that honours the tags must show the original colours.
+TEST_F(VideoTest, ColoursArePreserved) {
   const Rgb color{0.9, 0.3, 0.1};
   for (const char* name : {"a.mp4", "a.webm", "a.gif"}) {
     write_video(name, {.size = small, .frames_per_second = 25}, 3, color);
@@ -132,16 +132,16 @@ TEST_F(VideoTest, GifKeepsItsSizeAndTime) {
   EXPECT_NEAR(std::stod(stream["duration"].get<std::string>()), 0.4, 1e-9);
 }
 
-TEST_F(VideoTest, GifOfManyLargeFramesMakesAPaletteAFrame) {
+TEST_F(VideoTest, GifOfManyLargeFramesHasAPalettePerFrame) {
   const VideoSettings settings{.size = small, .frames_per_second = 25, .expected_frames = 1'000'000};
   write_video("a.gif", settings, 3, {1, 0, 0});
   EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "3");
 }
 
-TEST_F(VideoTest, FolderHoldsAPictureAFrame) {
+TEST_F(VideoTest, FolderHasAPicturePerFrame) {
   const VideoSettings settings{.size = {33, 21}};
   write_video("frames", settings, 12);
-  write_video("frames", settings, 5, {1, 0, 0.2});  // the frames of the longer video before are not left beside these
+  write_video("frames", settings, 5, {1, 0, 0.2});  // removes the later frames of the earlier, longer video
   EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png", "frame-00002.png",
                                                          "frame-00003.png", "frame-00004.png"}));
   const Image picture = render::read_png(path("frames/frame-00004.png"));
@@ -150,7 +150,7 @@ TEST_F(VideoTest, FolderHoldsAPictureAFrame) {
   EXPECT_EQ(picture.bytes, plain(VideoKind::png_folder, settings.size, {1, 0, 0.2}).bytes);
 }
 
-TEST_F(VideoTest, FoldersOnTheWayAreMade) {
+TEST_F(VideoTest, ParentFoldersAreMade) {
   write_video("x/y/a.mp4", {.size = small}, 2);
   write_video("x/z/", {.size = small}, 2);
   EXPECT_TRUE(std::filesystem::exists(path("x/y/a.mp4")));
@@ -165,7 +165,7 @@ TEST_F(VideoTest, UnfinishedVideosLeaveNothing) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
-TEST_F(VideoTest, FileOfThatNameStaysUntilTheNewOneIsDone) {
+TEST_F(VideoTest, ExistingFileStaysUntilTheNewOneIsComplete) {
   write("a.mp4", "the old one");
   {
     const auto writer = open_frame_writer(path("a.mp4"), {.size = small});
@@ -177,12 +177,12 @@ TEST_F(VideoTest, FileOfThatNameStaysUntilTheNewOneIsDone) {
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "2");
 }
 
-TEST_F(VideoTest, NamesWithMeaningToFfmpegAreJustNames) {
+TEST_F(VideoTest, NamesWithMeaningToFfmpegAreTakenLiterally) {
   write_video("-i a:b %d.mp4", {.size = small}, 2);
   EXPECT_EQ(listing(), std::vector<std::string>{"-i a:b %d.mp4"});
 }
 
-// What a failing video says, and that it leaves nothing behind.
+// The messages of failing videos, which leave no files behind.
 class FailingVideo : public VideoTest {
  protected:
   template <class Error>
@@ -201,13 +201,13 @@ class FailingVideo : public VideoTest {
   }
 };
 
-TEST_F(FailingVideo, EncoderThatDiesIsToldWithItsLastMessage) {
+TEST_F(FailingVideo, EncoderThatDiesIsReportedWithItsLastMessage) {
   write("dying", "#!/bin/sh\nhead -c 100000 >/dev/null\necho some warning >&2\necho 'no more ink' >&2\nexit 3\n", true);
   expect_failure<VideoError>({.size = small, .ffmpeg = path("dying")},
                              path("a.mp4") + ": the encoder " + path("dying") + " ended with status 3: no more ink");
 }
 
-TEST_F(FailingVideo, EncoderThatDiesAtTheEndIsToldToo) {
+TEST_F(FailingVideo, EncoderThatDiesAtTheEndIsReportedToo) {
   write("dying", "#!/bin/sh\ncat >/dev/null\nkill -9 $$\n", true);
   expect_failure<VideoError>({.size = small, .ffmpeg = path("dying")}, "was killed by signal 9 (Killed)");
 }
@@ -217,7 +217,7 @@ TEST_F(FailingVideo, EncoderThatWritesNothingIsAFailure) {
   expect_failure<VideoError>({.size = small, .ffmpeg = path("idle")}, "wrote nothing");
 }
 
-TEST_F(FailingVideo, FullDiskIsTold) {
+TEST_F(FailingVideo, FullDiskIsReported) {
   write("full",
         "#!/bin/sh\necho 'av_interleaved_write_frame(): No space left on device' >&2\necho 'Conversion failed!' "
         ">&2\nexit 1\n",
@@ -233,7 +233,7 @@ TEST_F(FailingVideo, MissingEncoderNamesThePackage) {
   setenv("PATH", saved.c_str(), 1);
 }
 
-TEST_F(FailingVideo, NamedEncoderMustBeThere) {
+TEST_F(FailingVideo, NamedEncoderMustExist) {
   expect_failure<InputError>({.size = small, .ffmpeg = path("none")},
                              "--ffmpeg: " + path("none") + " cannot be started: No such file or directory");
 }
@@ -245,7 +245,7 @@ TEST_F(FailingVideo, FolderThatCannotBeMadeIsBadInput) {
   EXPECT_THROW(open_frame_writer(path("file"), {.size = small}), InputError);
 }
 
-TEST(TellingLine, IsTheLastThatSaysSomething) {
+TEST(FailureLine, IsTheLastLineWithAMessage) {
   EXPECT_EQ(failure_line("first\nsecond\n    Last message repeated 17 times\nConversion failed!\n"), "second");
   EXPECT_EQ(failure_line("progress 1\rprogress 2\r"), "progress 2");
   EXPECT_EQ(failure_line(""), "");

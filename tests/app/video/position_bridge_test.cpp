@@ -18,7 +18,7 @@
 namespace mercury::test {
 namespace {
 
-// Some robots that swim, and a renderer that has their bodies.
+// Some swimming robots, and a renderer with their bodies.
 class PositionBridgeTest : public testing::Test {
  protected:
   void set_up(DeviceKind device) {
@@ -54,7 +54,7 @@ class PositionBridgeTest : public testing::Test {
   std::vector<Eigen::Vector3f> offsets_;
 };
 
-TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirMoment) {
+TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirPositions) {
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
   if (IsSkipped()) return;
   const auto bridge = make_host_bridge();
@@ -67,7 +67,7 @@ TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirMoment) {
   EXPECT_EQ(picture(*bridge, *early).bytes, before.bytes);
 }
 
-TEST_F(PositionBridgeTest, RobotsOnTheProcessorGoThroughTheHostAndThatIsNothingToTell) {
+TEST_F(PositionBridgeTest, CpuSimulationsUseTheHostBridgeWithoutANote) {
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
   if (IsSkipped()) return;
   const ChosenBridge chosen = choose_bridge(*simulation_, *renderer_, true);
@@ -88,13 +88,13 @@ TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
   for (int moment = 0; moment < 4; ++moment) {
     simulation_->step(250);
     const auto on_card = card.bridge->take(*simulation_), on_host = host.bridge->take(*simulation_);
-    simulation_->step(50);  // neither snapshot follows
+    simulation_->step(50);  // changes neither snapshot
     const render::Image drawn = picture(*card.bridge, *on_card);
     EXPECT_EQ(drawn.bytes, picture(*host.bridge, *on_host).bytes) << moment;
   }
 }
 
-TEST_F(PositionBridgeTest, SnapshotsOfAnotherThreadAreShownInOrder) {
+TEST_F(PositionBridgeTest, SnapshotsFromAnotherThreadAreShownInOrder) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
   if (IsSkipped()) return;

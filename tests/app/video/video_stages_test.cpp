@@ -10,7 +10,7 @@ namespace {
 
 VideoTiming video(double rate, double speed) { return {.interval = speed / rate}; }
 
-TEST(StepOfFrame, TenSecondsAreTenSeconds) {
+TEST(StepOfFrame, TenSecondsOfVideoAreTenSecondsOfSimulation) {
   EXPECT_EQ(step_of_frame(0, video(30, 1), 1e-3), 0);
   EXPECT_EQ(step_of_frame(300, video(30, 1), 1e-3), 10000);
   EXPECT_EQ(step_of_frame(300, video(30, 4), 1e-3), 40000);
