@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that robots are coloured by.
+// Colour quantities, their scales, and arrows.
 #include "app/scene/coloring.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace mercury::test {
 namespace {
 
-// Two masses 1 m apart on a muscle of 50 N/m that is 10 % longer at t = 0 (phase pi/2), and a triangle of three.
+// Two masses 1 m apart, joined by a muscle of 50 N/m that is 10 % longer at t = 0 (phase pi/2).
 Robot pair() {
   return {.name = "pair",
           .materials = {{}, {50, 0.1f, 1, static_cast<float>(M_PI / 2)}},
@@ -25,7 +25,7 @@ Robot pair() {
           .springs = {{0, 1, 1, 1}}};
 }
 
-// An equilateral triangle would do; this one has an area of 2 m2 and faces +z.
+// A triangle with an area of 2 m2 that faces +z.
 Robot plate() {
   return {.name = "plate",
           .masses = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}},
@@ -46,18 +46,18 @@ TEST(Coloring, StrainIsTheChangeOfLength) {
       Coloring(simulation, color_quantity("strain")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
   ASSERT_EQ(values.spring.size(), 1u);
   EXPECT_NEAR(values.spring[0], 25, 1e-4);
-  EXPECT_NEAR(values.mass[0], 25, 1e-4);  // of a mass: the mean of its springs
+  EXPECT_NEAR(values.mass[0], 25, 1e-4);  // the mean of its springs
   EXPECT_TRUE(values.face.empty());
 }
 
-TEST(Coloring, ForceFollowsHooksLawFromThePresentRestLength) {
+TEST(Coloring, ForceFollowsHookesLawFromThePresentRestLength) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
   const ColorValues values =
       Coloring(simulation, color_quantity("force")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
   EXPECT_NEAR(values.spring[0], 50 * (1.25 - 1.1), 1e-4);
 }
 
-TEST(Coloring, EnergyIsThatOfHookesLaw) {
+TEST(Coloring, EnergyIsElastic) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
   const ColorValues values =
       Coloring(simulation, color_quantity("energy")).values(state({{0, 0, 0}, {1.25f, 0, 0}}, {}));
@@ -65,7 +65,7 @@ TEST(Coloring, EnergyIsThatOfHookesLaw) {
   EXPECT_EQ(values.mass, (std::vector<float>(2, values.spring[0])));  // the mean of its springs
 }
 
-TEST(Coloring, StiffnessIsTheMaterialsTimesThatOfTheEnvironment) {
+TEST(Coloring, StiffnessIsTheMaterialsTimesTheEnvironmentsScale) {
   const Simulation simulation({.environment = Ocean{.stiffness_scale = 3}, .device = cpu.device},
                               std::vector<Robot>{pair()});
   EXPECT_NEAR(Coloring(simulation, color_quantity("stiffness")).values(state({{0, 0, 0}, {1, 0, 0}}, {})).spring[0],
@@ -78,7 +78,7 @@ TEST(Coloring, ActivationIsTheContraction) {
               -10, 1e-4);
 }
 
-TEST(Coloring, SpeedIsThatOfTheMass) {
+TEST(Coloring, SpeedIsTheMagnitudeOfVelocity) {
   const Simulation simulation(cpu, std::vector<Robot>{pair()});
   const ColorValues values =
       Coloring(simulation, color_quantity("speed")).values(state({{0, 0, 0}, {1, 0, 0}}, {0, 3, 4}));
@@ -102,7 +102,7 @@ TEST(Coloring, PowerOfAMuscleIsItsTensionTimesItsShortening) {
     const double rest_length = 1 + 0.1 * std::sin(2 * time), lengthening = 0.2 * std::cos(2 * time);
     EXPECT_NEAR(power_at(time), -50 * (1.25 - rest_length) * lengthening, 1e-4);
   }
-  EXPECT_LT(power_at(0), 0);         // it lengthens while it is stretched: it yields to the body
+  EXPECT_LT(power_at(0), 0);         // it lengthens while it is stretched: the body does work on it
   EXPECT_GT(power_at(M_PI / 2), 0);  // it shortens while it is stretched: it does work
   // With fixed ends no work leaves the spring, so the mean over a period is 0.
   double sum = 0;
@@ -153,7 +153,7 @@ TEST(Coloring, PowerOfAllMusclesIsTheChangeOfEnergy) {
   EXPECT_NEAR(errors[1] / errors[0], 0.5, 0.15);  // the integrator is of first order
 }
 
-// Moved face on, all of equation 1 lies along the flow: F = rho A / 2 C_D v^2.
+// A plate that moves along its normal: by equation 1, F = rho A / 2 C_D v^2 along the flow.
 TEST(Coloring, PressureOfAFaceMovedHeadOn) {
   const Simulation simulation(cpu, std::vector<Robot>{plate()});
   const ColorValues values =
@@ -162,7 +162,7 @@ TEST(Coloring, PressureOfAFaceMovedHeadOn) {
   EXPECT_NEAR(values.face[0], 1000.0 / 2 * 1 * 0.25, 0.01);
 }
 
-TEST(Coloring, EnvironmentMustKnowTheQuantity) {
+TEST(Coloring, QuantityThatTheEnvironmentLacksThrows) {
   const Simulation simulation({.environment = Land{}, .device = cpu.device}, std::vector<Robot>{plate()});
   EXPECT_THROW(Coloring(simulation, color_quantity("pressure")), InputError);
   EXPECT_THROW(Arrows(simulation, {.drag = true}), InputError);
@@ -205,7 +205,7 @@ TEST(FaceForce, DragOpposesMotionAndLiftLiesAcrossIt) {
   EXPECT_NEAR(sum.z, -178, 0.01);
 }
 
-// Springs at rest: the floor carries each mass's own weight.
+// With springs at rest, the floor carries the weight of each mass.
 TEST(FloorForces, MassesAtRestAreCarried) {
   Robot flat = plate();
   for (Vec3& mass : flat.masses) mass.z = 0;
@@ -218,8 +218,8 @@ TEST(FloorForces, MassesAtRestAreCarried) {
   }
 }
 
-// Coulomb's law: it slides, so friction is mu N against its motion.
-TEST(FloorForces, FrictionOfWhatSlidesIsItsShareOfThePush) {
+// Coulomb's law: friction of a sliding mass is mu N against its motion.
+TEST(FloorForces, FrictionOfASlidingMassIsProportionalToTheNormalForce) {
   Robot flat = plate();
   for (Vec3& mass : flat.masses) mass.z = 0;
   const Simulation simulation({.environment = Land{.friction = 0.5f}, .device = cpu.device}, std::vector<Robot>{flat});
@@ -229,7 +229,7 @@ TEST(FloorForces, FrictionOfWhatSlidesIsItsShareOfThePush) {
   }
 }
 
-// A robot that has come to rest weighs on the floor with all of its masses.
+// At rest, the floor carries the weight of all masses of the robot.
 TEST(FloorForces, CarryTheWholeWeightOfARobotAtRest) {
   Robot tower{.name = "tower"};
   for (int i = 0; i < 3; ++i) tower.masses.push_back({0, 0, static_cast<float>(i)});
@@ -239,7 +239,7 @@ TEST(FloorForces, CarryTheWholeWeightOfARobotAtRest) {
   simulation.step(20000);
   const auto forces = floor_forces(simulation, 0, read_state(simulation));
   ASSERT_EQ(forces.size(), 1u);
-  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.1);  // a last digit of the positions is 0.005 N to these springs
+  EXPECT_NEAR(forces[0].force.z, 3 * 9.81, 0.1);  // the last digit of the positions is 0.005 N in these springs
 }
 
 TEST(FloorForces, WaterHasNone) {
@@ -262,7 +262,7 @@ TEST(Arrows, LongestIsHalfARobotAndKeepsItsScale) {
   EXPECT_EQ(arrows.key(), "drag: 1.4 m = 1000 N");
 }
 
-// Drag grows with the square of speed: the third plate's is 100 times the others'.
+// Drag grows with the square of speed: that of the third plate is 100 times that of the others.
 TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
   const Simulation simulation(cpu, std::vector<Robot>(3, plate()));
   Arrows arrows(simulation, {.drag = true});
@@ -290,7 +290,7 @@ TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
   EXPECT_EQ(scale.legend().unit, "N");
 }
 
-TEST(GrowingScale, StaysWhereTheUserPutIt) {
+TEST(GrowingScale, KeepsAScaleThatTheUserGives) {
   GrowingScale scale(color_quantity("speed"), std::pair(0.5f, 2.0f));
   scale.fit({.mass = {100}});
   EXPECT_EQ(scale.scale().low, 0.5f);
