@@ -53,6 +53,12 @@ Tone tone_of(Severity severity) {
   }
 }
 
+// True for key presses that a text field handles while the user types in it.
+bool is_text_edit(const KeyPress& press, Action action) {
+  if (action == Action::help) return false;
+  return !press.control || action == Action::undo || action == Action::redo || action == Action::select_all;
+}
+
 class Viewer {
  public:
   explicit Viewer(ViewerOptions options);
@@ -196,12 +202,7 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
       continue;
     }
     if (!command) continue;
-    if (typing &&
-        (!press.control || command->action == Action::undo || command->action == Action::redo ||
-         command->action == Action::select_all) &&
-        command->action != Action::help)
-      continue;
-    panels_.execute(*command);
+    if (!typing || !is_text_edit(press, command->action)) panels_.execute(*command);
   }
 }
 

@@ -28,53 +28,66 @@ void line(ImVec2 at, const std::string& text) {
   ImGui::GetBackgroundDrawList()->AddText(at, text_color(), text.c_str());
 }
 
-void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                 const render::Camera& camera) {
-  struct Placed {
-    ImVec2 at;
-    float depth;
-    const std::string* text;
-  };
-  std::vector<Placed> placed;
+struct TextBox {
+  ImVec2 low, high;
+  const std::string* text;
+};
+
+struct LabelAnchor {
+  ImVec2 at;    // top centre of the robot, in the window
+  float depth;  // distance from the camera
+  const std::string* text;
+};
+
+// The labels of visible robots, near ones first.
+std::vector<LabelAnchor> anchors_of(const render::Scene& scene, std::span<const render::Bounds> bounds,
+                                    const ViewportArea& area, const render::Camera& camera) {
+  std::vector<LabelAnchor> anchors;
   for (const render::Label& label : scene.labels) {
     if (label.body >= bounds.size() || bounds[label.body].empty()) continue;
     Eigen::Vector3f top = bounds[label.body].center();
     top.z() = bounds[label.body].high.z();
     const Eigen::Vector3f p = camera.project(top, static_cast<int>(area.width()), static_cast<int>(area.height()));
-    if (p.z() > camera.near) placed.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
+    if (p.z() > camera.near) anchors.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
   }
-  // Place near labels first. A label that would cover an earlier one moves above it if there is room; otherwise it
-  // stays and is drawn behind it.
-  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
+  std::sort(anchors.begin(), anchors.end(),
+            [](const LabelAnchor& a, const LabelAnchor& b) { return a.depth < b.depth; });
+  return anchors;
+}
+
+// Above the robot, and inside the picture if the robot is.
+TextBox box_above(const LabelAnchor& label, const ViewportArea& area, float margin) {
+  const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
+  TextBox box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
+              {label.at.x + size.x / 2, label.at.y - margin},
+              label.text};
+  if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
+  if (label.at.x > area.low.x && label.at.x < area.high.x)
+    box.low.x =
+        std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
+  box.high = {box.low.x + size.x, box.low.y + size.y};
+  return box;
+}
+
+// A label that would cover a nearer one moves above it if there is room. Otherwise it stays, and is drawn behind it.
+void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
+                 const render::Camera& camera) {
   const float text = ImGui::GetFontSize(), margin = 0.5f * text;
-  struct Box {
-    ImVec2 low, high;
-    const std::string* text;
-  };
-  std::vector<Box> boxes;
-  for (const Placed& label : placed) {
-    const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
-    Box box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
-            {label.at.x + size.x / 2, label.at.y - margin},
-            label.text};
-    // Keep labels of visible robots inside the picture.
-    if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
-    if (label.at.x > area.low.x && label.at.x < area.high.x)
-      box.low.x =
-          std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
-    box.high = {box.low.x + size.x, box.low.y + size.y};
-    const float wanted = box.low.y;
+  std::vector<TextBox> boxes;
+  for (const LabelAnchor& label : anchors_of(scene, bounds, area, camera)) {
+    TextBox box = box_above(label, area, margin);
+    const float height = box.high.y - box.low.y, wanted = box.low.y;
     for (int attempts = 0; attempts < 4; ++attempts) {
-      const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const Box& other) {
+      const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const TextBox& other) {
         return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin &&
                box.low.y < other.high.y + margin && other.low.y < box.high.y + margin;
       });
       if (covered == boxes.end()) break;
-      box.low.y = covered->low.y - size.y - margin;
+      box.low.y = covered->low.y - height - margin;
       box.high.y = covered->low.y - margin;
     }
     if (box.low.y < area.low.y || wanted - box.low.y > 5 * text) box.low.y = wanted;
-    box.high.y = box.low.y + size.y;
+    box.high.y = box.low.y + height;
     boxes.push_back(box);
   }
   for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) line(box->low, *box->text);
