@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search that mercury new --best-of does.
+// The search of `mercury new --best-of`.
 #include "app/commands/best_of.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Robot make(std::uint64_t seed, std::uint64_t index) {
   return random_voxel_robot({.smallest = {3, 2, 2}, .largest = {3, 2, 2}}, seed, index);
 }
 
-TEST(BestOf, DistanceCountsFromWhereTheRobotSettled) {
+TEST(BestOf, DistanceIsMeasuredFromTheSettledPlace) {
   const Configuration configuration{.environment = Land{}, .device = {.kind = DeviceKind::cpu}};
   const auto winners =
       best_of({.candidates = 1, .configuration = configuration, .steps = 900, .settling = 500}, make, 3, 1);
@@ -25,13 +25,13 @@ TEST(BestOf, DistanceCountsFromWhereTheRobotSettled) {
   simulation.step(500);
   const Vec3 settled = simulation.telemetry(0).center_of_mass;
   simulation.step(400);
-  Vec3 way = simulation.telemetry(0).center_of_mass - settled;
-  way.z = 0;
-  EXPECT_EQ(winners[0].distance, static_cast<double>(length(way)));
+  Vec3 path = simulation.telemetry(0).center_of_mass - settled;
+  path.z = 0;
+  EXPECT_EQ(winners[0].distance, static_cast<double>(length(path)));
   EXPECT_GT(winners[0].distance, 0);
 }
 
-TEST(BestOf, LeavesOutWhatCannotBeMadeAndSortsTheRest) {
+TEST(BestOf, LeavesOutFailedRobotsAndSortsTheOthers) {
   const auto winners = best_of({.candidates = 5, .configuration = {}, .steps = 300}, make, 3, 5);
   ASSERT_EQ(winners.size(), 4u);
   for (std::size_t i = 1; i < winners.size(); ++i) EXPECT_GE(winners[i - 1].distance, winners[i].distance);

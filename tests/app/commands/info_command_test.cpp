@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury info: about files, and about the machine.
+// mercury info: descriptions of files and of the machine.
 #include <gmock/gmock.h>
 
 #include "tests/app/program.h"
@@ -11,8 +11,8 @@ using testing::HasSubstr;
 
 class InfoCommand : public FolderTest {};
 
-TEST_F(InfoCommand, TellsWhatAFileHolds) {
-  // One voxel: 8 masses, 28 pairs of them, 6 sides of two triangles.
+TEST_F(InfoCommand, DescribesAFile) {
+  // One voxel has 8 masses, a spring per pair of them (28), and 6 sides of two triangles.
   ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("cube.json")})
                 .status,
             0);
@@ -23,11 +23,11 @@ TEST_F(InfoCommand, TellsWhatAFileHolds) {
   EXPECT_THAT(outcome.output, HasSubstr("closed, Euler characteristic 2, 0.06 m2, 0.001 m3"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("faces +12"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("size +0.1 x 0.1 x 0.1 m\n"));
-  // A group of 32 masses at 36 bytes, 256 materials at 8, 256 rest lengths at 4, and 16.
+  // One tile of 32 masses with 36 bytes each, 256 materials at 8, 256 rest lengths at 4, and 16.
   EXPECT_THAT(outcome.output, HasSubstr("needs 4.1 kB of a CUDA block's memory in water: fits every CUDA device"));
 }
 
-TEST_F(InfoCommand, WithoutAFileTellsWhatTheMachineHas) {
+TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
   const Outcome outcome = mercury({"info"});
   EXPECT_EQ(outcome.status, 0);
   for (const char* what : {"processor", "memory", "GPU", "drawing (egl)", "drawing (osmesa)", "encoder"})
@@ -35,7 +35,7 @@ TEST_F(InfoCommand, WithoutAFileTellsWhatTheMachineHas) {
   EXPECT_THAT(outcome.output, HasSubstr("writes .mp4 .webm .gif"));
 }
 
-TEST_F(InfoCommand, SaysWhatToDoAboutAMissingEncoder) {
+TEST_F(InfoCommand, AdvisesOnAMissingEncoder) {
   const Outcome outcome = mercury({"info", "--ffmpeg", path("none")});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, HasSubstr(path("none") + " does not run"));

@@ -32,12 +32,12 @@ TEST_F(NewCommand, OptionsShapeTheRobots) {
   EXPECT_EQ(load_robot(path("a.cbor")).masses.size(), 4u * 5 * 6);
 }
 
-TEST_F(NewCommand, FormatOfAFolderIsChosen) {
+TEST_F(NewCommand, FolderTakesTheChosenFormat) {
   ASSERT_EQ(mercury({"new", "voxel", "-o", path("r/"), "--format", "cbor"}).status, 0);
   EXPECT_EQ(listing("r"), std::vector<std::string>{"voxel-1-0.cbor"});
 }
 
-TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
+TEST_F(NewCommand, ExistingFilesAreReplacedOnlyWithForce) {
   write("a.json", "mine");
   const std::vector<std::string> command{"new", "voxel", "-o", path("a.json")};
   const Outcome refused = mercury(command);
@@ -51,7 +51,7 @@ TEST_F(NewCommand, FilesThatExistAreReplacedOnlyByForce) {
   EXPECT_EQ(load_robot(path("a.json")), random_voxel_robot({}, 1));
 }
 
-// The winners are those that `run` says got farthest.
+// The kept robots are those that move farthest in `run`.
 TEST_F(NewCommand, BestOfKeepsTheFarthest) {
   const Outcome outcome =
       mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
@@ -66,7 +66,7 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
   EXPECT_EQ(listing("best"), best);
 }
 
-TEST_F(NewCommand, RobotsSayWhereTheyWereTried) {
+TEST_F(NewCommand, RobotsNameTheEnvironmentOfTheirTrial) {
   ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"})
                 .status,
             0);
@@ -77,7 +77,7 @@ TEST_F(NewCommand, RobotsSayWhereTheyWereTried) {
   EXPECT_EQ(environment_of(load_robot(path("c.json"))), "");
 }
 
-TEST_F(NewCommand, WhatCannotBeUsedIsTold) {
+TEST_F(NewCommand, InvalidInputIsReported) {
   write("file", "");
   const auto message = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"new", "voxel"});

@@ -34,8 +34,8 @@ TEST_F(NnCommand, OptionsShapeTheRobots) {
   EXPECT_EQ(load_robot(path("a.json")), random_nn_robot(options, 1));
 }
 
-TEST_F(NnCommand, ARobotThatCannotBeGrownIsToldAndTheNextOneMade) {
-  // So small a radius leaves some of these clouds without a single tetrahedron.
+TEST_F(NnCommand, FailedRobotIsReportedAndTheNextOneIsMade) {
+  // With this small radius, some of the clouds have no tetrahedron.
   const Outcome outcome = mercury({"new", "nn", "-o", path("r"), "--count", "30", "--points", "64", "--alpha", "0.05"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("alpha: no tetrahedron of the cloud is as small as the given radius"));
@@ -43,7 +43,7 @@ TEST_F(NnCommand, ARobotThatCannotBeGrownIsToldAndTheNextOneMade) {
   EXPECT_LT(listing("r").size(), 30u);
 }
 
-TEST_F(NnCommand, RandomOnesAreSimulated) {
+TEST_F(NnCommand, RandomRobotsAreSimulated) {
   const Outcome outcome = mercury({"run", "--random", "nn:2", "--points", "64", "--seconds", "0.05", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   const auto report = nlohmann::json::parse(outcome.output);
@@ -53,7 +53,7 @@ TEST_F(NnCommand, RandomOnesAreSimulated) {
   EXPECT_GT(report["robots"][1]["largest_strain"], 0.);
 }
 
-TEST_F(NnCommand, WhatCannotBeUsedIsTold) {
+TEST_F(NnCommand, InvalidInputIsReported) {
   const auto message = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"run", "--random", "nn:2", "--seconds", "0"});
     const Outcome outcome = mercury(arguments);

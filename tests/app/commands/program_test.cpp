@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says to input that it cannot use: one line, and exit status 2.
+// Invalid input gives one line and exit status 2; help, version and TOML files.
 #include <gmock/gmock.h>
 
 #include "tests/app/program.h"
@@ -20,7 +20,7 @@ void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
-TEST_P(BadInputTest, IsToldInOneLineWithStatus2) {
+TEST_P(BadInputTest, IsReportedInOneLineWithStatus2) {
   const Outcome outcome = mercury(GetParam().arguments);
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.output, "");
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "--gl: \"vulkan\" is not accepted; give auto, egl, mesa, osmesa"}),
     [](const auto& tested) { return tested.param.name; });
 
-TEST(Program, TellsItsVersion) {
+TEST(Program, PrintsItsVersion) {
   const Outcome outcome = mercury({"--version"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, StartsWith("mercury "));
@@ -168,7 +168,7 @@ TEST(Program, HelpNamesEveryCommandAndGoesToStandardOutput) {
   for (const char* command : {"render", "run", "new", "info"}) EXPECT_THAT(outcome.output, HasSubstr(command));
 }
 
-TEST(Program, CommandsHaveHelpOfTheirOwn) {
+TEST(Program, EachCommandHasItsOwnHelp) {
   EXPECT_THAT(mercury({"render", "--help"}).output, HasSubstr("--fps"));
   EXPECT_THAT(mercury({"new", "voxel", "--help"}).output, HasSubstr("--symmetry"));
 }
@@ -203,7 +203,7 @@ TEST_F(ConfigFileTest, SetsOptions) {
   EXPECT_EQ(configuration["density"], 900.0);
 }
 
-TEST_F(ConfigFileTest, CommandLineCountsMoreThanTheFileAndItsTableMoreThanItsTop) {
+TEST_F(ConfigFileTest, CommandLineOverridesTheFileAndItsTableOverridesItsTop) {
   const std::string toml = "dt = 0.002\ndamping = 1\n[run]\ndamping = 2\n";
   const auto configuration = configuration_with(toml, {"--dt", "0.004"});
   EXPECT_EQ(configuration["dt"], 0.004);
@@ -232,7 +232,7 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
                ":2: --density: land has no such parameter; it applies to ocean");
 }
 
-TEST_F(ConfigFileTest, WhatIsNoTomlIsToldWithItsLine) {
+TEST_F(ConfigFileTest, InvalidTomlIsReportedWithItsLine) {
   const Outcome outcome = run_with("dt = 0.001\nthis is no toml\n");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path("a.toml") + ":2: "));

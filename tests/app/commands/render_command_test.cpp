@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury render: short real videos, from the command line to the file.
+// mercury render: makes short videos and checks the files.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -23,7 +23,7 @@ class RenderCommand : public FolderTest {
   }
 };
 
-TEST_F(RenderCommand, VideoHasTheFramesThatWereAskedFor) {
+TEST_F(RenderCommand, VideoHasTheRequestedFrames) {
   const Outcome outcome = mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5"}));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   const auto stream = probe(path("a.mp4"));
@@ -32,7 +32,7 @@ TEST_F(RenderCommand, VideoHasTheFramesThatWereAskedFor) {
   EXPECT_EQ(stream["nb_read_frames"], "10");
   EXPECT_EQ(stream["r_frame_rate"], "20/1");
   EXPECT_EQ(outcome.output, "");
-  // Which device, which GL, which encoder.
+  // The messages name the device, OpenGL and the encoder.
   EXPECT_THAT(outcome.messages, HasSubstr("simulating 2 robots (ocean) on "));
   EXPECT_THAT(outcome.messages, HasSubstr("drawing with "));
   EXPECT_THAT(outcome.messages, HasSubstr("encoding H.264 by ffmpeg"));
@@ -44,14 +44,14 @@ TEST_F(RenderCommand, SpeedShortensTheVideo) {
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "5");
 }
 
-TEST_F(RenderCommand, QuietSaysNothing) {
+TEST_F(RenderCommand, QuietPrintsNothing) {
   const Outcome outcome = mercury(command("a.gif", {"--fps", "20", "--seconds", "0.1", "--quiet"}));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.messages, "");
   EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "2");
 }
 
-TEST_F(RenderCommand, OddSizesAreRoundedUpAndTold) {
+TEST_F(RenderCommand, OddSizesAreRoundedUpAndReported) {
   const Outcome outcome = mercury(command("a.webm", {"--seconds", "0.1", "--size", "161x91"}));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_THAT(outcome.messages, HasSubstr("needs even sides: drawn at 162x92"));
@@ -71,27 +71,27 @@ TEST_F(RenderCommand, SameCommandGivesTheSamePictures) {
   for (const std::string& frame : listing("a")) EXPECT_EQ(read("a/" + frame), read("b/" + frame)) << frame;
 }
 
-TEST_F(RenderCommand, StillIsThePictureOfAMoment) {
+TEST_F(RenderCommand, StillShowsTheGivenTime) {
   ASSERT_EQ(mercury(command("a.png", {"--still", "1"})).status, 0);
   ASSERT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "2"})).status, 0);
   const render::Image still = render::read_png(path("a.png")), frame = render::read_png(path("frames/frame-00001.png"));
   EXPECT_EQ(still.width, 160);
   EXPECT_EQ(still.height, 90);
-  // The camera of the film lags a little behind; the pictures are alike, not equal.
+  // The camera of the video lags a little behind, so the pictures are similar but not equal.
   double difference = 0;
   for (std::size_t i = 0; i < still.bytes.size(); ++i) difference += std::abs(still.bytes[i] - frame.bytes[i]);
   EXPECT_LT(difference / static_cast<double>(still.bytes.size()), 8);
 }
 
-TEST_F(RenderCommand, ContactSheetIsAsWideAsAsked) {
+TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
   ASSERT_EQ(mercury(command("a.png", {"--contact-sheet", "3x2", "--seconds", "0.5", "--size", "400x200"})).status, 0);
   const render::Image sheet = render::read_png(path("a.png"));
-  // Three moments and two gaps of 4 pixels: (400 + 4) / 3 - 4 = 130 wide, half as high.
+  // Three pictures and two gaps of 4 pixels: (400 + 4) / 3 - 4 = 130 wide, half as high.
   EXPECT_EQ(sheet.width, 3 * 130 + 2 * 4);
   EXPECT_EQ(sheet.height, 2 * 65 + 4);
 }
 
-TEST_F(RenderCommand, RecordingShowsWhatTheSimulationShowed) {
+TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
   const std::vector<std::string> simulate{"--random",      "voxel:2", "--seconds", "1",
                                           "--environment", "land",    "--dt",      "0.002"};
   std::vector<std::string> record{"run", "--record", path("a.h5"), "--every", "1"};
@@ -106,7 +106,7 @@ TEST_F(RenderCommand, RecordingShowsWhatTheSimulationShowed) {
     EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
 }
 
-TEST_F(RenderCommand, RecordingIsPlayedAlone) {
+TEST_F(RenderCommand, RecordingDoesNotMixWithRobots) {
   write("a.h5", "");
   const Outcome outcome = mercury(command("a.mp4", {path("a.h5")}));
   EXPECT_EQ(outcome.status, 2);
@@ -120,26 +120,26 @@ TEST_F(RenderCommand, EachRobotGetsAVideo) {
   EXPECT_EQ(listing(), (std::vector<std::string>{"a-voxel-3-0.gif", "a-voxel-3-1.gif"}));
 }
 
-// Each way to see changes the picture, and is drawn without an error.
-TEST_F(RenderCommand, WaysToSeeDiffer) {
-  const std::vector<std::vector<std::string>> ways{{},
-                                                   {"--color", "strain"},
-                                                   {"--color", "pressure"},
-                                                   {"--show", "springs,masses"},
-                                                   {"--show", "skin,drag,lift,velocity"},
-                                                   {"--show", "skin,path,labels,legend,clock,scale"},
-                                                   {"--theme", "light"},
-                                                   {"--cut", "y:0"},
-                                                   {"--layout", "race"},
-                                                   {"--camera", "top"},
-                                                   {"--follow", "--azimuth", "30"}};
+// Each view option changes the picture and is drawn without an error.
+TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
+  const std::vector<std::vector<std::string>> variants{{},
+                                                       {"--color", "strain"},
+                                                       {"--color", "pressure"},
+                                                       {"--show", "springs,masses"},
+                                                       {"--show", "skin,drag,lift,velocity"},
+                                                       {"--show", "skin,path,labels,legend,clock,scale"},
+                                                       {"--theme", "light"},
+                                                       {"--cut", "y:0"},
+                                                       {"--layout", "race"},
+                                                       {"--camera", "top"},
+                                                       {"--follow", "--azimuth", "30"}};
   std::set<std::string> pictures;
-  for (const std::vector<std::string>& way : ways) {
+  for (const std::vector<std::string>& variant : variants) {
     std::vector<std::string> more{"--still", "0.5"};
-    more.insert(more.end(), way.begin(), way.end());
+    more.insert(more.end(), variant.begin(), variant.end());
     const Outcome outcome = mercury(command("a.png", more));
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
-    EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(way);
+    EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(variant);
   }
 }
 
@@ -152,7 +152,7 @@ TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {
   EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
 }
 
-TEST_F(RenderCommand, MissingEncoderIsToldBeforeAnythingIsDrawn) {
+TEST_F(RenderCommand, MissingEncoderIsReportedBeforeDrawing) {
   const Outcome outcome = run_program(
       "sh", {"-c", "PATH=/nowhere exec \"$0\" render --random voxel -o \"$1\"", MERCURY_PROGRAM, path("a.mp4")});
   EXPECT_EQ(outcome.status, 1);
@@ -162,7 +162,7 @@ TEST_F(RenderCommand, MissingEncoderIsToldBeforeAnythingIsDrawn) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
-TEST_F(RenderCommand, FileThatGrowsBeyondTheLimitIsTold) {
+TEST_F(RenderCommand, FileBeyondTheSizeLimitIsReported) {
   const Outcome outcome = run_program(
       "sh", {"-c", "ulimit -f 1; exec \"$0\" render --random voxel:2 --size 320x180 --seconds 1 --quiet -o \"$1\"",
              MERCURY_PROGRAM, path("a.mp4")});
@@ -172,8 +172,8 @@ TEST_F(RenderCommand, FileThatGrowsBeyondTheLimitIsTold) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
-// An endless film, stopped once the encoder has begun to write.
-class InterruptedFilm : public RenderCommand {
+// A very long video, interrupted once the encoder has begun to write.
+class InterruptedVideo : public RenderCommand {
  protected:
   std::unique_ptr<ChildProcess> begin() {
     auto child = std::make_unique<ChildProcess>(MERCURY_PROGRAM, command("a.mp4", {"--seconds", "100000"}));
@@ -190,7 +190,7 @@ class InterruptedFilm : public RenderCommand {
   }
 };
 
-TEST_F(InterruptedFilm, LeavesAVideoThatPlays) {
+TEST_F(InterruptedVideo, LeavesAPlayableVideo) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const auto child = begin();
     child->signal(signal);
@@ -203,13 +203,13 @@ TEST_F(InterruptedFilm, LeavesAVideoThatPlays) {
   }
 }
 
-TEST_F(InterruptedFilm, SecondInterruptEndsAtOnceAndLeavesNothing) {
+TEST_F(InterruptedVideo, SecondInterruptEndsAtOnceAndLeavesNoFile) {
   // An encoder that never ends keeps the program waiting.
   write("stuck", "#!/bin/sh\nexec sleep 20\n", true);
   ChildProcess child(MERCURY_PROGRAM, command("b.mp4", {"--seconds", "100000", "--ffmpeg", path("stuck")}));
   while (child.messages().find("encoding") == std::string::npos) std::this_thread::yield();
   child.signal(SIGINT);
-  while (listing().size() > 1) {  // until the second signal has come after the first
+  while (listing().size() > 1) {  // until the program has handled both signals
     child.signal(SIGINT);
     std::this_thread::yield();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury run: its tables, and that the numbers do not depend on how they were computed.
+// mercury run: its reports, and results that do not depend on threads or on other robots.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -41,7 +41,7 @@ TEST_F(RunCommand, JsonHoldsConfigurationAndEachRobot) {
   for (const json& robot : report["robots"]) {
     EXPECT_GT(robot["masses"], 0);
     EXPECT_GT(robot["springs"], 0);
-    // Muscles pull at once; a way is never shorter than the distance between its ends.
+    // Muscles act from the first step on. A path is at least as long as the distance between its ends.
     EXPECT_GT(robot["largest_strain"], 0.0);
     EXPECT_GE(robot["mean_speed"].get<double>() * 0.5, robot["displacement"].get<double>() * (1 - 1e-6));
     EXPECT_EQ(robot["exploded"], false);
@@ -49,7 +49,7 @@ TEST_F(RunCommand, JsonHoldsConfigurationAndEachRobot) {
   }
 }
 
-TEST_F(RunCommand, HashesAreTheSameTwiceAndWithAnyNumberOfThreads) {
+TEST_F(RunCommand, HashesAreReproducibleWithAnyNumberOfThreads) {
   const std::vector<std::string> arguments{"--random",  "voxel:16", "--seed",   "1",
                                            "--seconds", "0.3",      "--device", "cpu"};
   std::vector<std::string> one_thread = arguments;
@@ -70,14 +70,14 @@ TEST_F(RunCommand, RobotAloneEndsAsInTheGroup) {
   }
 }
 
-TEST_F(RunCommand, HashTellsDifferentRunsApart) {
+TEST_F(RunCommand, DifferentRunsHaveDifferentHashes) {
   const auto shorter = hashes(run_json({"--random", "voxel:1", "--seconds", "0.3"}));
   const auto longer = hashes(run_json({"--random", "voxel:1", "--seconds", "0.301"}));
   EXPECT_NE(shorter, longer);
 }
 
-// Without gravity, drag, damping and muscles nothing pulls: the centre of mass follows the textbook. Here a body falls
-// from rest through vacuum, density 0, for 0.5 s.
+// A body falls from rest through vacuum (density 0) for 0.5 s. Without drag and damping, its centre of mass follows
+// x = g t^2 / 2.
 TEST_F(RunCommand, DisplacementIsThatOfAFallingBody) {
   const json report = run_json({"--random", "voxel:1", "--seconds", "0.5", "--density", "0", "--damping", "0",
                                 "--gravity", "2", "--dt", "0.0005"});
@@ -94,7 +94,7 @@ TEST_F(RunCommand, TableShowsEachRobot) {
   EXPECT_EQ(outcome.messages, "");
 }
 
-TEST_F(RunCommand, CsvHasALineARobot) {
+TEST_F(RunCommand, CsvHasALinePerRobot) {
   const std::vector<std::string> robots{"--random", "voxel:2", "--seconds", "0.1"};
   const Outcome outcome = mercury({"run", "--random", "voxel:2", "--seconds", "0.1", "--csv", path("a.csv")});
   ASSERT_EQ(outcome.status, 0);
@@ -102,8 +102,9 @@ TEST_F(RunCommand, CsvHasALineARobot) {
   std::istringstream csv(read("a.csv"));
   std::string header, line;
   std::getline(csv, header);
-  EXPECT_EQ(header,
-            "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash");
+  const char* const columns =
+      "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash";  // column
+  EXPECT_EQ(header, columns);
   for (const json& robot : report["robots"]) {
     std::getline(csv, line);
     EXPECT_EQ(line.substr(0, line.find(',')), robot["name"].get<std::string>());
@@ -119,8 +120,8 @@ TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
             "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
 }
 
-// A robot file that says where it is meant to live.
-TEST_F(RunCommand, RobotsLiveWhereTheyAreMadeFor) {
+// A robot file can name its environment.
+TEST_F(RunCommand, RobotsUseTheEnvironmentOfTheirFile) {
   const auto robot = [](const std::string& environment) {
     return R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0],[1,0,0]], "springs": [[0,1,21]], "faces": [],
                "origin": {"kind": "voxel", "environment": ")" +
@@ -141,7 +142,7 @@ TEST_F(RunCommand, RobotsLiveWhereTheyAreMadeFor) {
             "mercury: the robots are made for land and ocean; all are put into ocean, --environment chooses\n");
 }
 
-TEST_F(RunCommand, ExplodedRobotsAreToldAndFailOnlyWhenStrict) {
+TEST_F(RunCommand, ExplodedRobotsAreReportedAndFailOnlyWithStrict) {
   // Two masses on a spring of 50 N/m: omega = sqrt(2 k / m) = 10 rad/s, unstable for dt > 2 / omega = 0.2 s.
   write("pair.json",
         R"({"format": "mercury-robot", "version": 1, "name": "pair", "masses": [[0,0,0],[1,0,0]],
@@ -161,9 +162,9 @@ TEST_F(RunCommand, ExplodedRobotsAreToldAndFailOnlyWhenStrict) {
   EXPECT_EQ(mercury({"run", path("pair.json"), "--dt", "0.01", "--seconds", "2", "--strict"}).status, 0);
 }
 
-TEST_F(RunCommand, InterruptedRunTellsWhatItHas) {
+TEST_F(RunCommand, InterruptedRunReportsItsResults) {
   ChildProcess child(MERCURY_PROGRAM, {"run", "--random", "voxel:2", "--seconds", "1e6", "--json"});
-  // The first line of progress shows that it simulates.
+  // The first line of progress shows that the simulation runs.
   while (child.messages().empty()) std::this_thread::yield();
   child.signal(SIGINT);
   const Outcome outcome = outcome_of(child);
@@ -174,7 +175,7 @@ TEST_F(RunCommand, InterruptedRunTellsWhatItHas) {
   EXPECT_THAT(outcome.messages, HasSubstr("stopped at"));
 }
 
-TEST_F(RunCommand, BadRobotFilesAreToldInOneLine) {
+TEST_F(RunCommand, InvalidRobotFilesAreReportedInOneLine) {
   write("text.json", "not a robot");
   write("number.json", R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0]], "springs": [[0,5,1]]})");
   for (const char* name : {"text.json", "number.json"}) {

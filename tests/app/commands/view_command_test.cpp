@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury view, as far as it goes without a window.
+// mercury view without a display: errors and the sample robots.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Outcome without_display(std::vector<std::string> arguments) {
   return run_program("env", arguments);
 }
 
-TEST(ViewCommand, WithoutADisplayOneLineNamesTheCommandThatNeedsNone) {
+TEST(ViewCommand, WithoutADisplayTheMessageNamesRender) {
   const Outcome outcome = without_display({"view"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.output, "");
@@ -28,7 +28,7 @@ TEST(ViewCommand, WithoutADisplayOneLineNamesTheCommandThatNeedsNone) {
   EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1);
 }
 
-TEST(ViewCommand, WhatCannotBeUsedIsToldBeforeAWindowIsTried) {
+TEST(ViewCommand, InvalidInputIsReportedBeforeAWindowOpens) {
   const Outcome robot = without_display({"view", "nowhere.json"});
   EXPECT_EQ(robot.status, 2);
   EXPECT_THAT(robot.messages, HasSubstr("nowhere.json"));
