@@ -60,6 +60,7 @@ std::string shown_text(const Shown& shown) {
                                                 {"lift", shown.arrows.lift},
                                                 {"velocity", shown.arrows.velocity},
                                                 {"gravity", shown.arrows.gravity},
+                                                {"contact", shown.arrows.contact},
                                                 {"path", shown.path},
                                                 {"labels", shown.labels},
                                                 {"legend", shown.legend},

@@ -199,11 +199,8 @@ void LiveScene::reset_materials(const std::vector<RobotId>& robots) {
 
 const ViewSettings& LiveScene::view() const { return parts_->view; }
 void LiveScene::set_view(const ViewSettings& settings) {
-  const bool details_changed = settings.color != parts_->view.color ||
-                               settings.shown.arrows.drag != parts_->view.shown.arrows.drag ||
-                               settings.shown.arrows.lift != parts_->view.shown.arrows.lift ||
-                               settings.shown.arrows.velocity != parts_->view.shown.arrows.velocity ||
-                               settings.shown.arrows.gravity != parts_->view.shown.arrows.gravity;
+  const bool details_changed =
+      settings.color != parts_->view.color || settings.shown.arrows != parts_->view.shown.arrows;
   parts_->view = settings;
   if (details_changed) parts_->physics.set_view(settings);
 }

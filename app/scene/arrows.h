@@ -18,6 +18,7 @@ struct ArrowKinds {
   bool contact = false;             // force of the floor on each mass
 
   bool any() const { return drag || lift || velocity || gravity || contact; }
+  friend bool operator==(const ArrowKinds&, const ArrowKinds&) = default;
 };
 
 // Turns forces and velocities into arrows. The scale makes the longest arrow of the median robot about half a robot

@@ -178,6 +178,7 @@ TEST_F(LiveFiles, CommandMakesTheSameScene) {
   options.view.color = &color_quantity("strain");
   options.view.scale = {-7.5f, 7.5f};
   options.view.shown.springs = options.view.shown.arrows.drag = options.view.shown.labels = true;
+  options.view.shown.arrows.contact = true;
   options.view.theme = render::Theme::light;
   options.view.cut = render::CutPlane{.normal = {0, -1, 0}, .offset = -0.25f};
   options.view.camera.azimuth = 1.25f;
@@ -204,6 +205,7 @@ TEST_F(LiveFiles, CommandMakesTheSameScene) {
   EXPECT_EQ(same.view.theme, options.view.theme);
   EXPECT_TRUE(same.view.shown.springs && same.view.shown.arrows.drag && same.view.shown.labels &&
               same.view.shown.clock);
+  EXPECT_EQ(same.view.shown.arrows, options.view.shown.arrows);
   EXPECT_FALSE(same.view.shown.legend);
   ASSERT_TRUE(same.view.cut);
   EXPECT_EQ(same.view.cut->normal, options.view.cut->normal);
