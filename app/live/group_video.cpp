@@ -58,7 +58,7 @@ struct GroupVideo::Parts {
     status.error = error;
   }
 
-  // The unfinished file of a film that was cancelled is gone when that is status.
+  // When the state becomes "cancelled", the unfinished file is already removed.
   void make() {
     try {
       set_state(write() ? VideoStatus::State::done : VideoStatus::State::cancelled);

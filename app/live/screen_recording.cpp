@@ -82,7 +82,7 @@ struct ScreenRecording::Parts {
     status.error = error;
   }
 
-  // The unfinished file of a film that was cancelled is gone when that is status.
+  // When the state becomes "cancelled", the unfinished file is already removed.
   void encode(const std::string& output) {
     try {
       set_state(write(output) ? VideoStatus::State::done : VideoStatus::State::cancelled);
