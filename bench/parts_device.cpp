@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a step and what surrounds it, on one core and on a CUDA device where there is one: springs, faces,
-// floor, contact, telemetry, loading a batch. Each is a robot or a setting in which little else is done.
+// Measures the parts of a step and its surroundings on one core, and on a CUDA device if there is one: springs, faces,
+// floor, contact, telemetry, loading a batch. Each part has a robot or a configuration in which little else happens.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -15,13 +15,13 @@
 namespace mercury::bench {
 namespace {
 
-constexpr std::int64_t steps_a_call = 100;
+constexpr std::int64_t steps_per_call = 100;
 
 std::unique_ptr<Backend> backend_of(DeviceKind kind) {
   return kind == DeviceKind::cuda ? make_cuda_backend({.kind = kind}) : make_cpu_backend({.kind = kind, .threads = 1});
 }
 
-// Enough to fill a device; one core needs one.
+// Robots: enough to fill a device, one for a core.
 std::size_t batch_size(DeviceKind kind) { return kind == DeviceKind::cuda ? 528 : 1; }
 
 Robot without_springs(Robot robot) {
@@ -33,7 +33,7 @@ Robot without_faces(Robot robot) {
   return robot;
 }
 
-// Two lattices that stand in each other, half a voxel apart: every mass has neighbours that no spring joins it to.
+// Two lattices in the same place, half a voxel apart: every mass has neighbours without a spring to it.
 Robot entangled(const Robot& robot) {
   Robot result = robot;
   const auto masses = static_cast<std::uint16_t>(robot.masses.size());
@@ -58,16 +58,17 @@ Loaded loaded(DeviceKind kind, const Robot& robot, const Configuration& configur
   return result;
 }
 
-// Items are steps of a robot times `things`, of which it has so many.
+// Counts steps per robot times `things`, the number of springs, faces or masses that it has.
 void step(benchmark::State& state, DeviceKind kind, const Robot& robot, const Configuration& configuration,
           std::size_t things) {
   const Loaded batch = loaded(kind, robot, configuration);
   Clock clock{.dt = configuration.dt};
   for (auto _ : state) {
-    batch.backend->step(clock, steps_a_call);
-    clock.step += steps_a_call;
+    batch.backend->step(clock, steps_per_call);
+    clock.step += steps_per_call;
   }
-  state.SetItemsProcessed(state.iterations() * steps_a_call * static_cast<std::int64_t>(batch.robots.size() * things));
+  state.SetItemsProcessed(state.iterations() * steps_per_call *
+                          static_cast<std::int64_t>(batch.robots.size() * things));
 }
 
 void telemetry(benchmark::State& state, DeviceKind kind, const Robot& robot) {
@@ -75,7 +76,7 @@ void telemetry(benchmark::State& state, DeviceKind kind, const Robot& robot) {
   std::vector<Telemetry> telemetry(batch.robots.size());
   std::vector<RobotStatus> statuses(telemetry.size());
   for (auto _ : state) {
-    batch.backend->set_status(0, {});  // what did not change is not reported anew
+    batch.backend->set_status(0, {});  // without a change, report() would return the last report
     batch.backend->report({}, telemetry, statuses);
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch.robots.size()));
@@ -91,7 +92,7 @@ void load(benchmark::State& state, DeviceKind kind, const Robot& robot) {
 void add_device(DeviceKind kind, const std::string& device) {
   const auto add = [&](const std::string& name, auto work) {
     auto* const part = benchmark::RegisterBenchmark((device + "/" + name).c_str(), work)->Unit(benchmark::kMicrosecond);
-    if (kind == DeviceKind::cuda) part->UseRealTime();  // a core may have to share its time, and is measured by its own
+    if (kind == DeviceKind::cuda) part->UseRealTime();  // a core is measured by its CPU time, since it may be shared
   };
   const Robot lattice = bench::lattice(10), two = entangled(bench::lattice(5));
   Configuration still{.environment = OceanSimple{.point_drag = 0}};
@@ -122,7 +123,7 @@ void add_device(DeviceKind kind, const std::string& device) {
   if (cuda_device_count() > 0)
     add_device(DeviceKind::cuda, "CUDA");
   else
-    std::fprintf(stderr, "no CUDA device: its parts are left out\n");
+    std::fprintf(stderr, "no CUDA device: its parts are skipped\n");
   return true;
 }();
 

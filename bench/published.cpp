@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mercury beside the kernel as published, in one run on one card: bench_published [robots] [voxels a side]
+// Compares Mercury with the published kernel in one run on one GPU: bench_published [robots] [voxels per side]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,20 +14,19 @@ namespace {
 
 using namespace mercury;
 
-double measure_mercury(std::span<const Robot> robots, double least_seconds) {
+double measure_mercury(std::span<const Robot> robots, double min_seconds) {
   Simulation simulation({.device = {.kind = DeviceKind::cuda}}, robots);
   simulation.step(50);
   double springs = 0;
   for (const Robot& robot : robots) springs += static_cast<double>(robot.springs.size());
   const double before = simulation.busy_seconds();
   std::int64_t steps = 0;
-  for (std::int64_t n = 100; simulation.busy_seconds() - before < least_seconds;
-       n *= 2, steps = simulation.steps() - 50)
+  for (std::int64_t n = 100; simulation.busy_seconds() - before < min_seconds; n *= 2, steps = simulation.steps() - 50)
     simulation.step(n);
   return springs * static_cast<double>(steps) / (simulation.busy_seconds() - before);
 }
 
-// Farthest that a mass is from where the published kernel has it after a tenth of a second [m].
+// The largest distance between a mass and the same mass of the published kernel after a tenth of a second [m].
 float disagreement(const Robot& robot) {
   constexpr int steps = 100;
   Simulation simulation({.device = {.kind = DeviceKind::cuda}}, std::span(&robot, 1));
@@ -47,7 +46,7 @@ int main(int argc, char** argv) try {
     return 0;
   }
   if (count < 1 || side < 1) {
-    std::fputs("bench_published [robots >= 1] [voxels a side >= 1]\n", stderr);
+    std::fputs("bench_published [robots >= 1] [voxels per side >= 1]\n", stderr);
     return 2;
   }
   RandomVoxelOptions full;
@@ -57,7 +56,7 @@ int main(int argc, char** argv) try {
   full.mirror = Mirror::none;
   full.frequencies = 5;
   const std::vector<Robot> robots = random_voxel_robots(full, 1, static_cast<std::size_t>(count));
-  const double ours = measure_mercury(robots, 1), theirs = published::measure(robots, 1).springs_a_second;
+  const double ours = measure_mercury(robots, 1), theirs = published::measure(robots, 1).springs_per_second;
   std::printf("%s, %d robots of %zu masses and %zu springs, force solver, ocean\n", cuda_device_name(0).c_str(), count,
               robots[0].masses.size(), robots[0].springs.size());
   std::printf("as published   %.3e springs/s\nMercury        %.3e springs/s   %.1f times as many\n", theirs, ours,

@@ -15,7 +15,7 @@ using cuda::DeviceArray;
 constexpr float dt = 1e-3f, half_density = 500, drag_coefficient = 1, lift_coefficient = 0.2f, damping = 0.1f;
 constexpr unsigned threads = 1024;
 
-// Chunks of every buffer sized by the largest robot (II.D).
+// Each robot has a chunk of each buffer, sized by the largest robot (paper, II.D).
 struct Buffers {
   float3 *positions, *velocities;
   const Spring* springs;
@@ -149,13 +149,13 @@ class Batch {
 
 }  // namespace
 
-Result measure(std::span<const Robot> robots, double least_seconds) {
+Result measure(std::span<const Robot> robots, double min_seconds) {
   double springs = 0;
   for (const Robot& robot : robots) springs += static_cast<double>(robot.springs.size());
   Batch batch(robots);
   batch.advance(50);
   Result result;
-  for (long long steps = 100; result.seconds < least_seconds; steps *= 2) {
+  for (long long steps = 100; result.seconds < min_seconds; steps *= 2) {
     cuda::Event start, end;
     start.record();
     batch.advance(steps);
@@ -163,7 +163,7 @@ Result measure(std::span<const Robot> robots, double least_seconds) {
     result.seconds += end.seconds_since(start);
     result.steps += steps;
   }
-  result.springs_a_second = springs * static_cast<double>(result.steps) / result.seconds;
+  result.springs_per_second = springs * static_cast<double>(result.steps) / result.seconds;
   return result;
 }
 

@@ -26,25 +26,26 @@ std::vector<Spring> in_slots(std::span<const Spring> springs, const SlotOrder& o
 
 }  // namespace
 
+// Tries a few shifts and takes the one that spreads the corners of the faces over the banks most evenly.
 Arrangement arrange(const Robot& robot) {
   const auto masses = static_cast<std::uint32_t>(robot.masses.size());
   const std::vector<FacePair> pairs = pair_faces(robot);
   SlotOrder best{masses, 0};
   std::vector<FacePair> best_pairs;
-  std::uint32_t fewest = ~0u;
-  for (const std::uint32_t turn : {0u, 5u, 13u}) {
-    const SlotOrder order{masses, turn};
+  std::uint32_t fewest_passes = ~0u;
+  for (const std::uint32_t shift : {0u, 5u, 13u}) {
+    const SlotOrder order{masses, shift};
     std::vector<FacePair> moved = in_slots(pairs, order);
-    const std::uint32_t bundles = busiest_bank(moved);
-    if (bundles >= fewest) continue;
-    fewest = bundles;
+    const std::uint32_t passes = busiest_bank(moved);
+    if (passes >= fewest_passes) continue;
+    fewest_passes = passes;
     best = order;
     best_pairs = std::move(moved);
   }
-  return {best, schedule_springs(masses, in_slots(robot.springs, best)), spread_over_banks(best_pairs)};
+  return {best, schedule_springs(masses, in_slots(robot.springs, best)), make_face_tiles(best_pairs)};
 }
 
-std::vector<std::uint32_t> first_of_build(std::span<const Robot* const> robots) {
+std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {
   std::vector<std::uint64_t> keys(robots.size());
   oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) { keys[i] = topology_key(*robots[i]); });
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_key;

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a robot of a certain build stands on the device: which slot each mass has, the rows of its springs, the bundles
-// of its faces. Robots of one build share it, whatever their materials, lengths and states are.
+// The arrangement of a topology on the device: the slots of its masses, the schedule of its springs, and its face
+// tiles. Robots of one topology share an arrangement, whatever their materials, rest lengths and states are.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "sim/cuda/layout.h"
+#include "sim/cuda/face_tiles.h"
 #include "sim/cuda/schedule.h"
+#include "sim/cuda/tile.h"
 
 namespace mercury::cuda {
 
 struct Arrangement {
   SlotOrder order;
-  Schedule schedule;            // of slots
-  std::vector<FacePair> faces;  // of slots, in bundles
+  Schedule schedule;
+  std::vector<FacePair> faces;  // in face tiles, padding included
 };
 
 Arrangement arrange(const Robot& robot);
 
-// For each robot the first one of the same build (mercury/robot.h), itself if there is none before. Uses all cores.
-std::vector<std::uint32_t> first_of_build(std::span<const Robot* const> robots);
+// For each robot the first one of the same topology (mercury/robot.h), which may be the robot itself. Uses all cores.
+std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots);
 
 }  // namespace mercury::cuda

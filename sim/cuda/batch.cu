@@ -4,28 +4,20 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
-#include <ranges>
-
-#include "sim/cuda/arrangement.h"
-#include "sim/cuda/step.h"
 
 namespace mercury::cuda {
 namespace {
 
 constexpr unsigned threads = 256;
 
-// Turns the partner of every record from one unit into another: slot (rows 0) or word offset among groups of so
-// many rows.
-__global__ void place_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
-                               std::uint32_t old_rows, std::uint32_t new_rows) {
+// Rewrites the partners of all records for tiles of another number of fields.
+__global__ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
+                                   std::uint32_t old_fields, std::uint32_t new_fields) {
   for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
        i += std::size_t{gridDim.x} * blockDim.x) {
     std::uint32_t& key = records[i * record_words];
-    const std::uint32_t place = key >> 16;
-    const std::uint32_t slot = slot_at(place, old_rows);
-    const std::uint32_t moved = new_rows == 0 ? slot : slot / lanes * new_rows * lanes + slot % lanes;
-    key = moved << 16 | (key & 0xffff);
+    const std::uint32_t slot = slot_at_offset(key >> 16, old_fields);
+    key = offset_of_slot(slot, new_fields) << 16 | (key & 0xffff);
   }
 }
 
@@ -34,15 +26,16 @@ __global__ void compute_phases(const Material* materials, MusclePhase* phases, s
   if (i < count) phases[i] = muscle_phase(materials[i], clock);
 }
 
-__global__ void gather_rows(const float* state, const RobotRecord* records, const std::uint64_t* first_mass,
-                            std::uint32_t group_stride, std::uint32_t first_row, float* out) {
+// One block per robot.
+__global__ void gather_vectors(const float* state, const RobotHeader* headers, const std::uint64_t* first_mass,
+                               std::uint32_t tile_stride, std::uint32_t first_field, float* out) {
   const std::uint32_t robot = blockIdx.x;
-  const SlotOrder order = slot_order(records[robot]);
+  const SlotOrder order = slot_order(headers[robot]);
   const std::uint64_t first = first_mass[robot], masses = first_mass[robot + 1] - first;
-  const float* groups = state + std::size_t{robot} * group_stride * state_rows * lanes + first_row * lanes;
+  const float* chunk = state + std::size_t{robot} * tile_stride * state_fields * lanes + first_field * lanes;
   for (std::uint64_t k = threadIdx.x; k < 3 * masses; k += blockDim.x) {
     const auto axis = static_cast<std::uint32_t>(k % 3), slot = order.slot_of(static_cast<std::uint32_t>(k / 3));
-    out[3 * first + k] = groups[(slot / lanes * state_rows + axis) * lanes + slot % lanes];
+    out[3 * first + k] = chunk[offset_of_slot(slot, state_fields) + axis * lanes];
   }
 }
 
@@ -50,16 +43,16 @@ unsigned blocks_for(std::size_t count) {
   return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536));
 }
 
-// A mass's vector in groups of state_rows.
-Vec3 vector_at(std::span<const float> groups, std::uint32_t slot, std::uint32_t row) {
-  const float* at = groups.data() + (slot / lanes * state_rows + row) * lanes + slot % lanes;
-  return {at[0], at[lanes], at[2 * lanes]};
-}
-void put_vector(std::span<float> groups, std::uint32_t slot, std::uint32_t row, Vec3 value) {
-  float* at = groups.data() + (slot / lanes * state_rows + row) * lanes + slot % lanes;
-  at[0] = value.x;
-  at[lanes] = value.y;
-  at[2 * lanes] = value.z;
+RobotHeader header_of(const Robot& robot, const Arrangement& arrangement, const RobotMeasures& measures) {
+  return {.masses = static_cast<std::uint32_t>(robot.masses.size()),
+          .tiles = arrangement.schedule.tiles(),
+          .face_pairs = static_cast<std::uint32_t>(arrangement.faces.size()),
+          .springs = static_cast<std::uint32_t>(robot.springs.size()),
+          .lane_shift = arrangement.order.shift,
+          .force_scale = 1,  // Batch::configure sets the scales
+          .correction_scale = 1,
+          .squared_stretch_limit = measures.squared_stretch_limit(),
+          .contact_distance = measures.contact_distance()};
 }
 
 }  // namespace
@@ -68,144 +61,87 @@ Batch::Batch(std::span<const Robot* const> robots) : robots_(robots.begin(), rob
   measures_.resize(size());
   oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(),
                             [&](std::size_t i) { measures_[i] = measure(*robots_[i]); });
-  for (const Robot* robot : robots_) {
-    first_mass_.push_back(first_mass_.back() + robot->masses.size());
-    group_stride_ = std::max(group_stride_, groups_of(*robot));
-  }
-  if (size() > 0) upload(measures_);
+  for (const Robot* robot : robots_) first_mass_.push_back(first_mass_.back() + robot->masses.size());
+  if (size() > 0) upload();
 }
 
-// Robots are prepared on all cores and uploaded a portion at a time, so that the host never holds all of the device's
-// layout.
-void Batch::upload(std::span<const RobotMeasures> measures) {
-  const std::size_t count = robots_.size();
+// Prepares robots on all cores and uploads a portion at a time, so that the host never holds the buffers of the whole
+// batch.
+void Batch::upload() {
   constexpr std::size_t portion = 512;
-  // The strides are known only once every build was arranged. A few builds are kept, many arranged twice.
-  constexpr std::ptrdiff_t most_kept = 2048;
-  const std::vector<std::uint32_t> first_alike = first_of_build(robots_);
-  const auto is_first = [&](std::size_t i) { return first_alike[i] == i; };
-  const bool keep = std::ranges::count_if(std::views::iota(std::size_t{0}, count), is_first) <= most_kept;
-  std::vector<Arrangement> kept(keep ? count : 0);
-  std::vector<std::uint32_t> rows(count), pairs(count);
-  std::vector<std::vector<float>> lengths(count);
-  oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    lengths[i] = lengths_of(*robots_[i]);
-    if (!is_first(i)) return;
-    Arrangement arrangement = arrange(*robots_[i]);
-    rows[i] = arrangement.schedule.rows();
-    pairs[i] = static_cast<std::uint32_t>(arrangement.faces.size());
-    if (keep) kept[i] = std::move(arrangement);
-  });
-  record_words_ = std::ranges::all_of(lengths, [](const auto& some) { return some.size() <= max_lengths; }) ? 1 : 2;
-  row_stride_ = std::ranges::max(rows);
-  face_stride_ = std::ranges::max(pairs);
-
-  device_records_ = DeviceArray<RobotRecord>(count);
-  device_statuses_ = DeviceArray<DeviceStatus>(count);
-  state_ = DeviceArray<float>(count * group_stride_ * state_rows * lanes);
-  splits_ = DeviceArray<float>(count * group_stride_ * lanes);
-  const std::size_t robot_words = std::size_t{row_stride_} * lanes * record_words_;
-  springs_ = DeviceArray<std::uint32_t>(count * robot_words + rows_at_once * lanes * record_words_);
-  springs_.clear();
-  if (record_words_ == 1) lengths_ = DeviceArray<float>(count * max_lengths);
-  arrivals_ = DeviceArray<std::uint32_t>(count * group_stride_ * lanes);
-  row_start_ = DeviceArray<std::uint32_t>(count * (group_stride_ + 1));
-  face_pairs_ = DeviceArray<FacePair>(count * face_stride_);
-  device_materials_ = DeviceArray<Material>(count * max_materials);
-  phases_ = DeviceArray<MusclePhase>(count * max_materials);
-  device_first_mass_ = DeviceArray<std::uint64_t>(first_mass_.size());
-  device_first_mass_.write(0, first_mass_);
-  const std::vector<DeviceStatus> fresh(count, DeviceStatus{-1, no_mass});
-  device_statuses_.write(0, fresh);
-
-  records_.resize(count);
-  materials_.assign(count * max_materials, {});
+  const std::size_t count = robots_.size();
+  const Arrangements arrangements(robots_);
+  sizes_ = arrangements.sizes();
+  allocate();
+  headers_.resize(count);
+  materials_.resize(count * max_materials);
   for (std::size_t first = 0; first < count; first += portion) {
     const std::size_t n = std::min(portion, count - first);
-    std::vector<float> state(n * group_stride_ * state_rows * lanes), splits(n * group_stride_ * lanes);
-    std::vector<std::uint32_t> springs(n * robot_words);
-    std::vector<float> length_table(record_words_ == 1 ? n * max_lengths : 0);
-    std::vector<std::uint32_t> row_start(n * (group_stride_ + 1)), arrivals(n * group_stride_ * lanes);
-    std::vector<FacePair> face_pairs(n * face_stride_);
+    Chunks chunks(sizes_, n);
     oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
       const std::size_t i = first + k;
-      const Robot& robot = *robots_[i];
-      const Arrangement anew = keep ? Arrangement{} : arrange(robot);
-      const auto& [order, schedule, faces] = keep ? kept[first_alike[i]] : anew;
-      records_[i] = {static_cast<std::uint32_t>(robot.masses.size()),
-                     schedule.groups(),
-                     static_cast<std::uint32_t>(faces.size()),
-                     static_cast<std::uint32_t>(robot.springs.size()),
-                     order.turn,
-                     1,
-                     1,
-                     measures[i].squared_stretch_limit(),
-                     measures[i].contact_distance()};
-      const std::size_t state_size = std::size_t{group_stride_} * state_rows * lanes;
-      const auto groups = std::span(state).subspan(k * state_size, state_size);
-      const std::vector<std::uint32_t> at = valences(robot);
-      for (std::uint32_t m = 0; m < robot.masses.size(); ++m) {
-        const std::uint32_t slot = order.slot_of(m);
-        put_vector(groups, slot, 0, robot.masses[m]);
-        splits[k * group_stride_ * lanes + slot] = static_cast<float>(at[m]);
-      }
-      std::uint32_t* to = springs.data() + k * robot_words;
-      for (const ScheduledSpring& place : schedule.places) {
-        // An empty place is of air, so that it adds nothing.
-        const Spring spring = place.spring == no_spring ? Spring{} : robot.springs[place.spring];
-        const std::uint32_t key = static_cast<std::uint32_t>(place.partner) << 16 | spring.material;
-        if (record_words_ == 1) {
-          const auto number = std::ranges::lower_bound(lengths[i], spring.rest_length) - lengths[i].begin();
-          *to++ = key | static_cast<std::uint32_t>(number) << 8;
-        } else {
-          *to++ = key;
-          *to++ = std::bit_cast<std::uint32_t>(spring.rest_length);
-        }
-        ++arrivals[k * group_stride_ * lanes + place.partner];
-      }
-      if (record_words_ == 1)
-        std::ranges::copy(lengths[i], length_table.begin() + static_cast<std::ptrdiff_t>(k * max_lengths));
-      std::ranges::copy(schedule.row_start, row_start.begin() + static_cast<std::ptrdiff_t>(k * (group_stride_ + 1)));
-      std::ranges::copy(faces, face_pairs.begin() + static_cast<std::ptrdiff_t>(k * face_stride_));
-      std::ranges::copy(materials_of(robot), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
+      const std::shared_ptr<const Arrangement> arrangement = arrangements.of(i);
+      headers_[i] = header_of(*robots_[i], *arrangement, measures_[i]);
+      chunks.fill(k, *robots_[i], *arrangement, arrangements.lengths(i));
+      std::ranges::copy(materials_of(*robots_[i]), materials_.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
     });
-    state_.write(first * group_stride_ * state_rows * lanes, state);
-    splits_.write(first * group_stride_ * lanes, splits);
-    springs_.write(first * robot_words, springs);
-    lengths_.write(first * max_lengths, length_table);
-    row_start_.write(first * (group_stride_ + 1), row_start);
-    arrivals_.write(first * group_stride_ * lanes, arrivals);
-    face_pairs_.write(first * face_stride_, face_pairs);
+    write_chunks(first, chunks);
   }
   device_materials_.write(0, materials_);
 }
 
-void Batch::configure(const Configuration& configuration) {
-  if (size() == 0) return;
-  update_scales(configuration);
+void Batch::allocate() {
+  const std::size_t count = robots_.size();
+  device_headers_ = DeviceArray<RobotHeader>(count);
+  statuses_ = DeviceArray<DeviceStatus>(count);
+  statuses_.write(0, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}));
+  state_ = DeviceArray<float>(count * sizes_.state());
+  valences_ = DeviceArray<float>(count * sizes_.slots());
+  springs_ = DeviceArray<std::uint32_t>(count * sizes_.springs() + rows_at_once * lanes * sizes_.record_words);
+  springs_.clear();
+  lengths_ = DeviceArray<float>(count * sizes_.lengths());
+  incoming_counts_ = DeviceArray<std::uint32_t>(count * sizes_.slots());
+  row_start_ = DeviceArray<std::uint32_t>(count * sizes_.row_starts());
+  face_pairs_ = DeviceArray<FacePair>(count * sizes_.face_pairs);
+  device_materials_ = DeviceArray<Material>(count * max_materials);
+  phases_ = DeviceArray<MusclePhase>(count * max_materials);
+  device_first_mass_ = DeviceArray<std::uint64_t>(first_mass_.size());
+  device_first_mass_.write(0, first_mass_);
 }
 
-void Batch::update_scales(const Configuration& configuration) {
+void Batch::write_chunks(std::size_t first_robot, const Chunks& chunks) {
+  state_.write(first_robot * sizes_.state(), chunks.state);
+  valences_.write(first_robot * sizes_.slots(), chunks.valences);
+  springs_.write(first_robot * sizes_.springs(), chunks.springs);
+  lengths_.write(first_robot * sizes_.lengths(), chunks.lengths);
+  row_start_.write(first_robot * sizes_.row_starts(), chunks.row_start);
+  incoming_counts_.write(first_robot * sizes_.slots(), chunks.incoming_counts);
+  face_pairs_.write(first_robot * sizes_.face_pairs, chunks.face_pairs);
+}
+
+void Batch::configure(const Configuration& configuration) {
+  if (size() == 0) return;
   oneapi::tbb::parallel_for(std::size_t{0}, robots_.size(), [&](std::size_t i) {
     const FixedPointScale scale =
         fixed_point_scale(measures_[i], std::span(materials_).subspan(i * max_materials, max_materials), configuration);
-    records_[i].force_scale = scale.force;
-    records_[i].correction_scale = scale.correction;
+    headers_[i].force_scale = scale.force;
+    headers_[i].correction_scale = scale.correction;
   });
-  device_records_.write(0, records_);
+  device_headers_.write(0, headers_);
   const auto first_table = materials_.begin();
-  same_materials_ = std::ranges::all_of(records_, [&](const RobotRecord& record) {
-    const auto i = &record - records_.data();
+  same_materials_ = std::ranges::all_of(headers_, [&](const RobotHeader& header) {
+    const auto i = &header - headers_.data();
     return std::equal(first_table, first_table + max_materials, first_table + i * max_materials);
   });
 }
 
-void Batch::place_records(std::uint32_t rows) {
-  if (rows == rows_placed_) return;
-  const std::size_t count = springs_.size() / record_words_;
-  place_partners<<<blocks_for(count), threads>>>(springs_.data(), count, record_words_, rows_placed_, rows);
-  check(cudaGetLastError(), "placing springs");
-  rows_placed_ = rows;
+void Batch::address_partners(std::uint32_t fields) {
+  if (fields == partner_fields_) return;
+  const std::size_t count = springs_.size() / sizes_.record_words;
+  readdress_partners<<<blocks_for(count), threads>>>(springs_.data(), count, sizes_.record_words, partner_fields_,
+                                                     fields);
+  check(cudaGetLastError(), "addressing the partners of springs");
+  partner_fields_ = fields;
 }
 
 void Batch::set_materials(std::size_t first_robot, std::span<const Material> tables,
@@ -213,7 +149,7 @@ void Batch::set_materials(std::size_t first_robot, std::span<const Material> tab
   std::ranges::copy(tables, materials_.begin() + static_cast<std::ptrdiff_t>(first_robot * max_materials));
   device_materials_.write(first_robot * max_materials, tables);
   phases_stale_ = true;
-  update_scales(configuration);
+  configure(configuration);
 }
 
 void Batch::update_phases(const Clock& clock) {
@@ -236,70 +172,70 @@ void Batch::set_perturbations(std::span<const Perturbation> perturbations) {
   perturbations_.write(0, converted);
 }
 
-void Batch::reserve_workspace(std::size_t bytes_a_robot) {
-  if (bytes_a_robot == workspace_stride_) return;
-  workspace_ = DeviceArray<char>();
-  workspace_ = DeviceArray<char>(bytes_a_robot * robots_.size());
-  workspace_stride_ = bytes_a_robot;
+void Batch::reserve_workspace(std::size_t bytes_per_robot) {
+  if (bytes_per_robot == workspace_stride_) return;
+  workspace_ = DeviceArray<char>();  // frees the old one first
+  workspace_ = DeviceArray<char>(bytes_per_robot * robots_.size());
+  workspace_stride_ = bytes_per_robot;
 }
 
 BatchView Batch::view() const {
-  return {device_records_.data(),
-          device_statuses_.data(),
-          state_.data(),
-          springs_.data(),
-          lengths_.data(),
-          row_start_.data(),
-          face_pairs_.data(),
-          splits_.data(),
-          arrivals_.data(),
-          device_materials_.data(),
-          phases_.data(),
-          perturbations_.data(),
-          workspace_.data(),
-          size(),
-          group_stride_,
-          row_stride_,
-          face_stride_,
-          static_cast<std::uint32_t>(perturbations_.size()),
-          static_cast<std::uint32_t>(workspace_stride_),
-          record_words_};
+  return {.robots = device_headers_.data(),
+          .statuses = statuses_.data(),
+          .state = state_.data(),
+          .springs = springs_.data(),
+          .lengths = lengths_.data(),
+          .row_start = row_start_.data(),
+          .face_pairs = face_pairs_.data(),
+          .valences = valences_.data(),
+          .incoming_counts = incoming_counts_.data(),
+          .materials = device_materials_.data(),
+          .phases = phases_.data(),
+          .perturbations = perturbations_.data(),
+          .workspace = workspace_.data(),
+          .robot_count = size(),
+          .tile_stride = sizes_.tiles,
+          .row_stride = sizes_.rows,
+          .face_stride = sizes_.face_pairs,
+          .perturbation_count = static_cast<std::uint32_t>(perturbations_.size()),
+          .workspace_stride = static_cast<std::uint32_t>(workspace_stride_),
+          .record_words = sizes_.record_words};
 }
 
 void Batch::read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const {
   const SlotOrder order = order_of(robot);
-  std::vector<float> groups(std::size_t{group_stride_} * state_rows * lanes);
-  state_.read(robot * groups.size(), std::span(groups));
-  for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(groups, order.slot_of(i), row_x);
-  for (std::uint32_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(groups, order.slot_of(i), row_v);
+  std::vector<float> state(sizes_.state());
+  state_.read(robot * state.size(), std::span(state));
+  for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(state, order.slot_of(i), field_x);
+  for (std::uint32_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(state, order.slot_of(i), field_v);
 }
 
 void Batch::write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
   const SlotOrder order = order_of(robot);
-  std::vector<float> groups(std::size_t{group_stride_} * state_rows * lanes);
+  std::vector<float> state(sizes_.state());
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
-    put_vector(groups, order.slot_of(i), row_x, positions[i]);
-    put_vector(groups, order.slot_of(i), row_v, velocities[i]);
+    put_vector(state, order.slot_of(i), field_x, positions[i]);
+    put_vector(state, order.slot_of(i), field_v, velocities[i]);
   }
-  state_.write(robot * groups.size(), groups);
+  state_.write(robot * state.size(), state);
 }
 
 DeviceStatus Batch::status(std::size_t robot) const {
   DeviceStatus status{};
-  device_statuses_.read(robot, std::span(&status, 1));
+  statuses_.read(robot, std::span(&status, 1));
   return status;
 }
 std::vector<DeviceStatus> Batch::statuses() const {
   std::vector<DeviceStatus> all(size());
-  device_statuses_.read(0, all);
+  statuses_.read(0, all);
   return all;
 }
-void Batch::set_status(std::size_t robot, DeviceStatus status) { device_statuses_.write(robot, std::span(&status, 1)); }
+void Batch::set_status(std::size_t robot, DeviceStatus status) { statuses_.write(robot, std::span(&status, 1)); }
 
-void Batch::gather(float* device_out, std::uint32_t first_row) const {
+void Batch::gather(float* device_out, Field first_field) const {
   if (size() == 0) return;
-  gather_rows<<<size(), threads>>>(state_.data(), device_records_.data(), device_first_mass_.data(), group_stride_,
-                                   first_row, device_out);
+  gather_vectors<<<size(), threads>>>(state_.data(), device_headers_.data(), device_first_mass_.data(), sizes_.tiles,
+                                      first_field, device_out);
   check(cudaGetLastError(), "gathering masses");
 }
 

@@ -1,5 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the shared memory of a block is dealt out. Knows no CUDA, so that every build can tell what a robot needs.
+// A block of the step kernel: its robots, its warps, and its shared memory.
+//
+// A block steps `robots_per_block` robots side by side. Each robot has `warps_per_robot` warps, which share its tiles:
+//
+//   block        | robot 2 b                           | robot 2 b + 1                       |    two robots per block,
+//   warps        | warp 0     | warp 1     | warp 2    | warp 3     | warp 4     | warp 5    |    three warps each
+//   tiles        | 0  1  2  3 | 4  5  6  7 | 8  9      | 0  1  2  3 | 4  5  6  7 | 8  9      |
+//
+//   shared memory, from its first byte to `total`:
+//   +-----------------+----------+--------------+----------+-----------------+-----------------+
+//   | material tables | failures | rest lengths | contacts | tiles           | tiles           |
+//   | one, or one per | one per  | one table    | one list | of the first    | of the second   |
+//   | robot; copies   | robot    | per robot    | per robot| robot           | robot           |
+//   +-----------------+----------+--------------+----------+-----------------+-----------------+
+//                                  if records    on land     working memory (tile.h)
+//                                  have one word
+//
+// 1. A launch carries its robots through many steps. Masses stay in shared memory all the while; only spring records
+// and
+//    face pairs come from the L2 cache, once per step.
+// 2. A warp needs the parameters of 32 materials at once, which would often lie in the same banks. So the block keeps
+// up
+//    to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod copies).
+//    With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
+// 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
+// 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
+// result.
 #pragma once
 
 #include <bit>
@@ -11,68 +37,64 @@
 #include "mercury/configuration.h"
 #include "mercury/host_device.h"
 #include "mercury/robot.h"
+#include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
 
 namespace mercury::cuda {
 
-// Groups of 32 that a robot's masses fill.
-inline std::uint32_t groups_of(const Robot& robot) {
-  return static_cast<std::uint32_t>((robot.masses.size() + lanes - 1) / lanes);
-}
-
-// The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
+// The different rest lengths of a robot in ascending order, beginning with 0 for padding. It ends after max_lengths + 1
+// of them.
 std::vector<float> lengths_of(const Robot& robot);
 
-// What a block has and does.
-struct Shape {
-  std::uint32_t robots_per_block = 1;
-  std::uint32_t warps_per_robot = 1;
-  std::uint32_t table_copy_bits = 0;  // 2^this many copies of the material table, at most 16
-  bool shared_table = false;          // all robots of the batch have the same materials
-  bool on_chip = true;                // masses in shared memory, else in the workspace
-  bool splits_on_chip = true;         // and beside them the number of springs at each, which XPBD needs
-  std::uint32_t contact_buckets = 0;  // a power of two, or 0 = no self-collision
-  std::uint32_t record_words = 2;     // of the batch
-  bool contacts_on_chip = true;       // else behind the working memory in the workspace
-  std::size_t shared_bytes = 0;
+// The parameters of a material's springs in the present step.
+template <Solver solver>
+struct SpringParameters;
+template <>
+struct alignas(8) SpringParameters<Solver::force> {
+  float stiffness;      // [N/m]
+  float length_factor;  // L(t) / L0
 };
-
-// What a spring of one material is at the present step.
-struct alignas(8) SpringLaw {
-  float hardness;  // stiffness [N/m], or 1/(k dt^2) [1/kg]
-  float factor;    // L / L0
+template <>
+struct alignas(8) SpringParameters<Solver::xpbd> {
+  float compliance;     // 1/(k dt^2) [1/kg]
+  float length_factor;  // L(t) / L0
 };
+inline constexpr std::uint32_t parameter_bytes = 8;
+static_assert(sizeof(SpringParameters<Solver::force>) == parameter_bytes);
+static_assert(sizeof(SpringParameters<Solver::xpbd>) == parameter_bytes);
 
-// Shared memory of a block, in this order: material tables, failures, rest lengths, contact buckets and lists, working
-// memory of its robots. Ends of the parts in bytes.
+// Ends of the parts of shared memory [bytes].
 struct BlockLayout {
   std::uint32_t tables, failures, lengths, contacts, total;
 };
 
-// Pairs of near masses that are kept; if there are more, the cell grid is asked every step.
+// Pairs of near masses that are listed. If there are more, every step searches the cell grid.
 inline constexpr std::uint32_t contact_list_size = 1023;
 
-// Buckets of the grid in which a robot of so many groups looks for masses that touch; 0 where they may not.
-inline std::uint32_t contact_buckets(const Environment& environment, std::uint32_t groups) {
+// Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without self-collision.
+inline std::uint32_t contact_buckets(const Environment& environment, std::uint32_t tiles) {
   const Land* land = std::get_if<Land>(&environment);
-  return land && land->self_collision && land->contact_stiffness > 0 ? std::bit_ceil(groups * lanes) : 0;
+  return land && land->self_collision && land->contact_stiffness > 0 ? std::bit_ceil(tiles * lanes) : 0;
 }
 
-// The list and its length, the buckets, and a link a mass (contacts.cuh).
-MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint32_t groups) {
-  return buckets == 0 ? 0 : (1 + contact_list_size + buckets) * 4 + groups * lanes * 2;
+// Bytes of ContactMemory (contacts.cuh).
+MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint32_t tiles) {
+  return buckets == 0 ? 0 : (1 + contact_list_size + buckets) * 4 + tiles * lanes * 2;
 }
 
-MERCURY_HOST_DEVICE BlockLayout block_layout(const Shape& shape, std::uint32_t groups, std::uint32_t rows) {
+// `tiles` = of the largest robot, `fields` = of a tile in working memory.
+MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, std::uint32_t tiles,
+                                             std::uint32_t fields) {
   BlockLayout layout{};
-  const std::uint32_t tables = shape.shared_table ? 1 : shape.robots_per_block;
-  layout.tables = (tables * max_materials * static_cast<std::uint32_t>(sizeof(SpringLaw))) << shape.table_copy_bits;
-  layout.failures = layout.tables + shape.robots_per_block * 16;
-  layout.lengths = layout.failures + (shape.record_words == 1 ? shape.robots_per_block * max_lengths * 4 : 0);
+  const std::uint32_t tables = launch.shared_table ? 1 : launch.robots_per_block;
+  layout.tables = (tables * max_materials * parameter_bytes) << launch.table_copy_bits;
+  layout.failures = layout.tables + launch.robots_per_block * 16;
+  layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.contacts = layout.lengths;
-  if (shape.contacts_on_chip) layout.contacts += shape.robots_per_block * contact_bytes(shape.contact_buckets, groups);
+  if (launch.contacts_on_chip)
+    layout.contacts += launch.robots_per_block * contact_bytes(launch.contact_buckets, tiles);
   layout.total = layout.contacts;
-  if (shape.on_chip) layout.total += shape.robots_per_block * groups * rows * row_bytes;
+  if (launch.on_chip) layout.total += launch.robots_per_block * tiles * fields * field_bytes;
   return layout;
 }
 

@@ -1,147 +1,121 @@
 // SPDX-License-Identifier: Apache-2.0
-// One robot of a block, as one of its threads sees it: where its masses stand, and a walk over their springs.
-//
-// A block steps `robots_per_block` robots side by side; each has `warps_per_robot` warps, which share its groups of 32
-// masses among them.
+// One robot of a block as one of its threads sees it: its tiles, its masses, and a walk over its springs.
 #pragma once
 
-#include "sim/cuda/block.cuh"
-#include "sim/cuda/mass_memory.cuh"
+#include "sim/cuda/thread_context.cuh"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::cuda {
 
-// A thread's place at a robot. Shared addresses: `table` of this lane's copy of the material table, `lengths` of the
-// rest lengths.
-template <class Memory>
-struct Seat {
-  std::uint32_t robot, warp, lane;
-  typename Memory::Address masses;
-  std::uint32_t table, lengths;
-};
-
-extern __shared__ char shared_memory[];
-
-__device__ inline std::uint32_t shared_address(const void* pointer) {
-  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
-}
-
-// What a thread finds where in its block.
-template <class Memory>
-struct BlockPlaces {
-  std::uint32_t first_robot;
-  bool has_robot;  // the last block may have seats left
-  SpringLaw* table;
-  float* lengths;
-  Failure* failure;
-  char* contacts;
-  Seat<Memory> seat;
-
-  // `rows` = of a group of masses.
-  __device__ BlockPlaces(const StepArguments& arguments, std::uint32_t rows) {
-    const Shape& shape = arguments.shape;
-    const BatchView& batch = arguments.batch;
-    const std::uint32_t block_warp = threadIdx.x / lanes, number = block_warp / shape.warps_per_robot;
-    const std::uint32_t table_copies = 1u << shape.table_copy_bits;
-    const BlockLayout layout = block_layout(shape, batch.group_stride, rows);
-    const std::uint32_t working_bytes = batch.group_stride * rows * row_bytes;
-    first_robot = blockIdx.x * shape.robots_per_block;
-    has_robot = first_robot + number < batch.robot_count;
-    seat.robot = min(first_robot + number, batch.robot_count - 1);
-    seat.warp = block_warp % shape.warps_per_robot;
-    seat.lane = threadIdx.x % lanes;
-
-    char* const workspace = batch.workspace + std::size_t{seat.robot} * batch.workspace_stride;
-    if constexpr (Memory::on_chip)
-      seat.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
-    else
-      seat.masses = workspace;
-    contacts = shape.contacts_on_chip
-                   ? shared_memory + layout.lengths + number * contact_bytes(shape.contact_buckets, batch.group_stride)
-                   : workspace + (Memory::on_chip ? 0 : working_bytes);
-    table =
-        reinterpret_cast<SpringLaw*>(shared_memory) + (shape.shared_table ? 0 : number * table_copies * max_materials);
-    seat.table = shared_address(table + seat.lane % table_copies);
-    failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
-    lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
-    seat.lengths = shared_address(lengths);
-  }
-};
-
-template <Solver solver, class Memory, int record_words>
+template <Solver solver_, class Memory_, int record_words>
 class BlockRobot {
  public:
-  static constexpr std::uint32_t rows = working_rows(solver, Memory::keeps_splits);
-  static constexpr std::uint32_t group_bytes = rows * row_bytes;
-  using Record = std::conditional_t<record_words == 1, uint1, uint2>;
+  static constexpr Solver solver = solver_;
+  using Memory = Memory_;
+  static constexpr std::uint32_t fields = working_fields(solver, Memory::keeps_valence);
+  static constexpr std::uint32_t tile_bytes = fields * field_bytes;
+  using SpringRecord = std::conditional_t<record_words == 1, uint1, uint2>;  // .x = key, .y = rest length (layout.h)
 
-  __device__ BlockRobot(const StepArguments& arguments, const Seat<Memory>& seat)
-      : arguments_(arguments), record_(arguments.batch.robots[seat.robot]), seat_(seat) {
-    const std::uint32_t turns = (record_.groups + warps() - 1) / warps();
-    first_group_ = min(seat.warp * turns, record_.groups);
-    last_group_ = min(first_group_ + turns, record_.groups);
+  __device__ BlockRobot(const StepArguments& arguments, const ThreadContext<Memory>& context)
+      : arguments_(arguments), header_(arguments.batch.robots[context.robot]), context_(context) {
+    const std::uint32_t tiles_per_warp = (header_.tiles + warps() - 1) / warps();
+    first_tile_ = min(context.warp * tiles_per_warp, header_.tiles);
+    last_tile_ = min(first_tile_ + tiles_per_warp, header_.tiles);
   }
 
- protected:
-  __device__ std::uint32_t warps() const { return arguments_.shape.warps_per_robot; }
-  __device__ std::uint32_t thread() const { return seat_.warp * lanes + seat_.lane; }
-  __device__ Mass<Memory> own(std::uint32_t group) const {
-    return {seat_.masses + group * group_bytes + seat_.lane * 4};
-  }
-  __device__ bool is_mass(std::uint32_t group) const { return group * lanes + seat_.lane < record_.masses; }
-  __device__ static std::uint32_t offset_of(std::uint32_t mass) {
-    return mass / lanes * group_bytes + mass % lanes * 4;
-  }
-  __device__ Mass<Memory> at(std::uint32_t mass) const { return {seat_.masses + offset_of(mass)}; }
+  __device__ const StepArguments& arguments() const { return arguments_; }
+  __device__ const RobotHeader& header() const { return header_; }
+  __device__ const ThreadContext<Memory>& context() const { return context_; }
+  __device__ std::uint32_t warps() const { return arguments_.launch.warps_per_robot; }
+  __device__ std::uint32_t threads() const { return warps() * lanes; }
+  __device__ std::uint32_t thread() const { return context_.warp * lanes + context_.lane; }
 
-  __device__ float* state(std::uint32_t group) const {
-    const std::size_t place = std::size_t{seat_.robot} * arguments_.batch.group_stride + group;
-    return arguments_.batch.state + place * state_rows * lanes + seat_.lane;
+  // This warp's tiles are [first_tile, last_tile).
+  __device__ std::uint32_t first_tile() const { return first_tile_; }
+  __device__ std::uint32_t last_tile() const { return last_tile_; }
+
+  // This thread's slot in a tile; the last tile has slots without a mass.
+  __device__ std::uint32_t own_slot(std::uint32_t tile) const { return tile * lanes + context_.lane; }
+  __device__ bool has_mass(std::uint32_t tile) const { return own_slot(tile) < header_.masses; }
+  __device__ Mass<Memory> own_mass(std::uint32_t tile) const {
+    return {context_.masses + tile * tile_bytes + context_.lane * 4};
   }
+  __device__ Mass<Memory> mass_at(std::uint32_t slot) const { return {context_.masses + byte_offset(slot)}; }
+  __device__ static std::uint32_t byte_offset(std::uint32_t slot) {
+    return slot / lanes * tile_bytes + slot % lanes * 4;
+  }
+
+  // This thread's part of a tile's state in device memory.
+  __device__ float* state(std::uint32_t tile) const {
+    const std::size_t index = std::size_t{context_.robot} * arguments_.batch.tile_stride + tile;
+    return arguments_.batch.state + index * state_fields * lanes + context_.lane;
+  }
+  // The index of this thread's slot in a tile among those of the batch.
+  __device__ std::size_t slot_in_batch(std::uint32_t tile) const {
+    return (std::size_t{context_.robot} * arguments_.batch.tile_stride + tile) * lanes + context_.lane;
+  }
+  // The number of springs at a slot.
+  __device__ float load_valence(std::uint32_t slot) const {
+    const float* valences =
+        arguments_.batch.valences + std::size_t{context_.robot} * arguments_.batch.tile_stride * lanes;
+    return __ldg(valences + slot);
+  }
+  // What this thread's sum in a tile starts with (springs.cuh).
+  __device__ int incoming_bias(std::uint32_t tile) const {
+    return -static_cast<int>(__ldg(arguments_.batch.incoming_counts + slot_in_batch(tile))) * rounding_magic_bits;
+  }
+
   __device__ const std::uint32_t* row_start() const {
-    return arguments_.batch.row_start + std::size_t{seat_.robot} * (arguments_.batch.group_stride + 1);
+    return arguments_.batch.row_start + std::size_t{context_.robot} * (arguments_.batch.tile_stride + 1);
   }
-  __device__ const Record* springs() const {
-    return reinterpret_cast<const Record*>(arguments_.batch.springs) +
-           std::size_t{seat_.robot} * arguments_.batch.row_stride * lanes;
-  }
-  __device__ Mass<Memory> partner_of(const Record& record) const {
-    if constexpr (Memory::on_chip)
-      return {seat_.masses + __byte_perm(record.x, 0, 0x4432) * 4};  // one instruction less than record.x >> 16
-    else
-      return at(record.x >> 16);
-  }
-  // What springs give is in units of fixed point: their laws are those of the material table, which robots may share,
-  // and their lengths are multiplied by the units in a newton, or in a metre of correction, a power of two.
-  __device__ float unit() const { return solver == Solver::force ? record_.force_scale : record_.correction_scale; }
-  __device__ float rest_length_of(const Record& record) const {
-    if constexpr (record_words == 1)
-      return OnChip::load(seat_.lengths + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
-    else
-      return unit() * __uint_as_float(record.y);
-  }
-  __device__ static std::uint32_t material_of(const Record& record) { return record.x & 0xff; }
-  // .x = hardness, .y = factor
-  __device__ float2 law_of(const Record& record) const {
-    return load_pair(seat_.table + material_of(record) * law_bytes());
+  __device__ const SpringRecord* springs() const {
+    return reinterpret_cast<const SpringRecord*>(arguments_.batch.springs) +
+           std::size_t{context_.robot} * arguments_.batch.row_stride * lanes;
   }
 
-  // begin(group, mass, rows) makes what a mass's springs are collected in, add(integral_constant count, records, that)
-  // adds up to four rows to it, and end(mass, that) ends it, for each of this thread's masses. Their rows follow one
-  // another, and the records of the next rows are on their way while the present ones are added.
+  // Units of fixed point per newton, or per metre of correction: a power of two. Rest lengths and the 1 of the
+  // constraint ratio are multiplied by it instead of the stiffnesses, so that robots can share a material table.
+  __device__ float scale() const { return solver == Solver::force ? header_.force_scale : header_.correction_scale; }
+
+  // What a spring record says. __byte_perm extracts a field in one instruction.
+  __device__ Mass<Memory> partner_of(const SpringRecord& record) const {
+    if constexpr (Memory::on_chip)
+      return {context_.masses + __byte_perm(record.x, 0, 0x4432) * 4};  // record.x >> 16
+    else
+      return mass_at(record.x >> 16);
+  }
+  __device__ float scaled_rest_length_of(const SpringRecord& record) const {
+    if constexpr (record_words == 1)
+      return OnChip::load(context_.lengths + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
+    else
+      return scale() * __uint_as_float(record.y);
+  }
+  __device__ static std::uint32_t material_of(const SpringRecord& record) { return record.x & 0xff; }
+  __device__ SpringParameters<solver> parameters_of(const SpringRecord& record) const {
+    const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
+    const float2 pair = load_pair(context_.material_table + material_of(record) * bytes_per_material);
+    return {pair.x, pair.y};
+  }
+
+  // Visits the springs that this thread's masses own. For each mass it calls
+  //   auto sum = begin(tile, mass, rows)                       with the number of rows of the tile,
+  //   add(integral_constant<int, count>, records, sum)         for its springs, up to four at once,
+  //   end(mass, sum).
+  // The rows of all tiles follow one another: the records of the next rows are under way while `add` handles these.
   template <class Begin, class Add, class End>
-  __device__ void for_each_rows(const Begin& begin, const Add& add, const End& end) const {
-    if (first_group_ == last_group_) return;
+  __device__ void walk_springs(const Begin& begin, const Add& add, const End& end) const {
+    if (first_tile_ == last_tile_) return;
     const std::uint32_t* start = row_start();
-    std::uint32_t row = start[first_group_];
-    const Record* next = springs() + std::size_t{row} * lanes + seat_.lane;
-    Record records[rows_at_once];
+    std::uint32_t row = start[first_tile_];
+    const SpringRecord* next = springs() + std::size_t{row} * lanes + context_.lane;
+    SpringRecord records[rows_at_once];
     load_records(next, records);
-    for (std::uint32_t g = first_group_; g < last_group_; ++g) {
-      const Mass<Memory> mass = own(g);
-      const std::uint32_t last = start[g + 1];
-      auto sum = begin(g, mass, last - row);
+    for (std::uint32_t tile = first_tile_; tile < last_tile_; ++tile) {
+      const Mass<Memory> mass = own_mass(tile);
+      const std::uint32_t last = start[tile + 1];
+      auto sum = begin(tile, mass, last - row);
       for (; row < last; row += rows_at_once) {
-        Record present[rows_at_once];
+        SpringRecord present[rows_at_once];
 #pragma unroll
         for (int i = 0; i < rows_at_once; ++i) present[i] = records[i];
         const std::uint32_t left = last - row;
@@ -162,12 +136,8 @@ class BlockRobot {
   }
 
  private:
-  __device__ std::uint32_t law_bytes() const {
-    return static_cast<std::uint32_t>(sizeof(SpringLaw)) << arguments_.shape.table_copy_bits;
-  }
-
-  // Past the L1 cache, which is left to what is read again.
-  __device__ static void load_records(const Record* from, Record (&records)[rows_at_once]) {
+  // Bypasses the L1 cache, which is left to data that is read again.
+  __device__ static void load_records(const SpringRecord* from, SpringRecord (&records)[rows_at_once]) {
 #pragma unroll
     for (int i = 0; i < rows_at_once; ++i) {
       if constexpr (record_words == 1)
@@ -179,11 +149,10 @@ class BlockRobot {
     }
   }
 
- protected:
   const StepArguments& arguments_;
-  const RobotRecord record_;
-  const Seat<Memory> seat_;
-  std::uint32_t first_group_, last_group_;
+  const RobotHeader header_;
+  const ThreadContext<Memory> context_;
+  std::uint32_t first_tile_, last_tile_;
 };
 
 }  // namespace mercury::cuda

@@ -9,13 +9,12 @@ namespace mercury {
 
 namespace cuda {
 
-// The different rest lengths of a robot in ascending order, 0 of empty places first; cut off behind max_lengths + 1.
 std::vector<float> lengths_of(const Robot& robot) {
   std::vector<float> lengths{0};
   for (const Spring& spring : robot.springs) {
-    const auto place = std::ranges::lower_bound(lengths, spring.rest_length);
-    if (place != lengths.end() && *place == spring.rest_length) continue;
-    lengths.insert(place, spring.rest_length);
+    const auto at = std::ranges::lower_bound(lengths, spring.rest_length);
+    if (at != lengths.end() && *at == spring.rest_length) continue;
+    lengths.insert(at, spring.rest_length);
     if (lengths.size() > max_lengths) break;
   }
   return lengths;
@@ -25,10 +24,11 @@ std::vector<float> lengths_of(const Robot& robot) {
 
 std::size_t chip_bytes(const Robot& robot, const Configuration& configuration) {
   using namespace cuda;
-  Shape shape;
-  shape.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
-  shape.contact_buckets = contact_buckets(configuration.environment, groups_of(robot));
-  return block_layout(shape, groups_of(robot), working_rows(configuration.solver, false)).total;
+  const std::uint32_t tiles = tiles_for(robot.masses.size());
+  LaunchConfiguration launch;
+  launch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
+  launch.contact_buckets = contact_buckets(configuration.environment, tiles);
+  return block_layout(launch, tiles, working_fields(configuration.solver, false)).total;
 }
 
 }  // namespace mercury

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// How robots lie in device memory. Every robot has a chunk of each buffer, sized by the largest robot (paper, II.D).
+// The buffers of a batch in device memory. Each robot has a chunk of each buffer, sized by the largest robot (paper,
+// II.D):
 //
-// Masses stand in slots, 32 slots a group. A group is a stack of rows of 32 floats, one row a quantity, so that a slot
-// is one offset, every quantity of it lies a constant further, and a mass's bank is its slot mod 32 in every row. On
-// the device masses are named by their slots.
+//   state        | robot 0: tile 0, tile 1, ...        | robot 1: tile 0, ...   | ...
+//   springs      | robot 0: row 0, row 1, ...          | robot 1: row 0, ...    | ...
+//   face_pairs   | robot 0: face tile 0, face tile 1.. | robot 1: ...           | ...
+//
+// Spring records stream through every step, so their size decides whether those of all robots in flight fit into the L2
+// cache. A record begins with a key:
+//
+//    31              16 15           8 7            0
+//   +------------------+--------------+--------------+
+//   |     partner      | length index |   material   |
+//   +------------------+--------------+--------------+
+//
+// 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion.
+// 2. A robot with at most 256 different rest lengths keeps them in a table, and the key has the index. Its record is
+// one
+//    word, the key. In other batches a record is two words, the key (with length index 0) and the rest length.
 #pragma once
 
 #include <cstdint>
@@ -12,72 +26,33 @@
 #include "mercury/host_device.h"
 #include "mercury/material.h"
 #include "mercury/vec3.h"
-#include "sim/cuda/schedule.h"
+#include "sim/cuda/tile.h"
+#include "sim/physics/face_pairs.h"
 #include "sim/physics/muscle.h"
 
 namespace mercury::cuda {
 
-inline constexpr std::uint32_t row_bytes = lanes * 4;
-
-// Rows of a group in global memory: positions and velocities.
-inline constexpr std::uint32_t state_rows = 6;
-
-// Rows of a group while it is stepped: positions, velocities, sums, and for XPBD the number of springs at a mass.
-enum Row : std::uint32_t { row_x = 0, row_v = 3, row_sum = 6, row_splits = 9 };
-MERCURY_HOST_DEVICE constexpr std::uint32_t working_rows(Solver solver, bool keeps_splits) {
-  return solver == Solver::xpbd && keeps_splits ? 10 : 9;
-}
-
-// The slot whose working memory begins so many words behind the first one's; with 0 rows, places are slots.
-MERCURY_HOST_DEVICE constexpr std::uint32_t slot_at(std::uint32_t place, std::uint32_t rows) {
-  return rows == 0 ? place : place / (rows * lanes) * lanes + place % lanes;
-}
-
-// Which slot each mass stands in: slot 32 g + lane is the lane of group g. Within a group masses stand in their order,
-// turned on by so many lanes a group: where masses are numbered row by row, lattice neighbours in other rows would else
-// be likely to share a bank, or all corners of one kind would have even banks.
-struct SlotOrder {
-  std::uint32_t masses, turn;
-
-  MERCURY_HOST_DEVICE std::uint32_t slot_of(std::uint32_t mass) const {
-    const std::uint32_t group = mass / lanes;
-    return group * lanes + (mass % lanes + group * turn) % in_group(group);
-  }
-  MERCURY_HOST_DEVICE std::uint32_t mass_of(std::uint32_t slot) const {
-    const std::uint32_t group = slot / lanes, size = in_group(group);
-    return group * lanes + (slot % lanes + size - group * turn % size) % size;
-  }
-
- private:
-  MERCURY_HOST_DEVICE std::uint32_t in_group(std::uint32_t group) const {
-    const std::uint32_t rest = masses - group * lanes;
-    return rest < lanes ? rest : lanes;
-  }
-};
-
-// A scheduled spring. `key` = partner << 16 | length << 8 | material. The partner is a slot or, on the chip, the
-// slot's offset in the working memory, in words. Robots that have at most 256 different rest lengths name theirs by
-// number, which makes a record 4 bytes; others have it behind the key in 8 bytes, and no number. Records stream through
-// every step, so their size decides whether those of all robots in flight fit into the L2 cache.
+// Rest lengths in a robot's table.
 inline constexpr std::uint32_t max_lengths = 256;
 
-struct RobotRecord {
-  std::uint32_t masses, groups, face_pairs, springs;
-  std::uint32_t turn;                   // SlotOrder
+// Rows of springs that a warp loads and computes together. After the rows of the last robot come as many unused ones,
+// since a warp reads ahead.
+inline constexpr int rows_at_once = 4;
+
+struct RobotHeader {
+  std::uint32_t masses, tiles, face_pairs, springs;
+  std::uint32_t lane_shift;             // SlotOrder
   float force_scale, correction_scale;  // FixedPointScale
   float squared_stretch_limit;          // [m2]
   float contact_distance;               // [m]
 };
 
-MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotRecord& record) { return {record.masses, record.turn}; }
+MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotHeader& header) { return {header.masses, header.lane_shift}; }
 
-// Rows of springs that a warp has in hand at once; behind the last robot's rows stand as many that are read but unused.
-inline constexpr int rows_at_once = 4;
-
-// What became of a robot: the step is counted from the start of the simulation, -1 = has not exploded.
+// What became of a robot.
 struct DeviceStatus {
-  long long exploded_step;
-  std::uint32_t bad_mass;  // its number, not its slot
+  long long exploded_step;  // from the start of the simulation; -1 = has not exploded
+  std::uint32_t bad_mass;   // its number, not its slot
 };
 
 struct DevicePerturbation {
@@ -86,23 +61,26 @@ struct DevicePerturbation {
   float stiffness;
 };
 
-// Pointers and strides of a batch in device memory; strides in elements, one chunk a robot.
+// Pointers and strides of a batch in device memory. A stride is the length of one robot's chunk, in units of what it
+// counts.
 struct BatchView {
-  const RobotRecord* robots;
+  const RobotHeader* robots;
   DeviceStatus* statuses;
-  float* state;                    // [robot][group][state_rows][32]
-  const std::uint32_t* springs;    // [robot][row][32][record_words], keys, and rest lengths in wide records
-  const float* lengths;            // [robot][max_lengths], for narrow records
-  const std::uint32_t* row_start;  // [robot][group + 1]
+  float* state;                    // [robot][tile][state_fields][32]
+  const std::uint32_t* springs;    // [robot][row][32][record_words]
+  const float* lengths;            // [robot][max_lengths], if record_words is 1 [m]
+  const std::uint32_t* row_start;  // [robot][tile + 1]
   const FacePair* face_pairs;      // [robot][pair]
-  const float* splits;             // [robot][slot], springs at a mass
-  const std::uint32_t* arrivals;   // [robot][slot], places of the schedule whose partner a slot is
-  const Material* materials;       // [robot][max_materials]
-  MusclePhase* phases;             // [robot][max_materials], for the present clock base
+  const float* valences;           // [robot][slot]
+  // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
+  const std::uint32_t* incoming_counts;
+  const Material* materials;  // [robot][max_materials]
+  MusclePhase* phases;        // [robot][max_materials], for the present clock base
   const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
-  std::uint32_t robot_count, group_stride, row_stride, face_stride, perturbation_count, workspace_stride;
-  std::uint32_t record_words;  // 1 or 2
+  std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;
+  std::uint32_t workspace_stride;  // [bytes]
+  std::uint32_t record_words;      // 1 or 2
 };
 
 }  // namespace mercury::cuda

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where masses stand while they are stepped: on the chip, or in device memory if they are too many. All look alike to
-// the step kernel: an address, and rows at constant distances from it.
+// Working memory of the masses: shared memory, or device memory for robots that are too large. Both offer the same
+// interface to the step kernel: an address per slot, and fields at constant offsets from it (tile.h).
 #pragma once
 
-#include "sim/cuda/layout.h"
+#include "mercury/vec3.h"
+#include "sim/cuda/tile.h"
 
 namespace mercury::cuda {
 
-// Shared memory by its own 32-bit addresses. Written in assembly so that the order of accesses is the source's: the
-// compiler would keep every load behind the additions before it, which might concern the same place but never do.
+// Shared memory, by its own 32-bit addresses. Assembly keeps the accesses in the order of the source: the compiler
+// cannot know that a load never depends on the additions before it, and would wait for them.
 class OnChip {
  public:
   using Address = std::uint32_t;
   static constexpr bool on_chip = true;
-  static constexpr bool keeps_splits = true;  // XPBD's number of springs at a mass stands beside the mass
+  static constexpr bool keeps_valence = true;  // in field_valence, for XPBD
 
   __device__ static float load(Address at, std::uint32_t offset) {
     float value;
@@ -28,17 +29,18 @@ class OnChip {
   }
 };
 
-// For robots that are too large by this one row: the numbers of springs are read from device memory.
-class OnChipWithoutSplits : public OnChip {
+// For robots that are too large by this one field: the valences are read from device memory.
+class OnChipWithoutValence : public OnChip {
  public:
-  static constexpr bool keeps_splits = false;
+  static constexpr bool keeps_valence = false;
 };
 
+// Device memory.
 class OffChip {
  public:
   using Address = char*;
   static constexpr bool on_chip = false;
-  static constexpr bool keeps_splits = true;
+  static constexpr bool keeps_valence = true;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     return *reinterpret_cast<volatile float*>(at + offset);
@@ -51,41 +53,37 @@ class OffChip {
   }
 };
 
-// A float2 of shared memory.
+// Two floats of shared memory in one instruction.
 __device__ inline float2 load_pair(std::uint32_t at) {
   float2 value;
   asm volatile("ld.shared.v2.f32 {%0, %1}, [%2];" : "=f"(value.x), "=f"(value.y) : "r"(at));
   return value;
 }
 
-// One mass: three floats or integers in consecutive rows.
+// A mass in working memory.
 template <class Memory>
 struct Mass {
   typename Memory::Address at;
 
-  __device__ Vec3 vector(std::uint32_t row) const {
-    return {Memory::load(at, row * row_bytes), Memory::load(at, (row + 1) * row_bytes),
-            Memory::load(at, (row + 2) * row_bytes)};
+  // Three fields as a vector, from `field` on.
+  __device__ Vec3 vector(std::uint32_t field) const { return {value(field), value(field + 1), value(field + 2)}; }
+  __device__ void set_vector(std::uint32_t field, Vec3 v) const {
+    set_value(field, v.x);
+    set_value(field + 1, v.y);
+    set_value(field + 2, v.z);
   }
-  __device__ void set_vector(std::uint32_t row, Vec3 value) const {
-    Memory::store(at, row * row_bytes, value.x);
-    Memory::store(at, (row + 1) * row_bytes, value.y);
-    Memory::store(at, (row + 2) * row_bytes, value.z);
-  }
-  __device__ float value(std::uint32_t row) const { return Memory::load(at, row * row_bytes); }
-  __device__ void set_value(std::uint32_t row, float value) const { Memory::store(at, row * row_bytes, value); }
+  __device__ float value(std::uint32_t field) const { return Memory::load(at, field * field_bytes); }
+  __device__ void set_value(std::uint32_t field, float value) const { Memory::store(at, field * field_bytes, value); }
 
-  __device__ int sum(std::uint32_t axis) const {
-    return __float_as_int(Memory::load(at, (row_sum + axis) * row_bytes));
-  }
-  __device__ void set_sum(int value) const {
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-      Memory::store(at, (row_sum + axis) * row_bytes, __int_as_float(value));
+  // The sum of forces or corrections, in units of fixed point.
+  __device__ int sum(std::uint32_t axis) const { return __float_as_int(value(field_sum + axis)); }
+  __device__ void set_sum(int sum) const {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) set_value(field_sum + axis, __int_as_float(sum));
   }
   __device__ void add_to_sum(int x, int y, int z) const {
-    Memory::add(at, row_sum * row_bytes, x);
-    Memory::add(at, (row_sum + 1) * row_bytes, y);
-    Memory::add(at, (row_sum + 2) * row_bytes, z);
+    Memory::add(at, field_sum * field_bytes, x);
+    Memory::add(at, (field_sum + 1) * field_bytes, y);
+    Memory::add(at, (field_sum + 2) * field_bytes, z);
   }
   __device__ void add_to_sum(Vec3 units) const {
     add_to_sum(round_to_int(units.x), round_to_int(units.y), round_to_int(units.z));

@@ -1,62 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-// The material table of a block: what every material's springs are at the present step.
+// The material table of a block: the parameters of every material's springs in the present step.
+//
+// Copies are interleaved: the parameters of material m in copy c are at index m * copies + c. With 16 copies, lane i of
+// a half-warp reads copy i and no bank twice, whatever its material is (block_layout.h).
 #pragma once
 
-#include "sim/cuda/block.cuh"
+#include "sim/cuda/block_layout.h"
+#include "sim/cuda/step.h"
 
 namespace mercury::cuda {
 
-// Each warp keeps a share of the table's materials in registers, one a lane and turn, and writes all their copies: lane
-// i of a half-warp then reads copy i, whatever material it has, and no bank twice.
+// A warp takes every `warps`th chunk of 32 materials, one per lane, and writes all their copies.
+template <Solver solver>
 class MaterialTable {
  public:
-  // `warps` of them work on this table; at least 2.
+  using Parameters = SpringParameters<solver>;
+
+  // `warps` = those that share this table; `warp` = the number of this one among them.
   __device__ MaterialTable(const StepArguments& arguments, std::uint32_t robot, std::uint32_t warp, std::uint32_t warps,
-                           std::uint32_t lane, SpringLaw* table)
-      : warp_(warp), warps_(warps), lane_(lane), copies_(1u << arguments.shape.table_copy_bits),
-        copy_bits_(arguments.shape.table_copy_bits), table_(table),
+                           std::uint32_t lane, Parameters* table)
+      : warp_(warp), warps_(warps), lane_(lane), copies_(1u << arguments.launch.table_copy_bits),
+        copy_bits_(arguments.launch.table_copy_bits), table_(table),
         materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
         phases_(arguments.batch.phases + std::size_t{robot} * max_materials) {}
 
-  // Hardness of every material, and the factors of the first step.
-  template <Solver solver>
+  // Writes the parameters of the launch's first step.
   __device__ void fill(const StepArguments& arguments) {
-    for (std::uint32_t block = warp_; block < blocks; block += warps_) {
-      const Material material = materials_[block * lanes + lane_];
+    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+      const Material material = materials_[chunk * lanes + lane_];
       const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
-      float hardness = static_cast<float>(stiffness);
+      float coefficient = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
-        hardness = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
+        coefficient = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       for (std::uint32_t copy = 0; copy < copies_; ++copy)
-        table_[(block * lanes + lane_) * copies_ + copy].hardness = hardness;
+        set_coefficient(table_[(chunk * lanes + lane_) * copies_ + copy], coefficient);
     }
     update(arguments, 0);
   }
 
-  // The factors at `step` steps from the launch's first.
+  // Writes the length factors of this many steps after the launch's first.
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
-    for (std::uint32_t block = warp_; block < blocks; block += warps_) {
-      const float amplitude = materials_[block * lanes + lane_].amplitude;
+    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+      const float amplitude = materials_[chunk * lanes + lane_].amplitude;
       if (step > 0 && !__any_sync(0xffffffffu, amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-      spread(block, muscle_factor(amplitude, phase_at(phases_[block * lanes + lane_], now)));
+      spread(chunk, muscle_factor(amplitude, phase_at(phases_[chunk * lanes + lane_], now)));
     }
   }
 
  private:
-  static constexpr std::uint32_t blocks = max_materials / lanes;
+  static constexpr std::uint32_t chunks = max_materials / lanes;
 
-  __device__ void spread(std::uint32_t block, float factor) {
-    SpringLaw* to = table_ + block * lanes * copies_ + lane_;
-    const std::uint32_t sources_a_turn = lanes >> copy_bits_;
+  __device__ static void set_coefficient(Parameters& parameters, float coefficient) {
+    if constexpr (solver == Solver::force)
+      parameters.stiffness = coefficient;
+    else
+      parameters.compliance = coefficient;
+  }
+
+  // Writes each lane's factor to all copies of its material. In a turn the warp writes 32 consecutive entries, which
+  // belong to 32 / copies materials.
+  __device__ void spread(std::uint32_t chunk, float factor) {
+    Parameters* to = table_ + chunk * lanes * copies_ + lane_;
+    const std::uint32_t sources_per_turn = lanes >> copy_bits_;
     std::uint32_t source = lane_ >> copy_bits_;
 #pragma unroll 4
-    for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_a_turn, to += lanes)
-      to->factor = __shfl_sync(0xffffffffu, factor, source);
+    for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_per_turn, to += lanes)
+      to->length_factor = __shfl_sync(0xffffffffu, factor, source);
   }
 
   const std::uint32_t warp_, warps_, lane_, copies_, copy_bits_;
-  SpringLaw* const table_;
+  Parameters* const table_;
   const Material* const materials_;
   const MusclePhase* const phases_;
 };

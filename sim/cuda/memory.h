@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of device memory, and errors.
+// Owners of device memory and events, and the check of every CUDA call.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -13,21 +13,21 @@
 
 namespace mercury::cuda {
 
-// Throws DeviceError saying what was tried.
+// Throws DeviceError if a call failed. `what` says what the call was for.
 inline void check(cudaError_t error, const char* what) {
   if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
 }
 
-// A point in the device's stream of work.
+// A moment in the stream of work of the device.
 class Event {
  public:
-  Event() { check(cudaEventCreate(&event_), "making an event"); }
+  Event() { check(cudaEventCreate(&event_), "creating an event"); }
   ~Event() { cudaEventDestroy(event_); }
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
 
   void record() { check(cudaEventRecord(event_), "recording an event"); }
-  // Waits for this event.
+  // The time from `start` to this event [s]. Waits for this event.
   double seconds_since(const Event& start) const {
     float milliseconds = 0;
     check(cudaEventSynchronize(event_), "stepping");
@@ -85,7 +85,7 @@ class DeviceArray {
   std::size_t size_ = 0;
 };
 
-// An array of host memory that kernels write to directly: a few numbers a robot come back without a copy.
+// An array in host memory that kernels write to directly. It returns a few numbers per robot without a copy.
 template <class T>
 class MappedArray {
  public:

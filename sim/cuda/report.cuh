@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telemetry of a robot from the masses on the chip, where its last step left it.
+// Telemetry of a robot, computed from the masses in working memory after the last step of a launch.
+//
+//   measure_springs   each lane     energy and largest strain of the springs that its masses own  -> fields of the
+//   masses
+//   -- barrier --
+//   reduce            each warp     one or more quantities, summed over all masses                -> the staged report
+//   -- barrier --
+//   write             each thread   one word of the staged report                                 -> host memory
+//
+// 1. The order of every sum depends only on the robot, so telemetry is reproducible too.
+// 2. The sums of fixed point are done with, so their fields hold the results of the first two stages.
+// 3. The report lies in mapped host memory. Staging it first lets the threads write it in one transaction.
 #pragma once
 
 #include <cstddef>
@@ -10,103 +21,111 @@
 
 namespace mercury::cuda {
 
-// The order of every sum is fixed by the robot alone.
-template <Solver solver, class Memory, int record_words>
-class RobotReporter : public BlockRobot<solver, Memory, record_words> {
-  using Robot = BlockRobot<solver, Memory, record_words>;
-  using typename Robot::Record, Robot::arguments_, Robot::record_, Robot::seat_, Robot::warps, Robot::thread,
-      Robot::own, Robot::partner_of, Robot::rest_length_of, Robot::material_of, Robot::unit, Robot::law_of,
-      Robot::for_each_rows;
-
+template <class Robot>
+class RobotReporter {
  public:
-  __device__ explicit RobotReporter(const Robot& robot) : Robot(robot) {}
+  __device__ explicit RobotReporter(const Robot& robot) : robot_(robot) {}
 
-  // Measures the springs of this warp's masses. What each mass owns stands behind its state from then on.
   __device__ void measure_springs() const {
-    for_each_rows(
+    robot_.walk_springs(
         [](std::uint32_t, const Mass<Memory>& mass, std::uint32_t) {
-          return Owned{mass.vector(row_x), 0, 0};
+          return Owner{mass.vector(field_x), 0, 0};
         },
-        [&](auto count, const Record* records, Owned& owned) { measure<decltype(count)::value>(records, owned); },
-        [](const Mass<Memory>& mass, const Owned& owned) {
-          mass.set_value(row_energy, owned.energy);
-          mass.set_value(row_strain, owned.strain);
+        [&](auto count, const SpringRecord* records, Owner& owner) { measure<decltype(count)::value>(records, owner); },
+        [](const Mass<Memory>& mass, const Owner& owner) {
+          mass.set_value(field_energy, owner.energy);
+          mass.set_value(field_strain, owner.strain);
         });
   }
 
-  // Behind a barrier: the sums over all masses, each by one warp, which lays it ready at the robot's first group.
   __device__ void reduce() const {
-    if (thread() == 0) {  // who stored the status
-      const DeviceStatus status = arguments_.batch.statuses[seat_.robot];
-      lay(offsetof(DeviceTelemetry, bad_mass), static_cast<int>(status.bad_mass));
-      lay(offsetof(DeviceTelemetry, exploded_step), status.exploded_step);
+    if (robot_.thread() == 0) {  // this thread stored the status
+      const DeviceStatus status = robot_.arguments().batch.statuses[robot_.context().robot];
+      stage(offsetof(DeviceTelemetry, bad_mass), static_cast<int>(status.bad_mass));
+      stage(offsetof(DeviceTelemetry, exploded_step), status.exploded_step);
     }
-    const double share = 1.0 / record_.masses;
-    for (std::uint32_t which = seat_.warp; which < quantities; which += warps()) {
-      if (which == largest_strain)
-        lay(offsetof(DeviceTelemetry, largest_strain), __float_as_int(largest()));
-      else if (which == kinetic_energy)
-        lay(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(sum(which)));
-      else if (which == elastic_energy)
-        lay(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(energy_of_unit() * sum(which)));
-      else  // the components of two vectors, as they stand at a mass
-        lay(offsetof(DeviceTelemetry, center_of_mass) + 4 * which,
-            __float_as_int(static_cast<float>(share * sum(which))));
+    const double share = 1.0 / robot_.header().masses;
+    for (std::uint32_t quantity = robot_.context().warp; quantity < quantities; quantity += robot_.warps()) {
+      if (quantity == largest_strain)
+        stage(offsetof(DeviceTelemetry, largest_strain), __float_as_int(largest()));
+      else if (quantity == kinetic_energy)
+        stage(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(sum(quantity)));
+      else if (quantity == elastic_energy)
+        stage(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(energy_unit() * sum(quantity)));
+      else  // a component of the center of mass or of the velocity, which is also the number of a field
+        stage(offsetof(DeviceTelemetry, center_of_mass) + 4 * quantity,
+              __float_as_int(static_cast<float>(share * sum(quantity))));
     }
   }
 
-  // Behind another barrier.
   __device__ void write(DeviceTelemetry& out) const {
-    if (thread() < sizeof(DeviceTelemetry) / 4)
-      reinterpret_cast<float*>(&out)[thread()] = ready(4 * thread()).value(row_ready);
+    if (robot_.thread() < sizeof(DeviceTelemetry) / 4)
+      reinterpret_cast<float*>(&out)[robot_.thread()] = staged(4 * robot_.thread()).value(field_staged);
   }
 
  private:
-  static constexpr std::uint32_t row_energy = row_sum, row_strain = row_sum + 1, row_ready = row_sum + 2;
+  static constexpr Solver solver = Robot::solver;
+  using Memory = typename Robot::Memory;
+  using SpringRecord = typename Robot::SpringRecord;
+
+  static constexpr std::uint32_t field_energy = field_sum, field_strain = field_sum + 1, field_staged = field_sum + 2;
   enum Quantity : std::uint32_t { kinetic_energy = 6, elastic_energy = 7, largest_strain = 8, quantities = 9 };
 
-  // Of the springs that a mass owns; energies in units of energy_of_unit().
-  struct Owned {
+  // A mass while the springs that it owns are measured.
+  struct Owner {
     Vec3 x;
-    float energy, strain;
+    float energy;  // in units of energy_unit()
+    float strain;
+  };
+
+  struct LoadedSpring {
+    float rest_length;
+    Vec3 d;
+    SpringParameters<solver> parameters;
   };
 
   template <int count>
-  __device__ void measure(const Record* records, Owned& owned) const {
-    Vec3 d[count];
-    float2 law[count];
-    float rest_length[count];
+  __device__ void measure(const SpringRecord* records, Owner& owner) const {
+    LoadedSpring springs[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      rest_length[i] = rest_length_of(records[i]) * (1 / unit());
-      d[i] = owned.x - partner_of(records[i]).vector(row_x);
-      law[i] = law_of(records[i]);
+      springs[i].rest_length = robot_.scaled_rest_length_of(records[i]) * (1 / robot_.scale());
+      springs[i].d = owner.x - robot_.partner_of(records[i]).vector(field_x);
+      springs[i].parameters = robot_.parameters_of(records[i]);
     }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      const float squared = squared_length(d[i]);
+      const LoadedSpring& spring = springs[i];
+      const float squared = squared_length(spring.d);
       const float distance = squared * inverse_sqrt(squared);
-      const float stretch = multiply_add(-rest_length[i], law[i].y, distance);
-      if constexpr (solver == Solver::force)
-        owned.energy = multiply_add(law[i].x * stretch, stretch, owned.energy);
-      else
-        owned.energy = multiply_add(inverse(law[i].x) * stretch, stretch, owned.energy);  // .x is the compliance
-      const float strain = fabsf(multiply_add(distance, inverse(rest_length[i]), -1.0f));
-      if (material_of(records[i]) != air) owned.strain = fmaxf(owned.strain, strain);
+      const float stretch = multiply_add(-spring.rest_length, spring.parameters.length_factor, distance);
+      owner.energy = multiply_add(stiffness_of(spring.parameters) * stretch, stretch, owner.energy);
+      const float strain = fabsf(multiply_add(distance, inverse(spring.rest_length), -1.0f));
+      if (robot_.material_of(records[i]) != air) owner.strain = fmaxf(owner.strain, strain);
     }
-  }
-  __device__ double energy_of_unit() const {
-    return solver == Solver::force ? 0.5 : 0.5 / (arguments_.clock.dt * arguments_.clock.dt);
   }
 
-  // Of all masses; eight loads a lane are under way together.
-  __device__ double sum(std::uint32_t which) const {
+  // In units that make the energy of a spring stiffness * stretch^2 * energy_unit().
+  __device__ static float stiffness_of(const SpringParameters<solver>& parameters) {
+    if constexpr (solver == Solver::force)
+      return parameters.stiffness;
+    else
+      return inverse(parameters.compliance);
+  }
+  __device__ double energy_unit() const {
+    const double dt = robot_.arguments().clock.dt;
+    return solver == Solver::force ? 0.5 : 0.5 / (dt * dt);
+  }
+
+  // Over all masses. Each lane has eight loads under way at once.
+  __device__ double sum(std::uint32_t quantity) const {
     constexpr int at_once = 8;
+    const std::uint32_t tiles = robot_.header().tiles;
     double even = 0, odd = 0;
-    for (std::uint32_t g = 0; g < record_.groups; g += at_once) {
+    for (std::uint32_t tile = 0; tile < tiles; tile += at_once) {
       float value[at_once];
 #pragma unroll
-      for (int i = 0; i < at_once; ++i) value[i] = g + i < record_.groups ? value_of(own(g + i), which) : 0;
+      for (int i = 0; i < at_once; ++i) value[i] = tile + i < tiles ? value_of(robot_.own_mass(tile + i), quantity) : 0;
 #pragma unroll
       for (int i = 0; i < at_once; i += 2) {
         even += static_cast<double>(value[i]);
@@ -117,33 +136,36 @@ class RobotReporter : public BlockRobot<solver, Memory, record_words> {
     for (std::uint32_t half = lanes / 2; half > 0; half /= 2) sum += __shfl_down_sync(0xffffffffu, sum, half);
     return sum;
   }
-  __device__ static float value_of(const Mass<Memory>& mass, std::uint32_t which) {
-    if (which != kinetic_energy) return mass.value(which == elastic_energy ? row_energy : which);
-    const Vec3 v = mass.vector(row_v);
+  __device__ static float value_of(const Mass<Memory>& mass, std::uint32_t quantity) {
+    if (quantity != kinetic_energy) return mass.value(quantity == elastic_energy ? field_energy : quantity);
+    const Vec3 v = mass.vector(field_v);
     return 0.5f * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
   }
   __device__ float largest() const {
     float strain = 0;
 #pragma unroll 8
-    for (std::uint32_t g = 0; g < record_.groups; ++g) strain = fmaxf(strain, own(g).value(row_strain));
+    for (std::uint32_t tile = 0; tile < robot_.header().tiles; ++tile)
+      strain = fmaxf(strain, robot_.own_mass(tile).value(field_strain));
     return __uint_as_float(__reduce_max_sync(0xffffffffu, __float_as_uint(strain)));
   }
 
-  // What begins so many bytes behind the report's first.
-  __device__ Mass<Memory> ready(std::uint32_t offset) const { return {seat_.masses + offset}; }
-  __device__ void lay(std::uint32_t offset, int word) const {
-    if (seat_.lane == 0) ready(offset).set_value(row_ready, __int_as_float(word));
+  // The word of the staged report at this offset [bytes]: word i lies in field_staged of slot i.
+  __device__ Mass<Memory> staged(std::uint32_t offset) const { return {robot_.context().masses + offset}; }
+  __device__ void stage(std::uint32_t offset, int word) const {
+    if (robot_.context().lane == 0) staged(offset).set_value(field_staged, __int_as_float(word));
   }
-  __device__ void lay(std::uint32_t offset, long long words) const {
-    lay(offset, static_cast<int>(words));
-    lay(offset + 4, static_cast<int>(words >> 32));
+  __device__ void stage(std::uint32_t offset, long long words) const {
+    stage(offset, static_cast<int>(words));
+    stage(offset + 4, static_cast<int>(words >> 32));
   }
+
+  const Robot& robot_;
 };
 
-// After the last step; holds barriers of the block.
-template <Solver solver, class Memory, int record_words>
-__device__ void report(const BlockRobot<solver, Memory, record_words>& robot, DeviceTelemetry* out) {
-  const RobotReporter<solver, Memory, record_words> reporter(robot);
+// All threads of the block must call this, since it has barriers. `out` = null: writes nothing.
+template <class Robot>
+__device__ void report(const Robot& robot, DeviceTelemetry* out) {
+  const RobotReporter<Robot> reporter(robot);
   reporter.measure_springs();
   __syncthreads();
   reporter.reduce();

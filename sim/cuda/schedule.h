@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which a warp meets its springs, so that its 32 lanes never want the same bank of shared memory.
+// The schedule of springs: the order in which a warp computes the springs of its tiles.
 //
-// Masses stand in groups of 32, one a lane. Each spring is owned by one of its two masses, whose lane computes it; the
-// other mass is its partner. In one row every lane of a group has at most one spring, and no two partners share a bank
-// (mass index mod 32). Rows are found by colouring the edges of the bipartite graph of lanes and banks, which takes
-// exactly as many rows as the busiest lane or bank has springs (Koenig's theorem); owners are chosen to keep that
-// small.
+// One of a spring's two masses owns it, and the owner's lane computes it. The other mass is its partner: the lane reads
+// the partner's position and adds the reaction to the partner's sum. A row holds at most one spring per lane, and a
+// warp computes a row at a time:
+//
+//              lane 0      lane 1      lane 2     ...    lane 31
+//   row 0    |  0 -> 40  |  1 -> 65  |  2 -> 3   | ... |  31 -> 32  |    banks of the partners:  8   1   3  ...   0
+//   row 1    |  0 -> 1   |  1 -> 34  |  padding  | ... |  31 -> 63  |                            1   2  any ...  31
+//   ...                                                                         in a row all different
+//
+// 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row share
+//    a bank. The owners of a row stand in the 32 lanes of one tile, so they never do.
+// 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colours of an edge
+//    colouring (edge_colouring.h), which needs as many as the busiest lane or bank has springs. Owners are chosen to
+//    keep that number small (spring_owners.h).
+// 3. A lane's own mass stays in registers for all its rows. Only the partner's position and sum go through shared
+// memory.
+// 4. Padding fills the unused entries. It is computed like a spring (of air, so it adds nothing) and reads a partner
+// too.
+//    That partner lies in a bank that the row leaves free, and near the owner, so that its distance is an ordinary one.
 #pragma once
 
 #include <cstdint>
@@ -13,39 +27,28 @@
 #include <vector>
 
 #include "mercury/robot.h"
-#include "sim/physics/face_pairs.h"
+#include "sim/cuda/tile.h"
 
 namespace mercury::cuda {
 
-inline constexpr std::uint32_t lanes = 32;
+// ScheduledSpring::spring of an unused entry.
+inline constexpr std::uint32_t padding = 0xffffffffu;
 
-// A spring as its owner's lane sees it. An empty place looks at a mass in a bank that nobody else in the row wants: a
-// neighbour of the owner, else any.
-inline constexpr std::uint32_t no_spring = 0xffffffffu;
+// An entry of the schedule. Its owner is the slot of its lane.
 struct ScheduledSpring {
-  std::uint32_t spring = no_spring;  // its number
-  std::uint16_t partner = 0;
+  std::uint32_t spring = padding;  // its number
+  std::uint16_t partner = 0;       // slot
 };
 
 struct Schedule {
-  // Rows of group g are [row_start[g], row_start[g + 1]); a row has 32 places.
+  // Rows of tile t are [row_start[t], row_start[t + 1]); row r has the entries [32 r, 32 r + 32).
   std::vector<std::uint32_t> row_start;
-  std::vector<ScheduledSpring> places;
-  std::uint32_t groups() const { return static_cast<std::uint32_t>(row_start.size() - 1); }
+  std::vector<ScheduledSpring> entries;
+  std::uint32_t tiles() const { return static_cast<std::uint32_t>(row_start.size() - 1); }
   std::uint32_t rows() const { return row_start.back(); }
 };
 
+// The ends of `springs` are slots, below `masses`.
 Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs);
-
-// An empty place.
-inline constexpr FacePair no_faces{0, 0, 0, 0};
-
-// Accesses that pairs need at least in a column, for what they want of the bank that they want most.
-std::uint32_t busiest_bank(std::span<const FacePair> pairs);
-
-// The same pairs in another order, each perhaps told from another corner, in as few bundles of 32 as there can be, the
-// last filled up with empty places. Few of a bundle have masses of the same bank in the same column: those wait for
-// each other, which costs less than another bundle would.
-std::vector<FacePair> spread_over_banks(std::span<const FacePair> pairs);
 
 }  // namespace mercury::cuda

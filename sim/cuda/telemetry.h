@@ -8,12 +8,12 @@
 
 namespace mercury::cuda {
 
-// One line of the host's memory, written at once.
+// Aligned so that the device writes it to host memory in one transaction.
 struct alignas(64) DeviceTelemetry {
-  Vec3 center_of_mass, velocity;
+  Vec3 center_of_mass, velocity;  // [m], [m/s]
   float largest_strain;
   std::uint32_t bad_mass;
-  double kinetic_energy, elastic_energy;
+  double kinetic_energy, elastic_energy;  // [J]
   long long exploded_step;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/cuda/arrangement.h"
+#include "sim/cuda/schedule.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,13 @@
 #include <random>
 #include <set>
 
+#include "sim/cuda/arrangement.h"
 #include "tests/sim/bodies.h"
 
 namespace mercury::cuda {
 namespace {
 
-// Masses in a row of which many hang on the first: the opposite of an even body.
+// All springs meet at one mass, the opposite of an even body.
 Robot star(int points) {
   Robot robot;
   robot.masses.resize(static_cast<std::size_t>(points) + 1);
@@ -58,25 +59,26 @@ TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
     const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
     std::multiset<Key> expected, found;
     for (const Spring& s : robot.springs) expected.insert(key(s.a, s.b, s.material, s.rest_length));
-    for (std::uint32_t g = 0; g < schedule.groups(); ++g)
-      for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
-        const ScheduledSpring& s = schedule.places[place];
-        if (s.spring == no_spring) continue;
+    for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+      for (std::uint32_t entry = schedule.row_start[tile] * lanes; entry < schedule.row_start[tile + 1] * lanes;
+           ++entry) {
+        const ScheduledSpring& s = schedule.entries[entry];
+        if (s.spring == padding) continue;
         const Spring& spring = robot.springs.at(s.spring);
-        found.insert(key(g * lanes + place % lanes, s.partner, spring.material, spring.rest_length));
+        found.insert(key(tile * lanes + entry % lanes, s.partner, spring.material, spring.rest_length));
       }
     EXPECT_EQ(found, expected);
   }
 }
 
-TEST(Schedule, NoTwoSpringsOfARowWantOneBank) {
+TEST(Schedule, NoTwoPartnersOfARowShareABank) {
   for (const Robot& robot : robots()) {
     const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
     for (std::uint32_t row = 0; row < schedule.rows(); ++row) {
       std::set<int> banks;
       for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-        const ScheduledSpring& s = schedule.places[row * lanes + lane];
-        if (s.spring != no_spring) {
+        const ScheduledSpring& s = schedule.entries[row * lanes + lane];
+        if (s.spring != padding) {
           EXPECT_TRUE(banks.insert(s.partner % 32).second) << "row " << row;
         }
       }
@@ -84,30 +86,31 @@ TEST(Schedule, NoTwoSpringsOfARowWantOneBank) {
   }
 }
 
-// An empty place is read like a spring, so it must not be in the way of one either, where a group has all its masses.
-TEST(Schedule, NoEmptyPlaceOfAFullGroupWantsABankThatIsTaken) {
+// Padding reads a partner like a spring does. Where a tile has all its masses, it must find a free bank.
+TEST(Schedule, PaddingOfAFullTileUsesFreeBanks) {
   for (const Robot& robot : robots()) {
     const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
-    for (std::uint32_t g = 0; g < robot.masses.size() / lanes; ++g)
-      for (std::uint32_t row = schedule.row_start[g]; row < schedule.row_start[g + 1]; ++row) {
+    for (std::uint32_t tile = 0; tile < robot.masses.size() / lanes; ++tile)
+      for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row) {
         std::set<int> banks;
         for (std::uint32_t lane = 0; lane < lanes; ++lane)
-          banks.insert(schedule.places[row * lanes + lane].partner % 32);
+          banks.insert(schedule.entries[row * lanes + lane].partner % 32);
         EXPECT_EQ(banks.size(), lanes) << "row " << row;
       }
   }
 }
 
-TEST(Schedule, MassesLookAtMassesAndLanesWithoutAMassAtOneAnother) {
+TEST(Schedule, PartnersOfMassesAreMassesAndLanesWithoutAMassReadOneAnother) {
   for (const Robot& robot : robots()) {
     const Schedule schedule = schedule_springs(robot.masses.size(), robot.springs);
-    for (std::uint32_t g = 0; g < schedule.groups(); ++g)
-      for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
-        const std::uint32_t owner = g * lanes + place % lanes, partner = schedule.places[place].partner;
+    for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+      for (std::uint32_t entry = schedule.row_start[tile] * lanes; entry < schedule.row_start[tile + 1] * lanes;
+           ++entry) {
+        const std::uint32_t owner = tile * lanes + entry % lanes, partner = schedule.entries[entry].partner;
         if (owner < robot.masses.size())
           EXPECT_LT(partner, robot.masses.size());
         else
-          EXPECT_TRUE(partner >= robot.masses.size() && partner / lanes == g);
+          EXPECT_TRUE(partner >= robot.masses.size() && partner / lanes == tile);
       }
   }
 }
@@ -118,10 +121,10 @@ TEST(Schedule, WastesLittleOnALattice) {
   EXPECT_GT(static_cast<double>(robot.springs.size()), 0.89 * schedule.rows() * lanes);
 }
 
-TEST(SlotOrder, GivesEveryMassASlotOfItsOwnInItsGroup) {
+TEST(SlotOrder, GivesEachMassItsOwnSlotInItsTile) {
   for (const std::uint32_t masses : {1u, 31u, 32u, 33u, 70u, 1331u})
-    for (const std::uint32_t turn : {0u, 1u, 5u, 13u, 31u}) {
-      const SlotOrder order{masses, turn};
+    for (const std::uint32_t shift : {0u, 1u, 5u, 13u, 31u}) {
+      const SlotOrder order{masses, shift};
       std::set<std::uint32_t> slots;
       for (std::uint32_t mass = 0; mass < masses; ++mass) {
         const std::uint32_t slot = order.slot_of(mass);
@@ -140,11 +143,12 @@ TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
     const auto mass_of = [&](std::uint32_t slot) { return arrangement.order.mass_of(slot); };
     std::set<std::uint32_t> springs;
     const Schedule& schedule = arrangement.schedule;
-    for (std::uint32_t g = 0; g < schedule.groups(); ++g)
-      for (std::uint32_t place = schedule.row_start[g] * lanes; place < schedule.row_start[g + 1] * lanes; ++place) {
-        const ScheduledSpring& s = schedule.places[place];
-        if (s.spring == no_spring) continue;
-        const std::set<std::uint32_t> ends{mass_of(g * lanes + place % lanes), mass_of(s.partner)};
+    for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+      for (std::uint32_t entry = schedule.row_start[tile] * lanes; entry < schedule.row_start[tile + 1] * lanes;
+           ++entry) {
+        const ScheduledSpring& s = schedule.entries[entry];
+        if (s.spring == padding) continue;
+        const std::set<std::uint32_t> ends{mass_of(tile * lanes + entry % lanes), mass_of(s.partner)};
         EXPECT_EQ(ends, (std::set<std::uint32_t>{robot.springs.at(s.spring).a, robot.springs.at(s.spring).b}));
         EXPECT_TRUE(springs.insert(s.spring).second);
       }
@@ -162,16 +166,16 @@ TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
   }
 }
 
-// Lattices number their masses row by row, which gives corners of one kind few banks; their faces find room all the
-// same.
-TEST(Arrangement, BundlesOfALatticesFacesAreWellFilled) {
+// Lattices number their masses row by row, so corners of one kind lie in few banks. Their face tiles are well filled
+// nevertheless.
+TEST(Arrangement, FaceTilesOfALatticeAreWellFilled) {
   for (const int size : {10, 15}) {
     const Robot robot = bodies::random_voxels({.x = size, .y = size, .z = size}, 1);
     EXPECT_GT(static_cast<double>(pair_faces(robot).size()), 0.65 * static_cast<double>(arrange(robot).faces.size()));
   }
 }
 
-TEST(Arrangement, RobotsOfOneBuildShareTheFirst) {
+TEST(Arrangement, FindsTheFirstRobotOfEachTopology) {
   const Robot small = bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 1),
               other = bodies::random_voxels({.x = 3, .y = 3, .z = 2}, 1);
   Robot stronger = small;
@@ -179,32 +183,33 @@ TEST(Arrangement, RobotsOfOneBuildShareTheFirst) {
   Robot joined = small;
   std::swap(joined.springs.front(), joined.springs.back());
   const std::vector<const Robot*> robots{&small, &other, &stronger, &joined, &other};
-  EXPECT_EQ(first_of_build(robots), (std::vector<std::uint32_t>{0, 1, 0, 3, 1}));
+  EXPECT_EQ(first_of_topology(robots), (std::vector<std::uint32_t>{0, 1, 0, 3, 1}));
 }
 
-// A bundle takes an access a column; and however pairs are dealt out, the masses of a bank are met one after the other.
-TEST(FacePairs, HoldEveryFaceOnceWithLessThanTwiceTheAccessesThatTheyMustHave) {
+// A face tile takes at least one pass per column, and however the pairs are dealt out, the busiest bank takes its
+// passes.
+TEST(FaceTiles, HoldEveryFaceOnceInLessThanTwiceTheNecessaryPasses) {
   for (const Robot& robot : robots()) {
     std::multiset<std::set<int>> expected, found;
     for (const Face& f : robot.faces) expected.insert({f.a, f.b, f.c});
-    const std::vector<FacePair> together = pair_faces(robot), pairs = spread_over_banks(together);
-    int accesses = 0;
+    const std::vector<FacePair> given = pair_faces(robot), pairs = make_face_tiles(given);
+    int passes = 0;
     for (std::size_t first = 0; first < pairs.size(); first += lanes) {
-      std::array<std::array<int, 32>, 4> wanted{};
+      std::array<std::array<int, 32>, 4> uses{};
       for (std::size_t i = first; i < std::min(first + lanes, pairs.size()); ++i) {
         const FacePair& p = pairs[i];
-        if (p.a == p.b) continue;  // empty
+        if (p.a == p.b) continue;  // padding
         const std::array<std::uint16_t, 4> corners{p.a, p.b, p.c, p.d};
-        for (std::size_t column = 0; column < 4; ++column) ++wanted[column][corners[column] % 32];
+        for (std::size_t column = 0; column < 4; ++column) ++uses[column][corners[column] % 32];
         if (std::set<int>{p.a, p.b, p.c}.size() == 3) found.insert({p.a, p.b, p.c});
         if (std::set<int>{p.a, p.c, p.d}.size() == 3) found.insert({p.a, p.c, p.d});
       }
-      for (const auto& column : wanted) accesses += *std::ranges::max_element(column);
+      for (const auto& column : uses) passes += *std::ranges::max_element(column);
     }
     EXPECT_EQ(found, expected);
-    const auto bundles = static_cast<int>(pairs.size() / lanes);
-    EXPECT_LE(accesses, 2 * 4 * std::max(static_cast<int>(busiest_bank(together)), bundles)) << together.size();
-    EXPECT_EQ(bundles, (static_cast<int>(together.size()) + 31) / 32);
+    const auto tiles = static_cast<int>(pairs.size() / lanes);
+    EXPECT_LE(passes, 2 * 4 * std::max(static_cast<int>(busiest_bank(given)), tiles)) << given.size();
+    EXPECT_EQ(tiles, (static_cast<int>(given.size()) + 31) / 32);
   }
 }
 

@@ -8,7 +8,8 @@
 
 #include "mercury/cuda_devices.h"
 #include "sim/cuda/batch.h"
-#include "sim/cuda/block.cuh"
+#include "sim/cuda/block_layout.h"
+#include "sim/cuda/device_limits.h"
 #include "sim/cuda/step.h"
 
 namespace mercury {
@@ -16,8 +17,8 @@ namespace {
 
 using namespace cuda;
 
-// A launch stays short enough for a display to be served by the same GPU.
-constexpr std::int64_t most_steps_a_launch = 2000;
+// Keeps launches so short that the same GPU can serve a display.
+constexpr std::int64_t max_steps_per_launch = 2000;
 
 class CudaBackend final : public Backend {
  public:
@@ -34,13 +35,13 @@ class CudaBackend final : public Backend {
   std::string device_name() const override { return name_; }
 
   std::vector<std::string> notes() const override {
-    if (batch_.size() == 0 || shape_.on_chip) return {};
+    if (batch_.size() == 0 || launch_.on_chip) return {};
     return {"the largest robot does not fit on the chip of " + name_ + ": it is stepped in device memory, more slowly"};
   }
 
   std::size_t robots_at_once() const override {
     use_device();
-    return batch_.size() == 0 ? 0 : robots_in_flight(configuration_.solver, model_, shape_);
+    return batch_.size() == 0 ? 0 : robots_in_flight(configuration_.solver, model_, launch_);
   }
   double spring_limit() const override {
     use_device();
@@ -63,27 +64,27 @@ class CudaBackend final : public Backend {
         std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
     constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                   static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
-    choose();
+    choose_launch();
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
     if (batch_.size() == 0) return;
     use_device();
     StepArguments arguments = prepare(clock);
-    // Who asked for a report after the last call will ask again.
+    // The caller that requested a report after the last call is expected to request it again.
     DeviceTelemetry* const report = std::exchange(report_expected_, false) ? reports_on_device() : nullptr;
-    report_made_ = false;
+    report_valid_ = false;
     Event start, end;
     start.record();
     for (std::int64_t done = 0; done < steps; done += arguments.steps) {
       arguments.clock.step = clock.step + done;
-      arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, most_steps_a_launch));
+      arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
       arguments.report = done + arguments.steps == steps ? report : nullptr;
       launch_steps(configuration_.solver, model_, arguments, nullptr);
     }
     end.record();
     busy_seconds_ += end.seconds_since(start);
-    report_made_ = report != nullptr && steps > 0;
+    report_valid_ = report != nullptr && steps > 0;
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
@@ -96,12 +97,12 @@ class CudaBackend final : public Backend {
     batch_.write(robot, positions, velocities);
   }
 
-  void read_positions(std::span<Vec3> out) const override { gather(out, 0); }
-  void read_velocities(std::span<Vec3> out) const override { gather(out, 3); }
+  void read_positions(std::span<Vec3> out) const override { gather(out, field_x); }
+  void read_velocities(std::span<Vec3> out) const override { gather(out, field_v); }
   int cuda_device() const override { return device_; }
   void copy_positions(float* device_out) const override {
     use_device();
-    batch_.gather(device_out, 0);
+    batch_.gather(device_out, field_x);
   }
 
   RobotStatus status(std::size_t robot) const override {
@@ -123,12 +124,12 @@ class CudaBackend final : public Backend {
   void write_materials(std::span<const Material> tables) override {
     begin_change();
     batch_.set_materials(0, tables, configuration_);
-    choose();
+    choose_launch();
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     begin_change();
     batch_.set_materials(robot, table, configuration_);
-    choose();
+    choose_launch();
   }
 
   void set_perturbations(std::span<const Perturbation> perturbations) override {
@@ -140,59 +141,60 @@ class CudaBackend final : public Backend {
     if (telemetry.empty()) return;
     use_device();
     report_expected_ = true;
-    if (!report_made_) {
+    if (!report_valid_) {
       StepArguments arguments = prepare(clock);
       arguments.report = reports_on_device();
       launch_steps(configuration_.solver, model_, arguments, nullptr);
       check(cudaDeviceSynchronize(), "reading telemetry");
-      report_made_ = true;
+      report_valid_ = true;
     }
     for (std::size_t i = 0; i < telemetry.size(); ++i) {
-      const DeviceTelemetry& device = reports_[i];
-      Telemetry& told = telemetry[i];  // field by field: a whole one would be built beside it, and copied
-      told.center_of_mass = device.center_of_mass;
-      told.velocity = device.velocity;
-      told.kinetic_energy = device.kinetic_energy;
-      told.elastic_energy = device.elastic_energy;
-      told.largest_strain = device.largest_strain;
-      statuses[i] = {device.exploded_step, device.bad_mass};
+      const DeviceTelemetry& from = reports_[i];
+      Telemetry& to = telemetry[i];  // field by field, which avoids building a Telemetry and copying it
+      to.center_of_mass = from.center_of_mass;
+      to.velocity = from.velocity;
+      to.kinetic_energy = from.kinetic_energy;
+      to.elastic_energy = from.elastic_energy;
+      to.largest_strain = from.largest_strain;
+      statuses[i] = {from.exploded_step, from.bad_mass};
     }
   }
 
  private:
   void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
 
-  void choose() {
+  void choose_launch() {
     if (batch_.size() == 0) return;
-    shape_ = choose_shape(configuration_.solver, configuration_.environment, batch_.view(), batch_.same_materials());
-    const std::uint32_t rows = working_rows(configuration_.solver, shape_.splits_on_chip);
-    batch_.place_records(shape_.on_chip ? rows : 0);
+    launch_ = choose_launch_configuration(configuration_.solver, configuration_.environment, batch_.view(),
+                                          batch_.same_materials());
+    const std::uint32_t fields = working_fields(configuration_.solver, launch_.valence_on_chip);
+    batch_.address_partners(launch_.on_chip ? fields : 0);
     std::size_t workspace = 0;
-    if (!shape_.on_chip) workspace += std::size_t{batch_.groups()} * rows * row_bytes;
-    if (!shape_.contacts_on_chip) workspace += contact_bytes(shape_.contact_buckets, batch_.groups());
+    if (!launch_.on_chip) workspace += std::size_t{batch_.tiles()} * fields * field_bytes;
+    if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, batch_.tiles());
     batch_.reserve_workspace(workspace);
   }
 
-  void gather(std::span<Vec3> out, std::uint32_t first_row) const {
+  void gather(std::span<Vec3> out, Field first_field) const {
     if (out.empty()) return;
     use_device();
     if (packed_.size() != 3 * out.size()) packed_ = DeviceArray<float>(3 * out.size());
-    batch_.gather(packed_.data(), first_row);
+    batch_.gather(packed_.data(), first_field);
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     packed_.read(0, std::span(&out.front().x, 3 * out.size()));
   }
 
-  // What the caller changes makes a report that was made before void.
+  // To be called before every change by the caller: it invalidates the last report.
   void begin_change() {
     use_device();
-    report_made_ = false;
+    report_valid_ = false;
   }
 
-  // No steps yet, from the clock on.
+  // Arguments of a launch at this clock, with 0 steps.
   StepArguments prepare(const Clock& clock) const {
     batch_.update_phases(clock);
     StepArguments arguments{batch_.view(), clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0,
-                            shape_};
+                            launch_};
     if (const Land* land = std::get_if<Land>(&configuration_.environment))
       arguments.contact_stiffness = contact_stiffness_of(*land, configuration_.solver, configuration_.dt);
     return arguments;
@@ -205,14 +207,14 @@ class CudaBackend final : public Backend {
 
   int device_;
   std::string name_;
-  mutable Batch batch_;                           // its phases follow the clock when somebody asks
-  mutable MappedArray<DeviceTelemetry> reports_;  // of the present state, once made
-  mutable bool report_made_ = false, report_expected_ = false;
-  mutable DeviceArray<float> packed_;  // what is read of all masses
+  mutable Batch batch_;                           // prepare() updates its phases
+  mutable MappedArray<DeviceTelemetry> reports_;  // [robot], of the present state if report_valid_
+  mutable bool report_valid_ = false, report_expected_ = false;
+  mutable DeviceArray<float> packed_;  // vectors of all masses, on their way to the host
   Configuration configuration_;
   AnyEnvironmentModel model_ = OceanModel(Ocean{});
   StepConstants constants_;
-  Shape shape_;
+  LaunchConfiguration launch_;
   double busy_seconds_ = 0;
 };
 
@@ -224,16 +226,17 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   if (device < 0 || device >= cuda_device_count())
     throw DeviceError("CUDA device " + std::to_string(device) + " is not there");
   check(cudaSetDevice(device), "choosing the device");
-  constexpr std::uint32_t many = 1u << 20;  // robots
+  constexpr std::uint32_t many_robots = 1u << 20;
   BatchView batch{};
-  batch.robot_count = many;
-  batch.group_stride = groups_of(robot);
+  batch.robot_count = many_robots;
+  batch.tile_stride = tiles_for(robot.masses.size());
   batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
-  const Shape shape = choose_shape(configuration.solver, configuration.environment, batch, true);
+  const LaunchConfiguration launch =
+      choose_launch_configuration(configuration.solver, configuration.environment, batch, true);
   const AnyEnvironmentModel model =
       std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
-  return {most_shared_bytes(), shape.on_chip, shape.on_chip && shape.contacts_on_chip,
-          robots_in_flight(configuration.solver, model, shape)};
+  return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
+          robots_in_flight(configuration.solver, model, launch)};
 }
 
 int cuda_device_count() {
@@ -247,7 +250,7 @@ int cuda_device_count() {
 
 std::string cuda_device_name(int index) {
   cudaDeviceProp properties{};
-  check(cudaGetDeviceProperties(&properties, index), "asking for a device's name");
+  check(cudaGetDeviceProperties(&properties, index), "querying a device's name");
   return properties.name;
 }
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/device_limits.h"
+
+#include "sim/cuda/memory.h"
+#include "sim/cuda/tile.h"
+
+namespace mercury::cuda {
+namespace {
+
+int attribute(cudaDeviceAttr which) {
+  int device = 0, value = 0;
+  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaDeviceGetAttribute(&value, which, device), "querying the device's limits");
+  return value;
+}
+
+}  // namespace
+
+DeviceLimits device_limits() {
+  const auto limit = [](cudaDeviceAttr which) { return static_cast<std::uint32_t>(attribute(which)); };
+  return {.shared_per_block = limit(cudaDevAttrMaxSharedMemoryPerBlockOptin),
+          .shared_per_multiprocessor = limit(cudaDevAttrMaxSharedMemoryPerMultiprocessor),
+          .reserved_per_block = limit(cudaDevAttrReservedSharedMemoryPerBlock),
+          .multiprocessors = limit(cudaDevAttrMultiProcessorCount)};
+}
+
+double spring_limit(Solver solver) {
+  const double hertz = 1e3 * attribute(cudaDevAttrClockRate);
+  const double passes = solver == Solver::force ? 10 : 11;
+  return hertz * device_limits().multiprocessors * lanes / passes;
+}
+
+}  // namespace mercury::cuda

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The faces of a step: the force of the flow on each face, a third of it to each of its masses.
+#pragma once
+
+#include "sim/cuda/block_robot.cuh"
+#include "sim/physics/fixed_point.h"
+
+namespace mercury::cuda {
+
+// Each warp takes every `warps`th face tile, one pair per lane.
+class FacePass {
+ public:
+  // Loads this thread's first pair early, so that add() need not wait for it.
+  template <class Robot>
+  __device__ void prefetch(const Robot& robot) {
+    if (first_pair(robot) < robot.header().face_pairs) first_ = load(robot, first_pair(robot));
+  }
+
+  // After prefetch().
+  template <class Robot, class EnvironmentModel>
+  __device__ void add(const Robot& robot, const EnvironmentModel& model, std::uint32_t step, Failure& failure) const {
+    ushort4 next = first_;
+    for (std::uint32_t p = first_pair(robot); p < robot.header().face_pairs; p += robot.threads()) {
+      const ushort4 corners = next;
+      if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
+      if (corners.x == corners.y) continue;  // padding
+      if (!add_pair(robot, model, corners))
+        failure.report(step, phase_environment, lowest_mass(slot_order(robot.header()), corners));
+    }
+  }
+
+ private:
+  // The last warps begin, since the first ones are busy with the material table.
+  template <class Robot>
+  __device__ static std::uint32_t first_pair(const Robot& robot) {
+    return (robot.warps() - 1 - robot.context().warp) * lanes + robot.context().lane;
+  }
+  template <class Robot>
+  __device__ static ushort4 load(const Robot& robot, std::uint32_t p) {
+    const BatchView& batch = robot.arguments().batch;
+    const FacePair* pairs = batch.face_pairs + std::size_t{robot.context().robot} * batch.face_stride;
+    return __ldg(reinterpret_cast<const ushort4*>(pairs + p));
+  }
+
+  // Returns false if a force is too large for its fixed-point sum, or NaN.
+  template <class Robot, class EnvironmentModel>
+  __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, ushort4 corners) {
+    const auto a = robot.mass_at(corners.x), b = robot.mass_at(corners.y), c = robot.mass_at(corners.z),
+               d = robot.mass_at(corners.w);
+    const Vec3 xa = a.vector(field_x);
+    const Vec3 to_b = b.vector(field_x) - xa, to_c = c.vector(field_x) - xa, to_d = d.vector(field_x) - xa;
+    const Vec3 shared = a.vector(field_v) + c.vector(field_v);
+    const float third = 1.0f / 3.0f;
+    const float scale = third * robot.header().force_scale;
+    const Vec3 first = scale * model.on_face(0.5f * cross(to_b, to_c), third * (shared + b.vector(field_v)));
+    const Vec3 second = scale * model.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(field_v)));
+    if (!fits(first) || !fits(second)) return false;
+    const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
+    const int x2 = round_to_int(second.x), y2 = round_to_int(second.y), z2 = round_to_int(second.z);
+    b.add_to_sum(x1, y1, z1);
+    d.add_to_sum(x2, y2, z2);
+    a.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
+    c.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
+    return true;
+  }
+
+  __device__ static std::uint32_t lowest_mass(const SlotOrder& order, ushort4 corners) {
+    return min(min(order.mass_of(corners.x), order.mass_of(corners.y)),
+               min(order.mass_of(corners.z), order.mass_of(corners.w)));
+  }
+
+  ushort4 first_{};
+};
+
+}  // namespace mercury::cuda

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/launch_configuration.h"
+
+#include <algorithm>
+
+#include "sim/cuda/block_layout.h"
+#include "sim/cuda/device_limits.h"
+
+namespace mercury::cuda {
+namespace {
+
+// The warps that the kernel's registers allow on a multiprocessor. They are best split into two blocks, so that one
+// computes while the other waits at a barrier.
+constexpr std::uint32_t resident_warps = 28;
+// Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
+constexpr std::uint32_t min_tiles_per_warp = 3;
+
+std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+
+// The fewest warps that finish a robot's tiles in as many turns as `max_warps` would.
+std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps) {
+  const std::uint32_t turns = std::max(divide_up(tiles, max_warps), std::min(min_tiles_per_warp, tiles));
+  return divide_up(tiles, turns);
+}
+
+// Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
+// not even one copy does.
+bool fit(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fields, const DeviceLimits& limits,
+         std::uint32_t blocks) {
+  for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u}) {
+    launch.table_copy_bits = bits;
+    launch.shared_bytes = block_layout(launch, tiles, fields).total;
+    if (launch.shared_bytes <= limits.shared_per_block &&
+        blocks * (launch.shared_bytes + limits.reserved_per_block) <= limits.shared_per_multiprocessor)
+      return true;
+  }
+  return false;
+}
+
+// Small robots: several per block, as long as at least two blocks fill the multiprocessor's warps.
+bool fit_several(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fields, const DeviceLimits& limits,
+                 std::uint32_t robots) {
+  launch.warps_per_robot = even_warps(tiles, resident_warps / 2);
+  for (std::uint32_t n = std::min(resident_warps / 2 / launch.warps_per_robot, robots); n > 0; --n) {
+    launch.robots_per_block = n;
+    if (fit(launch, tiles, fields, limits, resident_warps / (n * launch.warps_per_robot))) return true;
+  }
+  return false;
+}
+
+// Large robots: one per block and multiprocessor.
+bool fit_one(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fields, const DeviceLimits& limits) {
+  launch.robots_per_block = 1;
+  launch.warps_per_robot = divide_up(tiles, divide_up(tiles, resident_warps));
+  return fit(launch, tiles, fields, limits, 1);
+}
+
+}  // namespace
+
+LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& batch,
+                                                bool same_materials) {
+  const DeviceLimits limits = device_limits();
+  const std::uint32_t tiles = batch.tile_stride, robots = batch.robot_count;
+  LaunchConfiguration launch;
+  launch.shared_table = same_materials;
+  launch.record_words = batch.record_words;
+  launch.contact_buckets = contact_buckets(environment, tiles);
+  const std::uint32_t all_fields = working_fields(solver, true);
+  // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
+  if (robots > limits.multiprocessors && fit_several(launch, tiles, all_fields, limits, robots)) return launch;
+  for (const bool contacts_on_chip : {true, false})
+    for (const bool valence_on_chip : {true, false}) {
+      launch.contacts_on_chip = contacts_on_chip;
+      launch.valence_on_chip = valence_on_chip;
+      if (fit_one(launch, tiles, working_fields(solver, valence_on_chip), limits)) return launch;
+    }
+  launch.on_chip = false;
+  launch.valence_on_chip = true;
+  fit_one(launch, tiles, all_fields, limits);
+  return launch;
+}
+
+}  // namespace mercury::cuda

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a thread finds its robot, its block's tables, and its own masses (block_layout.h).
+#pragma once
+
+#include "sim/cuda/block_layout.h"
+#include "sim/cuda/failure.cuh"
+#include "sim/cuda/mass_memory.cuh"
+#include "sim/cuda/step.h"
+
+namespace mercury::cuda {
+
+// A thread's part in its robot. The two tables are addresses in shared memory.
+template <class Memory>
+struct ThreadContext {
+  std::uint32_t robot, warp, lane;
+  typename Memory::Address masses;  // of the robot's slot 0
+  std::uint32_t material_table;     // this lane's copy
+  std::uint32_t lengths;
+};
+
+extern __shared__ char shared_memory[];
+
+__device__ inline std::uint32_t shared_address(const void* pointer) {
+  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
+}
+
+// The parts of shared memory that belong to a thread's robot.
+template <Solver solver, class Memory>
+struct BlockContext {
+  std::uint32_t first_robot;
+  bool has_robot;  // the last block may have more room than robots
+  SpringParameters<solver>* material_table;
+  float* lengths;
+  Failure* failure;
+  char* contacts;
+  ThreadContext<Memory> thread;
+
+  // `fields` = of a tile in working memory.
+  __device__ BlockContext(const StepArguments& arguments, std::uint32_t fields) {
+    const LaunchConfiguration& launch = arguments.launch;
+    const BatchView& batch = arguments.batch;
+    const std::uint32_t block_warp = threadIdx.x / lanes, number = block_warp / launch.warps_per_robot;
+    const std::uint32_t table_copies = 1u << launch.table_copy_bits;
+    const BlockLayout layout = block_layout(launch, batch.tile_stride, fields);
+    const std::uint32_t working_bytes = batch.tile_stride * fields * field_bytes;
+    first_robot = blockIdx.x * launch.robots_per_block;
+    has_robot = first_robot + number < batch.robot_count;
+    thread.robot = min(first_robot + number, batch.robot_count - 1);
+    thread.warp = block_warp % launch.warps_per_robot;
+    thread.lane = threadIdx.x % lanes;
+
+    char* const workspace = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
+    if constexpr (Memory::on_chip)
+      thread.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
+    else
+      thread.masses = workspace;
+    contacts = launch.contacts_on_chip
+                   ? shared_memory + layout.lengths + number * contact_bytes(launch.contact_buckets, batch.tile_stride)
+                   : workspace + (Memory::on_chip ? 0 : working_bytes);
+    material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
+                     (launch.shared_table ? 0 : number * table_copies * max_materials);
+    thread.material_table = shared_address(material_table + thread.lane % table_copies);
+    failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
+    lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
+    thread.lengths = shared_address(lengths);
+  }
+};
+
+}  // namespace mercury::cuda
