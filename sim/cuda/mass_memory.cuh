@@ -8,8 +8,8 @@
 
 namespace mercury::cuda {
 
-// Shared memory, by its own 32-bit addresses. Assembly keeps the accesses in the order of the source: the compiler
-// cannot know that a load never depends on the additions before it, and would wait for them.
+// Shared memory, by its own 32-bit addresses. The inline assembly keeps the accesses in the order of the source: the
+// compiler cannot know that a load never depends on the additions before it, and would wait for them.
 class OnChip {
  public:
   using Address = std::uint32_t;
