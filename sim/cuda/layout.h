@@ -15,9 +15,9 @@
 //   +------------------+--------------+--------------+
 //
 // 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion.
-// 2. A robot with at most 256 different rest lengths keeps them in a table, and the key has the index. Its record is
-// one
-//    word, the key. In other batches a record is two words, the key (with length index 0) and the rest length.
+// 2. If each robot of the batch has at most 256 different rest lengths, the robots keep them in tables, the key has the
+//    index, and a record is one word, the key. In other batches a record is two words, the key (with length index 0)
+//    and the rest length.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct RobotHeader {
 
 MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotHeader& header) { return {header.masses, header.lane_shift}; }
 
-// What became of a robot.
+// Whether and when a robot exploded.
 struct DeviceStatus {
   long long exploded_step;  // from the start of the simulation; -1 = has not exploded
   std::uint32_t bad_mass;   // its number, not its slot

@@ -96,6 +96,9 @@ class RobotStepper {
   __device__ void end(std::uint32_t step) {
     if (failure_->before(step, phase_end)) return;
     float farthest = 0;
+    // XPBD in water has the registers for two tiles at a time. Left alone, the choice of the compiler changes with
+    // unrelated code.
+#pragma unroll(solver == Solver::xpbd && Memory::on_chip && !EnvironmentModel::has_contacts ? 2 : 1)
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
