@@ -6,6 +6,8 @@
 
 #include <functional>
 
+#include "app/recording/trajectory_hdf5_reading.h"
+#include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
