@@ -94,12 +94,14 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
 // and returns false.
 template <class EnvironmentModel>
 bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
-  const auto [drag, lift] = model.of_sums(scale_.force);
+  const FaceCoefficients<float> coefficients = model.of_sums(scale_.force);
   bool fit = true;
   for (const auto& [a, b, c, d] : faces_) {
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
     const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - model.thrice_flow;
-    const auto on_face = [&](Vec3 normal, Vec3 sum) { return model.on_face(normal, sum, inner(sum, sum), drag, lift); };
+    const auto on_face = [&](Vec3 normal, Vec3 sum) {
+      return model.on_face(normal, sum, inner(sum, sum), coefficients);
+    };
     const Vec3 first = on_face(cross(to_c, x[b] - x[a]), common + v[b]);
     const Vec3 second = on_face(cross(x[d] - x[a], to_c), common + v[d]);
     if (!fits(first) || !fits(second)) {

@@ -60,8 +60,7 @@ class CudaBackend final : public Backend {
     begin_change();
     configuration_ = configuration;
     batch_.configure(configuration);
-    model_ =
-        std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
+    model_ = solver_model_of(configuration.environment);
     constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                   static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
     choose_launch();
@@ -233,8 +232,7 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
   const LaunchConfiguration launch =
       choose_launch_configuration(configuration.solver, configuration.environment, batch, true);
-  const AnyEnvironmentModel model =
-      std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, configuration.environment);
+  const AnyEnvironmentModel model = solver_model_of(configuration.environment);
   return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
           robots_in_flight(configuration.solver, model, launch)};
 }

@@ -4,8 +4,6 @@
 
 #include <cuda_runtime_api.h>
 
-#include <variant>
-
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/telemetry.h"
@@ -24,8 +22,6 @@ struct StepArguments {
   LaunchConfiguration launch;
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
 };
-
-using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
 
 // Robots that the present device steps at the same time.
 std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);

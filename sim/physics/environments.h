@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The equations of the environments. Solvers are compiled once per environment model, so what a model does not have
-// costs nothing. A new environment is one struct in mercury/configuration.h, one model here, and model_of() at the end.
-// A model has
+// costs nothing. A new environment is one struct in mercury/configuration.h, listed in Environment there, one model
+// here, and its model_of(). Both backends compile their kernels for every environment that Environment lists. A model
+// has
 //
 //   has_faces, has_contacts, has_floor    which of the parts below a step contains
 //   still_water                           on_mass() is zero, so a step leaves it out
 //   on_mass(v)                            force on a mass of 1 kg that has velocity v [N]
 //   on_face(area_normal, v)               force on a face, if has_faces [N]
-//   on_face(normal, u, u.u, drag, lift)   the same with fewer multiplications, see OceanModel::Coefficients
+//   on_face(normal, u, u.u, coefficients) the same with fewer multiplications, see OceanModel::of_sums()
 //   floor(x, displacement)                contact with the floor at the end of a step, if has_floor
 //
 // Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/kernels/lanes.h).
 #pragma once
+
+#include <cmath>
+#include <variant>
 
 #include "mercury/configuration.h"
 #include "sim/physics/springs.h"
@@ -22,6 +26,14 @@ template <class Vector>
 MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
   return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
+
+// Factors of the parts of a force on a face. Real is float, or a vector of floats.
+template <class Real>
+struct FaceCoefficients {
+  Real drag, lift;
+  // No component of a force exceeds this times |normal| |u|^2.
+  float bound() const { return std::fabs(drag) + std::fabs(lift); }
+};
 
 // Drag and lift on faces (equation 1), with u = flow - v, where v is the mean velocity of the corners:
 //
@@ -54,7 +66,8 @@ struct OceanModel {
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
     const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u), half_density * drag_minus_lift, half_density * lift);
+    return on_face(area_normal, u, inner(u, u),
+                   FaceCoefficients<float>{half_density * drag_minus_lift, half_density * lift});
   }
 
   // The same for a normal and a flow of any length, with coefficients scaled to match. Instead of turning n, the terms
@@ -65,10 +78,10 @@ struct OceanModel {
   //
   // If normal and u both have the opposite sign, coefficients of the opposite sign give the same bits.
   template <class Vector, class Real>
-  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, Real drag, Real lift) {
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
     const auto flux = inner(normal, u);
-    const auto along_flow = drag * absolute(flux);
-    const auto along_normal = lift * negated_where(flux < 0.0f, speed_squared);
+    const auto along_flow = by.drag * absolute(flux);
+    const auto along_normal = by.lift * negated_where(flux < 0.0f, speed_squared);
     return {multiply_add(along_flow, u.x, along_normal * normal.x),
             multiply_add(along_flow, u.y, along_normal * normal.y),
             multiply_add(along_flow, u.z, along_normal * normal.z)};
@@ -80,12 +93,7 @@ struct OceanModel {
   //   sum    = -3 u        sum of the corners' velocities, minus 3 flow
   //   F / 3  = rho A / 6 (... (u . n) u + ... |u|^2 n)
   //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
-  struct Coefficients {
-    float drag = 0, lift = 0;
-    // No component of a force exceeds this times |normal| |sum|^2.
-    float most() const { return std::fabs(drag) + std::fabs(lift); }
-  };
-  Coefficients of_sums(float scale) const {
+  FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
     return {common * drag_minus_lift, common * lift};
   }
@@ -153,6 +161,24 @@ struct LandModel {
 inline OceanModel model_of(const Ocean& ocean) { return OceanModel(ocean); }
 inline OceanSimpleModel model_of(const OceanSimple& ocean) { return OceanSimpleModel(ocean); }
 inline LandModel model_of(const Land& land) { return LandModel(land); }
+
+// The models that both backends compile their kernels for.
+using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
+
+// The model that steps use.
+inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
+  return std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, environment);
+}
+
+inline bool has_faces(const Environment& environment) {
+  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_faces; }, environment);
+}
+inline bool has_contacts(const Environment& environment) {
+  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_contacts; }, environment);
+}
+inline bool has_floor(const Environment& environment) {
+  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_floor; }, environment);
+}
 
 // Repulsion of two masses that no spring joins, F = k_c (distance - |d|) away from each other; zero at and beyond the
 // distance. The force on the first mass is this times d = x_second - x_first: -k_c (distance - |d|) / |d|.

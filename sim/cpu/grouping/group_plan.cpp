@@ -11,6 +11,7 @@
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/merged_topology.h"
 #include "sim/cpu/grouping/partition.h"
+#include "sim/physics/environments.h"
 
 namespace mercury::cpu {
 namespace {
@@ -141,7 +142,7 @@ std::vector<GroupPlan> plan_lockstep_groups(std::span<const Body> bodies, std::s
   Group left;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (fits_in_group(bodies[i])) left.push_back(i);
-  const bool faces = std::holds_alternative<Ocean>(configuration.environment);
+  const bool faces = has_faces(configuration.environment);
   std::vector<Group> groups = groups_of_same_topology(bodies, left);
   const std::size_t same = groups.size();
   const Patterns patterns = patterns_of(bodies, left, faces);

@@ -6,6 +6,7 @@
 
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/group_plan.h"
+#include "sim/physics/environments.h"
 
 namespace mercury::cpu {
 namespace {
@@ -43,7 +44,7 @@ std::size_t max_muscles_of(const Body& body) {
 std::vector<WorkBatch> make_work_batches(std::span<const Body> bodies, std::size_t threads,
                                          const Configuration& configuration) {
   std::vector<GroupPlan> plans = plan_lockstep_groups(bodies, threads, configuration);
-  const bool contacts = std::holds_alternative<Land>(configuration.environment);
+  const bool contacts = has_contacts(configuration.environment);
   std::vector<bool> is_member(bodies.size());
   BatchFiller filler(std::max<std::size_t>(1, bodies.size() / (limits.batches_per_thread * threads)));
   for (GroupPlan& plan : plans) {

@@ -20,13 +20,13 @@ struct FaceForces {
 };
 
 // `to_b`, `to_c`, `to_d`: from corner a to the others. `first`, `second`: the sum of the velocities of each face's
-// corners, relative to the water. `drag`, `lift`: OceanModel::of_sums().
+// corners, relative to the water. `coefficients`: OceanModel::of_sums().
 template <class EnvironmentModel>
-HWY_INLINE FaceForces face_forces(Lanes drag, Lanes lift, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d, Lanes3 first,
-                                  Lanes3 second) {
+HWY_INLINE FaceForces face_forces(FaceCoefficients<Lanes> coefficients, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d,
+                                  Lanes3 first, Lanes3 second) {
   const Lanes first_squared = inner(first, first), second_squared = inner(second, second);
-  return {EnvironmentModel::on_face(cross(to_c, to_b), first, first_squared, drag, lift),
-          EnvironmentModel::on_face(cross(to_d, to_c), second, second_squared, drag, lift),
+  return {EnvironmentModel::on_face(cross(to_c, to_b), first, first_squared, coefficients),
+          EnvironmentModel::on_face(cross(to_d, to_c), second, second_squared, coefficients),
           larger(first_squared, second_squared)};
 }
 
@@ -36,7 +36,7 @@ class FaceTiles {
   FaceTiles(Body& body, const EnvironmentModel& model)
       : arrays_(body), tiles_(body.face_tiles.data()), end_(tiles_ + body.face_tiles.size()),
         coefficients_(model.of_sums(body.scale.force)),
-        bound_per_squared_speed_(coefficients_.most() * body.squared_diagonal),
+        bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal),
         thrice_flow_(broadcast_aos(model.thrice_flow)) {}
 
   // Adds a third of each face's force to each of its masses. Returns false if a force is out of range. The forces are
@@ -73,9 +73,9 @@ class FaceTiles {
     const Aos xa = x(a);
     Aos common = v(a) + v(c);
     if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_;
-    return face_forces<EnvironmentModel>(coefficients_.drag, coefficients_.lift, components(x(b) - xa),
-                                         components(x(c) - xa), components(x(d) - xa), components(common + v(b)),
-                                         components(common + v(d)));
+    return face_forces<EnvironmentModel>(FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift},
+                                         components(x(b) - xa), components(x(c) - xa), components(x(d) - xa),
+                                         components(common + v(b)), components(common + v(d)));
   }
   HWY_NOINLINE bool forces_fit() const {
     Integers largest_force = zeros();
@@ -88,7 +88,7 @@ class FaceTiles {
 
   const BodyArrays arrays_;
   const std::uint32_t *const tiles_, *const end_;  // tile_faces()
-  const OceanModel::Coefficients coefficients_;
+  const FaceCoefficients<float> coefficients_;
   const float bound_per_squared_speed_;
   const Aos thrice_flow_;
 };

@@ -171,9 +171,9 @@ class LockstepStepper {
       const Lanes3 xa = load_slot(x, a);
       Lanes3 common = load_slot(v, a) + load_slot(v, c);
       if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
-      visit(corners, face_forces<EnvironmentModel>(load_aligned(drag), load_aligned(lift), load_slot(x, b) - xa,
-                                                   load_slot(x, c) - xa, load_slot(x, d) - xa, common + load_slot(v, b),
-                                                   common + load_slot(v, d)));
+      visit(corners, face_forces<EnvironmentModel>(FaceCoefficients<Lanes>{load_aligned(drag), load_aligned(lift)},
+                                                   load_slot(x, b) - xa, load_slot(x, c) - xa, load_slot(x, d) - xa,
+                                                   common + load_slot(v, b), common + load_slot(v, d)));
       drag += lane_count;
       lift += lane_count;
     }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
 #include "sim/cpu/layout/scalar_forces.h"
 #include "sim/physics/fixed_point.h"
@@ -93,6 +95,16 @@ void find_padding(LockstepGroup& group) {
     if (!taken[i]) group.padding.push_back({i / lanes, i % lanes});
 }
 
+// of_sums() of an environment that acts on faces.
+std::optional<FaceCoefficients<float>> face_coefficients_of(const AnyEnvironmentModel& model, float scale) {
+  return std::visit(
+      [&](const auto& kind) -> std::optional<FaceCoefficients<float>> {
+        if constexpr (std::decay_t<decltype(kind)>::has_faces) return kind.of_sums(scale);
+        return std::nullopt;
+      },
+      model);
+}
+
 }  // namespace
 
 LockstepGroup make_lockstep_group(std::span<const Body> bodies, std::vector<std::size_t> members, MergedTopology merged,
@@ -114,7 +126,6 @@ LockstepGroup make_lockstep_group(std::span<const Body> bodies, std::vector<std:
 
 void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, const AnyEnvironmentModel& model,
                            std::span<const std::array<FactorId, max_materials>> factors) {
-  const OceanModel* const ocean = std::get_if<OceanModel>(&model);
   std::ranges::fill(group.rest_length, 0.0f);
   std::ranges::fill(group.factor, FactorId{0});
   std::ranges::fill(group.stiffness, 0.0f);
@@ -131,13 +142,12 @@ void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, c
       group.stiffness[entry] = body.stiffness[s];
       group.factor[entry] = factors[member][spring.material];
     }
-    if (ocean != nullptr) {
-      const OceanModel::Coefficients coefficients = ocean->of_sums(body.scale.force);
-      group.face_force_bound[lane] = coefficients.most();
+    if (const auto coefficients = face_coefficients_of(model, body.scale.force)) {
+      group.face_force_bound[lane] = coefficients->bound();
       for (const std::uint32_t pair : index_map.face_pairs) {
         const std::size_t i = group.face_tile_of_pair[pair] * group.lanes + lane;
-        group.face_drag[i] = coefficients.drag;
-        group.face_lift[i] = coefficients.lift;
+        group.face_drag[i] = coefficients->drag;
+        group.face_lift[i] = coefficients->lift;
       }
     }
     group.force_scale[lane] = body.scale.force;

@@ -2,14 +2,10 @@
 // What a step of the CPU is given besides the robots.
 #pragma once
 
-#include <variant>
-
 #include "sim/physics/environments.h"
 #include "sim/physics/integration.h"
 
 namespace mercury::cpu {
-
-using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
 
 struct StepSetting {
   Solver solver = Solver::force;
