@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 #include <variant>
 
 #include "mercury/configuration.h"
@@ -30,9 +31,9 @@ MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
 // Factors of the parts of a force on a face. Real is float, or a vector of floats.
 template <class Real>
 struct FaceCoefficients {
-  Real drag, lift;
+  Real drag, lift, tangential;
   // No component of a force exceeds this times |normal| |u|^2.
-  float bound() const { return std::fabs(drag) + std::fabs(lift); }
+  float bound() const { return std::fabs(drag) + std::fabs(lift) + std::fabs(tangential); }
 };
 
 // Drag and lift on faces (equation 1), with u = flow - v, where v is the mean velocity of the corners:
@@ -40,22 +41,27 @@ struct FaceCoefficients {
 //             |                      drag, along u:    rho A / 2 (C_D - C_L) (u . n) u
 //     u       |    n                 lift, along n:    rho A / 2 C_L |u|^2 n
 //   ----->    |---->
-//             |                      A third of the sum acts on each corner.
+//             |                      tangential drag:  rho A / 2 C_T |u_t| u_t,  u_t = u - (u . n) n
 //            face
+//                                    A third of the sum acts on each corner.
 //
 // Equation 1 as printed has v in place of u, and n as the face has it. This differs from it:
 // 1. u is relative to the water, which may flow.
 // 2. n points to the side that u leaves by, so u . n >= 0. With n as it is, opposite faces of a body that moves rigidly
 //    cancel: the sum over a closed surface is exactly zero, and there is no drag.
-// 3. Hence F . u = rho A / 2 C_D (u . n) |u|^2 >= 0: drag never adds energy to a body in still water.
+// 3. Tangential drag is added, the friction of water that slides along the face. Each of the two directions has the
+//    square of its own speed: the independence principle of flow past yawed cylinders, as in models of swimmers.
+// 4. Hence F . u = rho A / 2 (C_D (u . n) |u|^2 + C_T |u_t|^3) >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_floor = false, still_water = false;
+  static constexpr bool has_tangential_drag = true;
   Vec3 gravity, flow, thrice_flow;
-  float half_density = 0, drag_minus_lift = 0, lift = 0;
+  float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
   explicit OceanModel(const Ocean& ocean)
       : gravity(ocean.gravity), flow(ocean.flow), thrice_flow(3.0f * ocean.flow), half_density(ocean.density / 2),
-        drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient) {}
+        drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient),
+        tangential(ocean.drag_tangential) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
@@ -66,8 +72,7 @@ struct OceanModel {
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
     const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u),
-                   FaceCoefficients<float>{half_density * drag_minus_lift, half_density * lift});
+    return on_face(area_normal, u, inner(u, u), coefficients());
   }
 
   // The same for a normal and a flow of any length, with coefficients scaled to match. Instead of turning n, the terms
@@ -79,12 +84,30 @@ struct OceanModel {
   // If normal and u both have the opposite sign, coefficients of the opposite sign give the same bits.
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
+    return drag_and_lift(normal, u, speed_squared, by) + tangential_drag(normal, u, by.tangential);
+  }
+
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector drag_and_lift(Vector normal, Vector u, Real speed_squared,
+                                                  FaceCoefficients<Real> by) {
     const auto flux = inner(normal, u);
     const auto along_flow = by.drag * absolute(flux);
     const auto along_normal = by.lift * negated_where(flux < 0.0f, speed_squared);
     return {multiply_add(along_flow, u.x, along_normal * normal.x),
             multiply_add(along_flow, u.y, along_normal * normal.y),
             multiply_add(along_flow, u.z, along_normal * normal.z)};
+  }
+
+  // coefficient |normal| |u_t| u_t. A face without area has no direction, and feels none.
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector tangential_drag(Vector normal, Vector u, Real coefficient) {
+    const auto squared = inner(normal, normal);
+    const auto inverse_length = select(squared > 1e-30f, inverse_sqrt(squared), 0.0f);
+    const Vector n{inverse_length * normal.x, inverse_length * normal.y, inverse_length * normal.z};
+    const auto across = inner(n, u);
+    const Vector along{fnma(across, n.x, u.x), fnma(across, n.y, u.y), fnma(across, n.z, u.z)};
+    const auto factor = coefficient * (squared * inverse_length) * square_root(inner(along, along));
+    return {factor * along.x, factor * along.y, factor * along.z};
   }
 
   // Coefficients for the force on one corner, times `scale`, for vectors that need no multiplication to compute:
@@ -95,14 +118,34 @@ struct OceanModel {
   //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
   FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
-    return {common * drag_minus_lift, common * lift};
+    return {common * drag_minus_lift, common * lift, common * tangential};
+  }
+  // Coefficients for A n and u themselves.
+  MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
+    return {half_density * drag_minus_lift, half_density * lift, half_density * tangential};
+  }
+};
+
+// Water without tangential drag, as it is by default. Steps do not compute what is zero.
+struct FrictionlessOceanModel : OceanModel {
+  static constexpr bool has_tangential_drag = false;
+  static bool fits(const OceanModel& model) { return model.tangential == 0; }
+
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
+    const Vector u = flow - velocity;
+    return on_face(area_normal, u, inner(u, u), coefficients());
+  }
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
+    return drag_and_lift(normal, u, speed_squared, by);
   }
 };
 
 // Water that does not flow, without gravity. Only faces feel it, so a step needs neither on_mass() nor the flow.
-struct StillWaterOceanModel : OceanModel {
+struct StillWaterOceanModel : FrictionlessOceanModel {
   static constexpr bool still_water = true;
-  static bool fits(const OceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
+  static bool fits(const FrictionlessOceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
 };
 
 // Drag on each mass, F = drag (flow - v) (paper, II.E).
@@ -163,11 +206,18 @@ inline OceanSimpleModel model_of(const OceanSimple& ocean) { return OceanSimpleM
 inline LandModel model_of(const Land& land) { return LandModel(land); }
 
 // The models that both backends compile their kernels for.
-using AnyEnvironmentModel = std::variant<OceanModel, OceanSimpleModel, LandModel>;
+using AnyEnvironmentModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel>;
 
-// The model that steps use.
+// The fastest model that describes an environment.
 inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
-  return std::visit([](const auto& kind) { return AnyEnvironmentModel(model_of(kind)); }, environment);
+  return std::visit(
+      [](const auto& kind) -> AnyEnvironmentModel {
+        const auto model = model_of(kind);
+        if constexpr (std::is_same_v<decltype(model), const OceanModel>)
+          if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
+        return model;
+      },
+      environment);
 }
 
 inline bool has_faces(const Environment& environment) {

@@ -98,6 +98,7 @@ TEST(Configuration, EveryParameterOfEveryEnvironmentIsChecked) {
   EXPECT_EQ(in(Ocean{.drag_coefficient = -0.5f}), "drag_coefficient: -0.5 is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.lift_coefficient = nan_value}),
             "lift_coefficient: nan is not accepted; give a finite number >= 0");
+  EXPECT_EQ(in(Ocean{.drag_tangential = -1}), "drag_tangential: -1 is not accepted; give a finite number >= 0");
   EXPECT_EQ(in(Ocean{.flow = {0, nan_value, 1}}), "flow: 0,nan,1 is not accepted; give three finite numbers of m/s");
   EXPECT_EQ(in(Ocean{.gravity = {infinity, 0, 0}}),
             "gravity: inf,0,0 is not accepted; give three finite numbers of m/s2");

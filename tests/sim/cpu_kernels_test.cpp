@@ -55,9 +55,11 @@ std::vector<Robot> various_robots() {
 class CpuKernel : public testing::TestWithParam<KernelCase> {
  protected:
   Vec3 flow;
+  float drag_tangential = 0;
   Configuration configuration() const {
     KernelCase of = GetParam();
     of.flow = flow;
+    of.drag_tangential = drag_tangential;
     return of.configuration();
   }
 
@@ -123,6 +125,14 @@ TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopInACurrent) {
   flow = {0.3f, -0.2f, 1.5f};
   const std::vector<Robot> robots = various_robots();
   for (const std::size_t i : {0u, 3u, 5u})
+    expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
+}
+
+TEST_P(CpuKernel, GivesTheBitsOfThePlainLoopWithTangentialDrag) {
+  if (GetParam().environment != Ocean::name) return;
+  drag_tangential = 0.7f;
+  const std::vector<Robot> robots = various_robots();
+  for (std::size_t i = 0; i < robots.size(); ++i)
     expect_same(robots[i], bodies::shaken(robots[i], 0.01f, 0.5f, i), {}, 100, "robot " + std::to_string(i));
 }
 

@@ -18,11 +18,15 @@ struct KernelCase {
   Solver solver;
   std::string_view environment;
   Vec3 flow{};  // of the water
+  float drag_tangential = 0;
 
   Configuration configuration() const {
     Configuration configuration{
         .solver = solver, .environment = environment_named(environment), .device = {.threads = 1}};
-    if (Ocean* const ocean = std::get_if<Ocean>(&configuration.environment)) ocean->flow = flow;
+    if (Ocean* const ocean = std::get_if<Ocean>(&configuration.environment)) {
+      ocean->flow = flow;
+      ocean->drag_tangential = drag_tangential;
+    }
     if (OceanSimple* const simple = std::get_if<OceanSimple>(&configuration.environment)) simple->flow = flow;
     return configuration;
   }
@@ -32,7 +36,7 @@ inline std::vector<KernelCase> every_kernel_case() {
   std::vector<KernelCase> cases;
   for (const cpu::Kernel& kernel : cpu::kernels())
     for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : environment_names()) cases.push_back({kernel, solver, environment, {}});
+      for (const std::string_view environment : environment_names()) cases.push_back({kernel, solver, environment});
   return cases;
 }
 

@@ -65,9 +65,11 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
   }
 
   // Steps all robots in one batch, in calls of 1 to 45 steps, and compares each with the plain loop.
-  void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}, Vec3 flow = {}) const {
+  void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}, Vec3 flow = {},
+                             float drag_tangential = 0) const {
     KernelCase of = GetParam();
     of.flow = flow;
+    of.drag_tangential = drag_tangential;
     Batch batch(of, robots);
     for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
     batch.backend().set_perturbations(perturbations);
@@ -101,6 +103,19 @@ TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopAtSpeed) {
 }
 
 TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopInACurrent) { expect_the_plain_loop({}, {0.3f, -0.2f, 1.5f}); }
+
+TEST_P(MixedBatch, GivesTheBitsOfThePlainLoopWithTangentialDrag) {
+  if (GetParam().environment != Ocean::name) return;
+  expect_the_plain_loop({}, {}, 0.7f);
+}
+
+TEST_P(MixedBatch, TangentialDragAffectsNoOtherRobotInAnExplosion) {
+  if (GetParam().environment != Ocean::name) return;
+  starts[2].velocities[5] += Vec3{1e10f, 0, 0};
+  starts[4].velocities[1].x = std::numeric_limits<float>::infinity();
+  starts[7].velocities[3] += Vec3{3e3f, 0, 0};
+  expect_the_plain_loop({}, {}, 0.7f);
+}
 
 TEST_P(MixedBatch, APerturbationActsOnItsRobotOnly) {
   const std::vector<Perturbation> perturbations = {{0, 0, {0.3f, 0.1f, 0.4f}, 20},

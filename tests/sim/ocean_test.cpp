@@ -125,6 +125,116 @@ TEST_P(Water, APlateFeelsDragAcrossAndLiftAlongTheFlow) {
   }
 }
 
+// One plate of 3 masses, no spring, that moves in its own plane: u.n = 0, so with C_L = 0 only tangential drag acts.
+TEST_P(Water, APlateThatSlidesInItsPlaneFeelsTangentialDragAgainstItsMotion) {
+  Robot plate;
+  plate.masses = {{0, 0, 0}, {0.2f, 0, 0}, {0, 0.3f, 0}};
+  plate.faces = {{0, 1, 2}};
+  const double area = 0.03;
+  for (const Solver solver : {Solver::force, Solver::xpbd})
+    for (const bool reversed : {false, true})
+      for (const Vec3 velocity : {Vec3{2, 0, 0}, Vec3{0, -1.5f, 0}, Vec3{-0.6f, 0.8f, 0}})
+        for (const float coefficient : {0.0f, 0.01f, 0.4f, 2.0f}) {
+          Robot robot = plate;
+          if (reversed) std::swap(robot.faces[0].b, robot.faces[0].c);
+          const Ocean ocean{.density = 800, .lift_coefficient = 0, .drag_tangential = coefficient};
+          Simulation simulation(water(ocean, 1e-3, solver), {&robot, 1});
+          const State start = bodies::moving(robot, velocity);
+          simulation.set_state(0, start.positions, start.velocities);
+          simulation.step();
+          const Vector v = vector_of(velocity), force = 3 * (mean_velocity(simulation, 0) - v) / 1e-3;
+          const Vector expected = -800 * area / 2 * double{coefficient} * v.norm() * v;
+          if (coefficient == 0)
+            EXPECT_EQ(force, Vector(0, 0, 0));
+          else
+            EXPECT_LT((force - expected).norm(), 1e-3 + 1e-3 * expected.norm()) << coefficient;
+        }
+}
+
+// Inclined by 45 degrees: u = (1, 0, 1), n = z, so that u_t = (1, 0, 0).
+TEST_P(Water, TangentialDragAddsToDragAndLiftOfAnInclinedPlate) {
+  Robot plate;
+  plate.masses = {{0, 0, 0}, {0.2f, 0, 0}, {0, 0.3f, 0}};
+  plate.faces = {{0, 1, 2}};
+  const double scale = 800 * 0.03 / 2;
+  Simulation simulation(water({.density = 800,
+                               .drag_coefficient = 1.2f,
+                               .lift_coefficient = 0.3f,
+                               .drag_tangential = 0.7f,
+                               .flow = {1, 0, 1}}),
+                        {&plate, 1});
+  simulation.step();
+  const Vector force = 3 * mean_velocity(simulation, 0) / 1e-3;
+  EXPECT_LT((force - scale * Vector(0.9 + 0.7, 0, 0.9 + 0.3 * 2)).norm(), 1e-2);
+}
+
+TEST_P(Water, TangentialDragNeverAddsEnergyAndBrakesMore) {
+  std::vector<Robot> robots;
+  for (std::uint64_t orientation = 0; orientation < 20; ++orientation) robots.push_back(cube(orientation));
+  const Vec3 velocity{1.5f, 0, 0};
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    std::vector<std::vector<double>> energies;  // [coefficient][robot], after 0.2 s
+    for (const float coefficient : {0.0f, 0.5f, 2.0f}) {
+      Simulation simulation(water({.lift_coefficient = 0, .drag_tangential = coefficient}, 1e-3, solver), robots);
+      std::vector<double> energy(robots.size(), 8 * 1.5 * 1.5 / 2);
+      for (std::size_t i = 0; i < robots.size(); ++i) {
+        const State start = bodies::moving(robots[i], velocity);
+        simulation.set_state(i, start.positions, start.velocities);
+      }
+      for (int sample = 0; sample < 20; ++sample) {
+        simulation.step(10);
+        const auto telemetry = simulation.telemetry();
+        for (std::size_t i = 0; i < robots.size(); ++i) {
+          const double now = telemetry[i].kinetic_energy + telemetry[i].elastic_energy;
+          ASSERT_LE(now, energy[i] * (1 + 1e-5)) << "C_T " << coefficient << ", orientation " << i;
+          energy[i] = now;
+        }
+      }
+      energies.push_back(energy);
+    }
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      EXPECT_LT(energies[1][i], energies[0][i]);
+      EXPECT_LT(energies[2][i], energies[1][i]);
+    }
+  }
+}
+
+TEST_P(Water, ARobotWithTangentialDragFollowsTheReference) {
+  Robot robot = bodies::random_voxels({.x = 3, .y = 4, .z = 5}, 4);
+  bodies::rotate(robot, bodies::random_rotation(5));
+  const State start = bodies::moving(robot, {0.5f, 0, -0.5f});
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    const Configuration setting =
+        water({.lift_coefficient = 0.5f, .drag_tangential = 0.4f, .flow = {0.3f, -0.2f, 0.1f}}, 1e-3, solver);
+    Simulation simulation(setting, {&robot, 1});
+    reference::Reference expected(setting, robot);
+    simulation.set_state(0, start.positions, start.velocities);
+    expected.set_state(start);
+    simulation.step(1000);
+    expected.step(1000);
+    EXPECT_LT(reference::largest_deviation(expected.positions(), simulation.positions(0)), 1e-4);
+  }
+}
+
+TEST(TangentialDrag, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  const Robot robot = bodies::random_voxels({}, 6);
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    Configuration configuration{.solver = solver, .environment = Ocean{.drag_tangential = 0.5f}};
+    configuration.device.kind = DeviceKind::cpu;
+    Simulation cpu(configuration, {&robot, 1});
+    configuration.device.kind = DeviceKind::cuda;
+    Simulation cuda(configuration, {&robot, 1});
+    cpu.step(1000);
+    cuda.step(1000);
+    const std::vector<Vec3> on_cpu = cpu.positions(0), on_cuda = cuda.positions(0);
+    double largest = 0;
+    for (std::size_t i = 0; i < on_cpu.size(); ++i)
+      largest = std::max(largest, static_cast<double>(length(on_cpu[i] - on_cuda[i])));
+    EXPECT_LT(largest, 1e-4);
+  }
+}
+
 TEST_P(Water, AFlowCarriesACubeUpToItsOwnVelocity) {
   const Robot robot = cube(3);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {

@@ -113,7 +113,7 @@ Field Reference::environment_forces() const {
   return force;
 }
 
-// Paper, equation 1, of the flow relative to the face; the normal looks downstream.
+// Paper, equation 1, of the flow relative to the face, and tangential drag; the normal points downstream.
 void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
   for (const Face& face : robot_.faces) {
     const Vector u = vector_of(ocean.flow) - (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
@@ -123,7 +123,9 @@ void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
     Vector n = twice_area.normalized();
     if (n.dot(u) < 0) n = -n;
     const double drag = ocean.drag_coefficient, lift = ocean.lift_coefficient;
-    const Vector total = 0.5 * ocean.density * area * ((drag - lift) * u.dot(n) * u + lift * u.squaredNorm() * n);
+    Vector total = 0.5 * ocean.density * area * ((drag - lift) * u.dot(n) * u + lift * u.squaredNorm() * n);
+    const Vector slide = u - u.dot(n) * n;
+    total += 0.5 * ocean.density * area * ocean.drag_tangential * slide.norm() * slide;
     for (const int corner : {face.a, face.b, face.c}) force[static_cast<std::size_t>(corner)] += total / 3;
   }
 }

@@ -73,9 +73,10 @@ class FaceTiles {
     const Aos xa = x(a);
     Aos common = v(a) + v(c);
     if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_;
-    return face_forces<EnvironmentModel>(FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift},
-                                         components(x(b) - xa), components(x(c) - xa), components(x(d) - xa),
-                                         components(common + v(b)), components(common + v(d)));
+    return face_forces<EnvironmentModel>(
+        FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift, coefficients_.tangential},
+        components(x(b) - xa), components(x(c) - xa), components(x(d) - xa), components(common + v(b)),
+        components(common + v(d)));
   }
   HWY_NOINLINE bool forces_fit() const {
     Integers largest_force = zeros();

@@ -157,25 +157,30 @@ class LockstepStepper {
   template <class Visit>
   HWY_INLINE void for_each_face_tile(const Visit& visit) const {
     const std::size_t whole = group_.face_tiles.size() * lane_count;
-    for_each_face_tile(group_.face_tiles, group_.face_drag.data(), group_.face_lift.data(), visit);
-    for_each_face_tile(group_.split_face_tiles, group_.face_drag.data() + whole, group_.face_lift.data() + whole,
-                       visit);
+    for_each_face_tile(group_.face_tiles, 0, visit);
+    for_each_face_tile(group_.split_face_tiles, whole, visit);
   }
   template <class Corners, class Visit>
-  HWY_INLINE void for_each_face_tile(const std::vector<Corners>& tiles, const float* drag, const float* lift,
+  HWY_INLINE void for_each_face_tile(const std::vector<Corners>& tiles, std::size_t first_coefficient,
                                      const Visit& visit) const {
     const float *const x = x_, *const v = v_;
+    const float *drag = group_.face_drag.data() + first_coefficient,
+                *lift = group_.face_lift.data() + first_coefficient,
+                *tangential = group_.face_tangential.data() + first_coefficient;
     const Lanes3 thrice_flow{model_.thrice_flow.x, model_.thrice_flow.y, model_.thrice_flow.z};
     for (const Corners& corners : tiles) {
       const auto& [a, b, c, d] = corners;
       const Lanes3 xa = load_slot(x, a);
       Lanes3 common = load_slot(v, a) + load_slot(v, c);
       if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
-      visit(corners, face_forces<EnvironmentModel>(FaceCoefficients<Lanes>{load_aligned(drag), load_aligned(lift)},
-                                                   load_slot(x, b) - xa, load_slot(x, c) - xa, load_slot(x, d) - xa,
-                                                   common + load_slot(v, b), common + load_slot(v, d)));
+      FaceCoefficients<Lanes> coefficients{load_aligned(drag), load_aligned(lift), 0.0f};
+      if constexpr (EnvironmentModel::has_tangential_drag) coefficients.tangential = load_aligned(tangential);
+      visit(corners,
+            face_forces<EnvironmentModel>(coefficients, load_slot(x, b) - xa, load_slot(x, c) - xa,
+                                          load_slot(x, d) - xa, common + load_slot(v, b), common + load_slot(v, d)));
       drag += lane_count;
       lift += lane_count;
+      tangential += lane_count;
     }
   }
 

@@ -44,7 +44,7 @@ HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const 
 template <class Call>
 HWY_INLINE auto with_model(const StepSetting& setting, const Call& call) {
   constexpr float min_dt = 1e-6f;  // [s]; below, dt times a unit of force may not be exact
-  const auto* const ocean = std::get_if<OceanModel>(&setting.model);
+  const auto* const ocean = std::get_if<FrictionlessOceanModel>(&setting.model);
   if (ocean != nullptr && StillWaterOceanModel::fits(*ocean) && setting.constants.dt >= min_dt)
     return call(StillWaterOceanModel{*ocean});
   return std::visit(call, setting.model);

@@ -76,7 +76,7 @@ void resize_arrays(LockstepGroup& group) {
   group.rest_length.resize(entries);
   group.stiffness.resize(entries);
   group.factor.resize(entries);
-  for (Aligned<float>* coefficients : {&group.face_drag, &group.face_lift})
+  for (Aligned<float>* coefficients : {&group.face_drag, &group.face_lift, &group.face_tangential})
     coefficients->resize((group.face_tiles.size() + group.split_face_tiles.size()) * group.lanes);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * slots);
   group.sums.resize(3 * slots);
@@ -131,6 +131,7 @@ void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, c
   std::ranges::fill(group.stiffness, 0.0f);
   std::ranges::fill(group.face_drag, 0.0f);
   std::ranges::fill(group.face_lift, 0.0f);
+  std::ranges::fill(group.face_tangential, 0.0f);
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const std::size_t member = member_of(group, lane);
     const Body& body = bodies[group.bodies[member]];
@@ -148,6 +149,7 @@ void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, c
         const std::size_t i = group.face_tile_of_pair[pair] * group.lanes + lane;
         group.face_drag[i] = coefficients->drag;
         group.face_lift[i] = coefficients->lift;
+        group.face_tangential[i] = coefficients->tangential;
       }
     }
     group.force_scale[lane] = body.scale.force;

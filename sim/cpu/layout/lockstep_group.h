@@ -68,7 +68,7 @@ struct LockstepGroup {
   Aligned<float> rest_length, stiffness;
   Aligned<FactorId> factor;
   // [face tile][lane]: OceanModel::of_sums() in units; 0 where a member has no such faces.
-  Aligned<float> face_drag, face_lift;
+  Aligned<float> face_drag, face_lift, face_tangential;
 
   // [slot][x, y, z][lane]
   Aligned<float> x, v;         // between XPBD's prediction and correction: the prediction and v + dt F

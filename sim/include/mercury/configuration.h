@@ -27,6 +27,7 @@ struct Ocean {
   float density = 1000;           // rho [kg/m3]
   float drag_coefficient = 1;     // C_D [1]
   float lift_coefficient = 0.2f;  // C_L [1]
+  float drag_tangential = 0;      // C_T [1]
   Vec3 flow;                      // velocity of the water [m/s]
   Vec3 gravity;                   // [m/s2]
   float stiffness_scale = 1;      // multiplies every stiffness [1]
@@ -38,6 +39,8 @@ struct Ocean {
                 "Drag coefficient of a face across the flow, C_D"),
       Parameter("lift_coefficient", &Ocean::lift_coefficient, "", Accepts::at_least_zero, {0, 1},
                 "Lift coefficient of a face, C_L"),
+      Parameter("drag_tangential", &Ocean::drag_tangential, "", Accepts::at_least_zero, {0, 1},
+                "Tangential drag coefficient of a face along the flow, C_T"),
       Parameter("flow", &Ocean::flow, "m/s", Accepts::any, {-2, 2}, "Velocity of the water"),
       Parameter("gravity", &Ocean::gravity, "m/s2", Accepts::any, {-20, 20}, "Gravity").or_downward_magnitude(),
       Parameter("stiffness_scale", &Ocean::stiffness_scale, "", Accepts::at_least_zero, {0.01f, 1000, true},

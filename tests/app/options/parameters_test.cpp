@@ -52,6 +52,7 @@ const std::vector<Parameter> parameters{
     {"density", "ocean", "900", "900", 900.0, {"-1", "nan", "inf"}, at_least_zero + " kg/m3"},
     {"drag-coefficient", "ocean", "1.5", "1.5", 1.5, {"-1", "nan"}, at_least_zero},
     {"lift-coefficient", "ocean", "0.4", "0.4", 0.4, {"-0.1", "nan"}, at_least_zero},
+    {"drag-tangential", "ocean", "0.02", "0.02", 0.02, {"-1", "nan"}, at_least_zero},
     {"flow",
      "ocean",
      "0.5,0,-1",

@@ -86,7 +86,7 @@ TEST_P(RecordedConfiguration, IsReadBackWhole) {
 // No value is a default, so that none is read back by chance.
 INSTANTIATE_TEST_SUITE_P(EveryEnvironment, RecordedConfiguration,
                          testing::Values(Environment(Ocean{
-                                             998.2f, 1.1f, 0.3f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                                             998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
                                          Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
                                          Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150})));
 
