@@ -17,15 +17,13 @@
 //                                  have one word
 //
 // 1. A launch carries its robots through many steps. Masses stay in shared memory all the while; only spring records
-// and
-//    face pairs come from the L2 cache, once per step.
+//    and face pairs come from the L2 cache, once per step.
 // 2. A warp needs the parameters of 32 materials at once, which would often lie in the same banks. So the block keeps
-// up
-//    to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod copies).
-//    With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
+//    up to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod
+//    copies). With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
 // 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
 // 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
-// result.
+//    result.
 #pragma once
 
 #include <bit>

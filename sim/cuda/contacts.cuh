@@ -9,11 +9,11 @@
 //                                           |<-- margin: 0.5 ------>|
 //
 // 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up.
-// 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the farthest
-//    that one of its masses moved per step; the list is made again when a sum reaches list_reach.
+// 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the
+//    farthest that one of its masses moved per step; the list is made again when a sum reaches list_reach.
 // 3. If there are more pairs than the list holds, every step searches the grid.
-// 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does not
-//    change a bit.
+// 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
+//    not change a bit.
 #pragma once
 
 #include "sim/cuda/block_robot.cuh"

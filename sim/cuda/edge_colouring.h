@@ -10,12 +10,12 @@
 //              |  \ | /  |         |          edges that meet at a bank: one access per row and bank
 //   banks      0    1    2   ...  31
 //
-// 1. Such a graph can be coloured with as many colours as the busiest vertex has edges (Koenig's theorem). No schedule
-//    has fewer rows.
+// 1. Such a graph can be coloured with as many colours as the busiest vertex has edges (Koenig's theorem). No
+//    schedule has fewer rows.
 // 2. An edge takes the first colour that is free at both ends. If there is none, some colour `p` is free at its lane
-// and
-//    some other colour `q` at its bank. Exchanging p and q along the path of edges coloured p, q, p, ... that starts at
-//    the bank frees p at the bank too. The path never ends at the lane, because it enters lanes by edges of colour p.
+//    and some other colour `q` at its bank. Exchanging p and q along the path of edges coloured p, q, p, ... that
+//    starts at the bank frees p at the bank too. The path never ends at the lane, because it enters lanes by edges of
+//    colour p.
 #pragma once
 
 #include <cstdint>

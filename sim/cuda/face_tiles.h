@@ -10,12 +10,11 @@
 //        |  /     |    column c |  39    |    8    |     |  101    |   banks  7  8 ...  5
 //        a ------ b    column d |  38    |    7    |     |   69    |   banks  6  7 ...  5
 //
-// 1. A column is one access to shared memory. If two of its masses share a bank, the access takes a second pass, and so
-//    on for each further mass in that bank. Pairs are therefore dealt out to face tiles so that few columns use a bank
-//    twice. Masses of a bank that do meet wait for each other, which costs less than one more face tile would.
+// 1. A column is one access to shared memory. If two of its masses share a bank, the access takes a second pass, and
+//    so on for each further mass in that bank. Pairs are therefore dealt out to face tiles so that few columns use a
+//    bank twice. Masses of a bank that do meet wait for each other, which costs less than one more face tile would.
 // 2. The two triangles can be listed in four vertex orders, which put other masses into the columns. A face's force
-// does
-//    not depend on the order, so each pair takes the one that fits best.
+//    does not depend on the order, so each pair takes the one that fits best.
 // 3. There are as few face tiles as there can be. Padding (padding_faces) fills the last one.
 #pragma once
 

@@ -15,9 +15,9 @@
 //   +------------------+--------------+--------------+
 //
 // 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion.
-// 2. If each robot of the batch has at most 256 different rest lengths, the robots keep them in tables, the key has the
-//    index, and a record is one word, the key. In other batches a record is two words, the key (with length index 0)
-//    and the rest length.
+// 2. If each robot of the batch has at most 256 different rest lengths, the robots keep them in tables, the key has
+//    the index, and a record is one word, the key. In other batches a record is two words, the key (with length index
+//    0) and the rest length.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Telemetry of a robot, computed from the masses in working memory after the last step of a launch.
 //
-//   measure_springs   each lane     energy and largest strain of the springs that its masses own  -> fields of the
-//   masses
+//   measure_springs   each lane     energy and largest strain of the springs it owns   -> fields of the masses
 //   -- barrier --
-//   reduce            each warp     one or more quantities, summed over all masses                -> the staged report
+//   reduce            each warp     some of the quantities, summed over all masses     -> the staged report
 //   -- barrier --
-//   write             each thread   one word of the staged report                                 -> host memory
+//   write             each thread   one word of the staged report                      -> host memory
 //
 // 1. The order of every sum depends only on the robot, so telemetry is reproducible too.
 // 2. The sums of fixed point are done with, so their fields hold the results of the first two stages.

@@ -10,16 +10,16 @@
 //   row 1    |  0 -> 1   |  1 -> 34  |  padding  | ... |  31 -> 63  |                            1   2  any ...  31
 //   ...                                                                         in a row all different
 //
-// 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row share
-//    a bank. The owners of a row stand in the 32 lanes of one tile, so they never do.
+// 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row
+//    share a bank. The owners of a row stand in the 32 lanes of one tile, so they never do.
 // 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colours of an edge
 //    colouring (edge_colouring.h), which needs as many as the busiest lane or bank has springs. Owners are chosen to
 //    keep that number small (spring_owners.h).
 // 3. A lane's own mass stays in registers for all its rows. Only the partner's position and sum go through shared
-// memory.
+//    memory.
 // 4. Padding fills the unused entries. It is computed like a spring (of air, so it adds nothing) and reads a partner
-// too.
-//    That partner lies in a bank that the row leaves free, and near the owner, so that its distance is an ordinary one.
+//    too. That partner lies in a bank that the row leaves free, and near the owner, so that its distance is an
+//    ordinary one.
 #pragma once
 
 #include <cstdint>

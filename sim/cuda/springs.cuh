@@ -9,15 +9,14 @@
 //   owner's sum, in registers:          rows * 0x4b400000   - bits - bits - ...      one per row
 //   a slot's sum, in working memory:  - incoming * 0x4b400000 + bits + bits + ...    one per entry whose partner it is
 //
-// 1. Integer sums do not depend on their order, so results are bit for bit the same for any number of warps and in any
-//    batch, and action and reaction cancel exactly.
+// 1. Integer sums do not depend on their order, so results are bit for bit the same for any number of warps and in
+//    any batch, and action and reaction cancel exactly.
 // 2. Rounding by an addition is part of the fma. A conversion instruction would take a slower unit of the chip.
 // 3. The bits of the rounding constant are not removed from each term. Their number is known beforehand: a lane
-// subtracts
-//    one term per row, and a slot receives incoming_counts[slot] terms, padding included. So the sums start with the
-//    opposite of what the constants add up to. Sums wrap around, which changes nothing in the end.
-// 4. The owner's sum is added to working memory once per tile; reactions are atomic additions without a result, which a
-//    warp does not wait for.
+//    subtracts one term per row, and a slot receives incoming_counts[slot] terms, padding included. So the sums start
+//    with the opposite of what the constants add up to. Sums wrap around, which changes nothing in the end.
+// 4. The owner's sum is added to working memory once per tile; reactions are atomic additions without a result, which
+//    a warp does not wait for.
 #pragma once
 
 #include "sim/cuda/block_robot.cuh"

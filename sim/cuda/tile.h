@@ -15,13 +15,12 @@
 //   bank                     0          1       ...      31
 //
 // 1. Slot s is lane s mod 32 of tile s / 32. One address leads to all fields of a slot: each field is a constant
-// further
-//    on, and the load instruction has room for that constant.
+//    further on, and the load instruction has room for that constant.
 // 2. Shared memory has 32 banks of four bytes. A warp's access takes one pass if its lanes use different banks. All
-//    fields of slot s lie in bank s mod 32, so a schedule (schedule.h) without conflicts in one field has none in any.
+//    fields of slot s lie in bank s mod 32, so a schedule (schedule.h) without conflicts in one field has none in
+//    any.
 // 3. All lists on the device (springs, faces, perturbations) name masses by their slots. Only the host knows the
-// robot's
-//    own numbers, and SlotOrder converts them.
+//    robot's own numbers, and SlotOrder converts them.
 #pragma once
 
 #include <cstdint>
