@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mercury/observables.h"
+
 namespace mercury {
 namespace {
 
@@ -103,12 +105,8 @@ std::vector<render::Color> material_colors(std::span<const Material> materials, 
 void set_activations(std::span<const Material> materials, double time, std::span<render::RenderMaterial> drawn) {
   float largest = 0;
   for (const Material& material : materials) largest = std::max(largest, std::abs(material.amplitude));
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& m = materials[i];
-    const double angle =
-        std::remainder(static_cast<double>(m.frequency) * time + static_cast<double>(m.phase), 2 * M_PI);
-    drawn[i].activation = largest > 0 ? -m.amplitude / largest * static_cast<float>(std::sin(angle)) : 0;
-  }
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    drawn[i].activation = largest > 0 ? contraction(materials[i], time) / largest : 0;
 }
 
 }  // namespace mercury

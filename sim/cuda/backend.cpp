@@ -24,7 +24,7 @@ class CudaBackend final : public Backend {
  public:
   explicit CudaBackend(const Device& device) : device_(device.index) {
     const int count = cuda_device_count();
-    if (count == 0) throw DeviceError("no CUDA device was found: use --device cpu");
+    if (count == 0) throw DeviceError("no CUDA device was found; use the device \"cpu\"");
     if (device_ >= count)
       throw DeviceError("CUDA device " + std::to_string(device_) + " is not there, the last one is " +
                         std::to_string(count - 1));

@@ -7,7 +7,7 @@
 namespace mercury {
 
 std::unique_ptr<Backend> make_cuda_backend(const Device&) {
-  throw DeviceError("this build has no CUDA backend: build with nvcc on PATH, or use --device cpu");
+  throw DeviceError("this build has no CUDA backend; build with nvcc on PATH, or use the device \"cpu\"");
 }
 ChipFit chip_fit(const Robot&, const Configuration&, int) { throw DeviceError("this build has no CUDA backend"); }
 int cuda_device_count() { return 0; }

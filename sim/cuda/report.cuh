@@ -14,6 +14,7 @@
 
 #include <cstddef>
 
+#include "mercury/observables.h"
 #include "sim/cuda/block_robot.cuh"
 #include "sim/cuda/telemetry.h"
 #include "sim/physics/springs.h"
@@ -97,10 +98,10 @@ class RobotReporter {
       const LoadedSpring& spring = springs[i];
       const float squared = squared_length(spring.d);
       const float distance = squared * inverse_sqrt(squared);
-      const float stretch = multiply_add(-spring.rest_length, spring.parameters.length_factor, distance);
-      owner.energy = multiply_add(stiffness_of(spring.parameters) * stretch, stretch, owner.energy);
-      const float strain = fabsf(multiply_add(distance, inverse(spring.rest_length), -1.0f));
-      if (robot_.material_of(records[i]) != air) owner.strain = fmaxf(owner.strain, strain);
+      const float too_long = stretch(distance, spring.rest_length, spring.parameters.length_factor);
+      owner.energy = multiply_add(spring_force(stiffness_of(spring.parameters), too_long), too_long, owner.energy);
+      if (robot_.material_of(records[i]) != air)
+        owner.strain = fmaxf(owner.strain, fabsf(strain(distance, spring.rest_length)));
     }
   }
 
