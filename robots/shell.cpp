@@ -326,9 +326,8 @@ const ParameterTable<ShellOptions>& option_table() {
       parameter(
           &Options::opening,
           {.name = "opening", .help = "Mouth of bells, ends of tubes, holes of rings: 0 narrow, 1 wide", .highest = 1}),
-      parameter(
-          &Options::lobes,
-          {.name = "lobes", .help = "Lobes around the axis, 3 or more; 0 draws them for each robot", .highest = 16}),
+      parameter(&Options::lobes,
+                {.name = "lobes", .help = "Lobes around the axis; 0 draws them for each robot", .highest = 16}),
       parameter(&Options::active, {.name = "active",
                                    .help = "Share of the springs along the surface that are muscles",
                                    .highest = 1,
