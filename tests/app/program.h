@@ -75,7 +75,7 @@ class FolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-// The first stream of a video as ffprobe tells it, its frames counted by decoding them ("nb_read_frames").
+// The first stream of a video as ffprobe describes it; frames are counted by decoding them ("nb_read_frames").
 inline nlohmann::json probe(const std::string& path) {
   const std::string text = output_of("ffprobe", {"-v", "error", "-count_frames", "-show_streams", "-of", "json", path});
   const auto json = nlohmann::json::parse(text, nullptr, false);
