@@ -41,7 +41,7 @@ struct Background::Parts {
       running = std::move(waiting.front());
       waiting.pop_front();
       lock.unlock();
-      Finish finish = run(*running);
+      Finish finish = run_task(*running);
       lock.lock();
       if (finish && !running->control->cancelled()) finished.push_back(std::move(finish));
       running.reset();
@@ -49,7 +49,7 @@ struct Background::Parts {
     }
   }
 
-  Finish run(Entry& entry) {
+  Finish run_task(Entry& entry) {
     try {
       if (!entry.control->cancelled()) return entry.task(*entry.control);
     } catch (const std::bad_alloc&) {
