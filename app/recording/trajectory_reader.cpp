@@ -44,11 +44,9 @@ std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memo
   return rows;
 }
 
-// A parameter that an older program did not have keeps its default.
 Configuration read_configuration(hid_t parameters) {
   const auto read = [&]<class Value>(const auto& parameter, Value& value) {
     const std::string name(parameter.name);
-    if (!has_attribute(parameters, name)) return;
     if constexpr (std::is_same_v<Value, Vec3>) {
       const auto [x, y, z] = read_attributes<float, 3>(parameters, name);
       value = {x, y, z};
@@ -64,7 +62,10 @@ Configuration read_configuration(hid_t parameters) {
   configuration.solver = solver_named(read_text(parameters, "solver"));
   for_each_parameter(configuration, read);
   configuration.environment = environment_named(read_text(parameters, "environment"));
-  for_each_parameter(configuration.environment, read);
+  // A program that is older than a parameter did not record it. The default gives what that program simulated.
+  for_each_parameter(configuration.environment, [&](const auto& parameter, auto& value) {
+    if (has_attribute(parameters, std::string(parameter.name))) read(parameter, value);
+  });
   validate(configuration);
   return configuration;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every parameter of a simulation, from the command line and from a TOML file: the value arrives, and one that cannot
-// be used is answered in one line that names the option.
+// Every parameter of a simulation can be given on the command line and in a TOML file. A value that cannot be used is
+// refused in one line that names the option.
 #include <gmock/gmock.h>
 
 #include "app/commands/commands.h"
@@ -30,7 +30,7 @@ void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.
 
 const std::string number = "give a number", at_least_zero = "give a finite number >= 0";
 
-// design.md's list, but for --seconds, which is not in the report.
+// All parameters that the report of `run --json` contains.
 const std::vector<Parameter> parameters{
     {"device",
      "ocean",
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Design, EveryParameter, testing::ValuesIn(parameters), 
 
 class ConfigFileFuzz : public FolderTest {};
 
-// What a file is made into on the way to the options; nothing is simulated.
+// Parses the file as the program does, but simulates nothing.
 void parse_run_with(const std::string& file) {
   CLI::App program;
   add_run_command(program, [](CommandBody) {});

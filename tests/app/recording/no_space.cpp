@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// To be preloaded into a program: files can be written up to NO_SPACE_AFTER bytes from their beginning; there the disk
-// is full.
+// Preload this into a program. Its writes fail, as on a full disk, beyond the first NO_SPACE_AFTER bytes of a file.
 #include <dlfcn.h>
 #include <unistd.h>
 

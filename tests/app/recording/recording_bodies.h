@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of recordings record: small bodies, and a file of them.
+// Small bodies for the tests of recordings, and a file of them.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Damaged recordings: a trajectory whose robots are valid, or an InputError of one line; never a crash, never memory
-// taken for what a file merely announces.
+// A damaged recording gives valid robots or an InputError of one line. It never crashes the reader, and never makes it
+// allocate memory for content that the file does not have.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -38,7 +38,7 @@ class RecordingFuzz : public FolderTest {
     sound_ = read("sound.h5");
   }
 
-  // Reads all there is. Returns the refusal; empty = none.
+  // Reads everything. Returns the message of the error; empty = none.
   std::string refusal(const std::string& name) const {
     try {
       TrajectoryReader reader(path(name));
@@ -144,7 +144,7 @@ Contents contents_of(const std::string& path) {
 
 class RecordingChanged : public RecordingFuzz {
  protected:
-  // The sound file with one change.
+  // The undamaged file with one change.
   template <class Change>
   std::string refusal_after(const Change& change) {
     std::filesystem::remove(path("changed.h5"));
@@ -167,7 +167,7 @@ void put_dataset(hid_t file, const std::string& name, hid_t type, const hdf5::Ex
   const Handle dataset(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
 }
 
-// Chunks that are nowhere: any extent, no room taken.
+// A dataset of any extent whose chunks are not stored.
 void put_announced(hid_t file, const std::string& name, hid_t type, const hdf5::Extent& extent) {
   remove(file, name);
   const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr));
@@ -176,15 +176,22 @@ void put_announced(hid_t file, const std::string& name, hid_t type, const hdf5::
   const Handle dataset(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
 }
 
-// Whether the reader needs the dataset. The rest is there for other programs: the tables under /connectivity, and the
-// time axes that every element has of its own and that are links to one.
+// Whether the reader needs the dataset. The rest is for other programs: the tables under /connectivity, and the time
+// axis of each element, which is a link.
 bool is_read(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
   if (last == "step" || last == "time") return name.starts_with("/parameters/");
   return name.starts_with("/particles/") && last != "mass";
 }
 
-TEST_F(RecordingChanged, EveryMissingPartIsToldOrNotNeeded) {
+TEST_F(RecordingChanged, AParameterThatAnOlderProgramDidNotRecordHasItsDefault) {
+  EXPECT_EQ(refusal_after(
+                [](hid_t file) { checked(H5Adelete_by_name(file, "/parameters", "drag_tangential", H5P_DEFAULT)); }),
+            "");
+  EXPECT_EQ(std::get<Ocean>(TrajectoryReader(path("changed.h5")).configuration().environment), Ocean{});
+}
+
+TEST_F(RecordingChanged, EveryMissingPartIsReportedOrNotNeeded) {
   int refused = 0;
   for (const auto* objects : {&contents_.groups, &contents_.datasets})
     for (const std::string& object : *objects) {
@@ -200,7 +207,7 @@ TEST_F(RecordingChanged, EveryMissingPartIsToldOrNotNeeded) {
   EXPECT_GT(refused, 40);
 }
 
-TEST_F(RecordingChanged, DatasetsOfOtherShapesAndTypesAreToldOrUsable) {
+TEST_F(RecordingChanged, DatasetsOfOtherShapesAndTypesAreReportedOrUsable) {
   const Handle text(H5Tcopy(H5T_C_S1));
   checked(H5Tset_size(text, H5T_VARIABLE));
   for (const std::string& name : contents_.datasets) {
@@ -212,7 +219,7 @@ TEST_F(RecordingChanged, DatasetsOfOtherShapesAndTypesAreToldOrUsable) {
   expect_modest_memory();
 }
 
-TEST_F(RecordingChanged, AnnouncedExtentsTakeNoMemory) {
+TEST_F(RecordingChanged, AnnouncedExtentsAllocateNoMemory) {
   constexpr hsize_t huge = hsize_t{1} << 40;
   for (const std::string& name : contents_.datasets) {
     SCOPED_TRACE(name);
@@ -225,7 +232,7 @@ TEST_F(RecordingChanged, AnnouncedExtentsTakeNoMemory) {
   expect_modest_memory();
 }
 
-TEST_F(RecordingChanged, AttributesOfOtherKindsAreToldOrUsable) {
+TEST_F(RecordingChanged, AttributesOfOtherKindsAreReportedOrUsable) {
   for (const auto& [object, name] : contents_.attributes) {
     SCOPED_TRACE(object + " " + name);
     const auto put = [&, &object = object, &name = name](hid_t type, const hdf5::Extent& extent, const void* content) {

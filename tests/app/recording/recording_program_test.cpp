@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury run --record: the file, and what becomes of it when the run ends early or the disk is full.
+// mercury run --record: the file, also when the run ends early or the disk is full.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST_F(RunRecord, RecordingDoesNotChangeTheRun) {
   EXPECT_EQ(with["robots"], without["robots"]);
 }
 
-TEST_F(RunRecord, WithoutEveryItIsThirtyFramesASecond) {
+TEST_F(RunRecord, WithoutEveryThereAreThirtyFramesPerSecond) {
   ASSERT_EQ(mercury({"run", "--random", "voxel", "--seconds", "1", "--dt", "0.005", "--record", file()}).status, 0);
   EXPECT_EQ(TrajectoryReader(file()).every(), 7);  // 1/30 s is 6.7 steps
 }
@@ -77,7 +77,7 @@ TEST_F(RunRecord, KilledRunLeavesNoFileOfThatName) {
 class FullDisk : public RunRecord, public testing::WithParamInterface<int> {};
 
 // Where the disk is full at once, while the robots are written, among the frames, and at the very end.
-TEST_P(FullDisk, IsToldInOneLine) {
+TEST_P(FullDisk, IsReportedInOneLine) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer wants to be loaded first";
 #endif
@@ -94,7 +94,7 @@ TEST_P(FullDisk, IsToldInOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(After, FullDisk, testing::Values(0, 2000, 60'000, 500'000, 2'300'000));
 
-TEST_F(RunRecord, BadOptionsAreToldInOneLine) {
+TEST_F(RunRecord, BadOptionsAreReportedInOneLine) {
   const auto messages = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01"};
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is recorded is what was simulated, bit for bit, and enough to simulate it again.
+// A recording has the simulation bit for bit, and enough to simulate it again.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -83,7 +83,7 @@ TEST_P(RecordedConfiguration, IsReadBackWhole) {
   EXPECT_EQ(TrajectoryReader(file()).configuration(), configuration);
 }
 
-// No value is a default, so that none is read back by chance.
+// No value is a default, so that a value that is not read makes the test fail.
 INSTANTIATE_TEST_SUITE_P(EveryEnvironment, RecordedConfiguration,
                          testing::Values(Environment(Ocean{
                                              998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
@@ -116,7 +116,7 @@ TEST_F(Recording, MaterialsAreThoseOfTheSimulation) {
   EXPECT_TRUE(same_bits(reader.positions(1), all_positions(again)));
 }
 
-TEST_F(Recording, AnyFrameInAnyOrderWhereThereAreMoreThanMemoryHolds) {
+TEST_F(Recording, ReadsFramesInAnyOrderWhenMemoryHoldsOnlyAFew) {
   Simulation simulation(on_cpu(), std::vector{pair("a"), small_voxel_robot(0)});
   std::vector<std::vector<Vec3>> expected;
   {
@@ -157,7 +157,7 @@ TEST_F(Recording, FrameAtATimeIsTheLastOneBefore) {
   EXPECT_EQ(reader.frame_at(1e9), 3u);
 }
 
-TEST_F(Recording, ExplodedRobotsAreNotedAndWhatIsNotFiniteIsKept) {
+TEST_F(Recording, MarksExplodedRobotsAndKeepsNonFiniteValues) {
   Configuration configuration = on_cpu();
   configuration.dt = 1;  // omega = sqrt(2 k / m) = 10 rad/s is unstable beyond 0.2 s
   Robot steady = pair("steady");
@@ -210,7 +210,7 @@ TEST_F(Recording, HundredsOfRobots) {
   EXPECT_TRUE(same_bits(reader.positions(2), all_positions(simulation)));
 }
 
-TEST_F(Recording, IsThereOnlyWhenItIsWhole) {
+TEST_F(Recording, ExistsOnlyOnceComplete) {
   write("a.h5", "as it was");
   Simulation simulation(on_cpu(), std::vector{pair("pair")});
   {
@@ -226,7 +226,7 @@ TEST_F(Recording, IsThereOnlyWhenItIsWhole) {
   EXPECT_EQ(TrajectoryReader(file()).frames(), 2u);
 }
 
-TEST_F(Recording, PlayedBackItIsTheSimulationAgain) {
+TEST_F(Recording, PlaybackRepeatsTheSimulation) {
   Configuration configuration = on_cpu();
   configuration.environment = Land{};
   const std::vector<Robot> robots{small_voxel_robot(1), own_materials("own")};
@@ -250,7 +250,7 @@ TEST_F(Recording, PlayedBackItIsTheSimulationAgain) {
   EXPECT_TRUE(same_bits(all_positions(played), all_positions(Simulation(configuration, robots))));
 }
 
-TEST_F(Recording, PlayedBackBetweenFramesItIsBetweenThem) {
+TEST_F(Recording, PlaybackInterpolatesBetweenFrames) {
   Simulation simulation(on_cpu(), std::vector{pair("pair")});
   record(simulation, file(), 100, 100);
   Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
@@ -262,7 +262,7 @@ TEST_F(Recording, PlayedBackBetweenFramesItIsBetweenThem) {
     EXPECT_NEAR(between[i].x, 0.75f * first[i].x + 0.25f * last[i].x, 1e-7f);
 }
 
-TEST_F(Recording, PlayedBackARobotExplodesWhenItDid) {
+TEST_F(Recording, PlaybackMarksARobotWhenItExploded) {
   Configuration configuration = on_cpu();
   configuration.dt = 1;
   Simulation simulation(configuration, std::vector{pair("wild")});
@@ -288,7 +288,7 @@ std::string refusal(const std::string& path) {
   }
 }
 
-TEST_F(Recording, WhatIsNoTrajectoryIsToldSo) {
+TEST_F(Recording, OtherFilesAreRefused) {
   EXPECT_EQ(refusal(path("none.h5")), path("none.h5") + ": No such file or directory");
   EXPECT_EQ(refusal(folder_.string()), folder_.string() + ": is a folder, not a trajectory");
   write("text.h5", "not HDF5 at all");
