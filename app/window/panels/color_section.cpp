@@ -46,10 +46,12 @@ bool draw_scale(ViewSettings& view) {
 bool draw_color_section(ViewSettings& view, const Environment& environment, EventLog& log) {
   heading("Colour by");
   bool changed = false;
-  const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x, width = (ImGui::GetContentRegionAvail().x - 3 * gap) / 4;
+  constexpr int columns = 3;
+  const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x;
+  const float width = (ImGui::GetContentRegionAvail().x - (columns - 1) * gap) / columns;
   int number = 0;
   for (const ColorQuantity& quantity : color_quantities()) {
-    if (number++ % 4 != 0) ImGui::SameLine(0, gap);
+    if (number++ % columns != 0) ImGui::SameLine(0, gap);
     const bool offered = quantity.exists_in(environment), on = view.color == &quantity;
     ImGui::BeginDisabled(!offered);
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);

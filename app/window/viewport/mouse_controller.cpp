@@ -169,7 +169,7 @@ void MouseController::draw_details(const ViewportArea& area) const {
     ImGui::Text("spring: %s", figures.spring->material_name.c_str());
     ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
                 static_cast<double>(figures.spring->force));
-    ImGui::Text("%.4g m, at details_delay %.4g m", static_cast<double>(figures.spring->length),
+    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
                 static_cast<double>(figures.spring->rest_length));
   }
   ImGui::PopStyleColor();
