@@ -2,9 +2,13 @@
 // Robots, configuration and time of a Simulation.
 #include "mercury/simulation.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "mercury/error.h"
 #include "sim/simulation_parts.h"
@@ -21,6 +25,33 @@ void validate_named(const Robot& robot, std::size_t index) {
   }
 }
 
+bool is_sound(const Robot& robot) {
+  try {
+    validate(robot);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Checks robots on all cores, and one that appears several times in a row only once. `first` = the index of the first.
+void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::size_t first) {
+  std::atomic<std::size_t> bad = robots.size();
+  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+    if ((i > 0 && robots[i] == robots[i - 1]) || is_sound(*robots[i])) return;
+    for (std::size_t known = bad; i < known && !bad.compare_exchange_weak(known, i);) {
+    }
+  });
+  if (bad < robots.size()) validate_named(*robots[bad], first + bad);
+}
+
+std::vector<std::shared_ptr<const Robot>> copies_of(std::span<const Robot> robots) {
+  std::vector<std::shared_ptr<const Robot>> copies;
+  copies.reserve(robots.size());
+  for (const Robot& robot : robots) copies.push_back(std::make_shared<const Robot>(robot));
+  return copies;
+}
+
 bool is_land(const Environment& environment) { return std::holds_alternative<Land>(environment); }
 
 }  // namespace
@@ -33,11 +64,28 @@ void Simulation::Parts::require(std::size_t robot) const {
   if (robot >= size()) throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
 }
 
-void Simulation::Parts::load() {
-  std::vector<const Robot*> pointers;
-  pointers.reserve(size());
-  for (const auto& robot : robots) pointers.push_back(robot.get());
-  backend->load(pointers, configuration);
+void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> added) {
+  validate_all(added, size());
+  for (const std::shared_ptr<const Robot>& robot : added) {
+    robots.push_back(robot);
+    pointers.push_back(robot.get());
+    offsets.push_back(offsets.back() + robot->masses.size());
+  }
+  changed_tables.resize(size());
+  explosions.resize(size());
+}
+
+void Simulation::Parts::truncate(std::size_t size) {
+  robots.resize(size);
+  pointers.resize(size);
+  offsets.resize(size + 1);
+  changed_tables.resize(size);
+  explosions.resize(size);
+}
+
+void Simulation::Parts::set_down(std::size_t first) {
+  if (!is_land(configuration.environment)) return;
+  for (std::size_t i = first; i < size(); ++i) put_at_rest(i);
 }
 
 void Simulation::Parts::put_at_rest(std::size_t robot) {
@@ -55,35 +103,38 @@ Simulation::Simulation(const Configuration& configuration, std::span<const Robot
 
 Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots,
                        std::unique_ptr<Backend> backend)
-    : parts_(std::make_unique<Parts>()) {
+    : parts_(std::make_unique<Parts>(configuration, std::move(backend), copies_of(robots))) {}
+
+Simulation::Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots)
+    : parts_(std::make_unique<Parts>(configuration, (validate(configuration), make_backend(configuration.device)),
+                                     robots)) {}
+
+Simulation::Parts::Parts(const Configuration& initial, std::unique_ptr<Backend> stepped_by,
+                         std::span<const std::shared_ptr<const Robot>> first_robots)
+    : configuration(initial), clock{.dt = initial.dt}, backend(std::move(stepped_by)) {
   validate(configuration);
-  parts_->configuration = configuration;
-  parts_->clock.dt = configuration.dt;
-  parts_->backend = std::move(backend);
-  parts_->load();
-  if (!robots.empty()) add(robots);
+  append(first_robots);
+  backend->load(pointers, configuration);
+  set_down(0);
 }
 
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-std::size_t Simulation::add(std::span<const Robot> robots) {
+std::size_t Simulation::add(std::span<const Robot> robots) { return add(copies_of(robots)); }
+
+std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots) {
   const std::size_t first = size();
-  for (std::size_t i = 0; i < robots.size(); ++i) validate_named(robots[i], first + i);
-  const BatchState saved = parts_->save();
-  for (const Robot& robot : robots) {
-    parts_->robots.push_back(std::make_unique<Robot>(robot));
-    parts_->offsets.push_back(parts_->offsets.back() + robot.masses.size());
-    parts_->explosions.emplace_back();
-    parts_->materials.resize(size() * max_materials);
-    std::ranges::copy(materials_of(robot), parts_->table(size() - 1).begin());
+  parts_->append(robots);
+  if (robots.empty()) return first;
+  try {
+    parts_->backend->add(parts_->pointers, first);
+  } catch (...) {
+    parts_->truncate(first);
+    throw;
   }
-  parts_->load();
-  parts_->backend->write_materials(parts_->materials);
-  parts_->restore(saved);
-  if (is_land(parts_->configuration.environment))
-    for (std::size_t i = first; i < size(); ++i) parts_->put_at_rest(i);
+  parts_->set_down(first);
   return first;
 }
 
@@ -94,30 +145,23 @@ void Simulation::keep(std::span<const std::size_t> robots) {
     if (kept[i]) throw std::invalid_argument("a robot can be kept only once");
     kept[i] = true;
   }
-  parts_->backend->set_perturbations({});
-  if (robots.size() == size() && std::ranges::is_sorted(robots)) return;
-  BatchState saved;
-  std::vector<std::unique_ptr<Robot>> remaining;
-  std::vector<Material> materials;
-  std::vector<KnownExplosion> explosions;
-  std::vector<std::size_t> offsets{0};
-  for (const std::size_t i : robots) {
-    explosions.push_back(parts_->explosions[i]);
-    saved.states.push_back(parts_->state(i));
-    saved.statuses.push_back(parts_->backend->status(i));
-    const auto table = parts_->table(i);
-    materials.insert(materials.end(), table.begin(), table.end());
-    offsets.push_back(offsets.back() + parts_->masses(i));
-    remaining.push_back(std::move(parts_->robots[i]));
+  if (robots.size() == size() && std::ranges::is_sorted(robots)) {
+    parts_->backend->set_perturbations({});
+    return;
   }
-  // After this, `remaining` holds the robots that go. The backend refers to them until it has loaded the others.
-  std::swap(parts_->robots, remaining);
-  parts_->materials = std::move(materials);
-  parts_->explosions = std::move(explosions);
-  parts_->offsets = std::move(offsets);
-  parts_->load();
-  parts_->backend->write_materials(parts_->materials);
-  parts_->restore(saved);
+  // The backend refers to the robots that go until it has let go of them.
+  const std::vector<std::shared_ptr<const Robot>> before = parts_->robots;
+  std::vector<std::unique_ptr<MaterialTable>> changed = std::move(parts_->changed_tables);
+  const std::vector<KnownExplosion> explosions = std::move(parts_->explosions);
+  parts_->truncate(0);
+  for (const std::size_t i : robots) {
+    parts_->robots.push_back(before[i]);
+    parts_->pointers.push_back(before[i].get());
+    parts_->offsets.push_back(parts_->offsets.back() + before[i]->masses.size());
+    parts_->changed_tables.push_back(std::move(changed[i]));
+    parts_->explosions.push_back(explosions[i]);
+  }
+  parts_->backend->keep(parts_->pointers, robots);
 }
 
 std::size_t Simulation::size() const { return parts_->size(); }
@@ -147,6 +191,17 @@ void Simulation::step(std::int64_t steps) {
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
   if (steps > 0 && size() > 0) parts_->backend->step(parts_->clock, steps);
   parts_->clock.step += steps;
+}
+
+std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int64_t every) {
+  if (every <= 0 || steps < 0 || steps % every != 0)
+    throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
+  std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
+  std::vector<RobotStatus> statuses(samples.size());
+  if (!samples.empty()) parts_->backend->step_and_report(parts_->clock, steps, every, samples, statuses);
+  parts_->clock.step += steps;
+  for (std::size_t i = 0; i < samples.size(); ++i) parts_->add_explosion(samples[i], i % size(), statuses[i]);
+  return samples;
 }
 
 void Simulation::reset() {

@@ -16,16 +16,26 @@ void Simulation::Parts::require_material(std::size_t robot, MaterialId id) const
     throw std::out_of_range("material " + std::to_string(id) + ", the robot has " + std::to_string(count));
 }
 
+MaterialTable Simulation::Parts::table(std::size_t robot) const {
+  if (changed_tables[robot]) return *changed_tables[robot];
+  MaterialTable table{};
+  std::ranges::copy(materials_of(*robots[robot]), table.begin());
+  return table;
+}
+
 Material Simulation::material(std::size_t robot, MaterialId id) const {
   parts_->require_material(robot, id);
-  return parts_->table(robot)[id];
+  const auto& changed = parts_->changed_tables[robot];
+  return changed ? (*changed)[id] : materials_of(*parts_->robots[robot])[id];
 }
 
 void Simulation::set_material(std::size_t robot, MaterialId id, const Material& material) {
   parts_->require_material(robot, id);
   validate(material, "material " + std::to_string(id));
-  parts_->table(robot)[id] = material;
-  parts_->backend->write_materials(robot, parts_->table(robot));
+  auto& changed = parts_->changed_tables[robot];
+  if (!changed) changed = std::make_unique<MaterialTable>(parts_->table(robot));
+  (*changed)[id] = material;
+  parts_->backend->write_materials(robot, *changed);
 }
 
 void Simulation::set_materials(std::span<const Material> tables) {
@@ -36,11 +46,20 @@ void Simulation::set_materials(std::span<const Material> tables) {
     if (!is_valid(tables[i]))
       validate(tables[i],
                "robot " + std::to_string(i / max_materials) + ", material " + std::to_string(i % max_materials));
-  std::ranges::copy(tables, parts_->materials.begin());
-  parts_->backend->write_materials(parts_->materials);
+  for (std::size_t i = 0; i < size(); ++i) {
+    auto& changed = parts_->changed_tables[i];
+    if (!changed) changed = std::make_unique<MaterialTable>();
+    std::ranges::copy(tables.subspan(i * max_materials, max_materials), changed->begin());
+  }
+  parts_->backend->write_materials(tables);
 }
 
-std::vector<Material> Simulation::materials() const { return parts_->materials; }
+std::vector<Material> Simulation::materials() const {
+  std::vector<Material> all(size() * max_materials);
+  for (std::size_t i = 0; i < size(); ++i)
+    std::ranges::copy(parts_->table(i), all.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
+  return all;
+}
 
 void Simulation::set_perturbations(std::span<const Perturbation> perturbations) {
   for (const Perturbation& perturbation : perturbations) {

@@ -3,6 +3,7 @@
 // explosions, telemetry) and simulation_controls.cpp (materials, perturbations).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,11 +14,8 @@
 
 namespace mercury {
 
-// The states of all robots, to restore them after the backend has loaded other robots.
-struct BatchState {
-  std::vector<State> states;
-  std::vector<RobotStatus> statuses;
-};
+// A robot's material table by id, max_materials elements.
+using MaterialTable = std::array<Material, max_materials>;
 
 // When a robot exploded and by which spring. A backend reports only the step and perhaps a mass; the rest takes a
 // search over the frozen robot, so it is done when somebody first asks, and kept. The frozen state cannot change
@@ -31,30 +29,37 @@ struct KnownExplosion {
 struct Simulation::Parts {
   Configuration configuration;
   Clock clock;
-  std::vector<std::unique_ptr<Robot>> robots;      // the backend refers to them, so their addresses must not change
-  std::vector<std::size_t> offsets{0};             // mass_offsets()
-  std::vector<Material> materials;                 // [robot][max_materials]
-  mutable std::vector<KnownExplosion> explosions;  // one per robot
-  mutable std::vector<RobotStatus> reported;       // one per robot, used by telemetry()
-  std::unique_ptr<Backend> backend;                // last: released before the robots
+  std::vector<std::shared_ptr<const Robot>> robots;            // the backend refers to them
+  std::vector<const Robot*> pointers;                          // the same, for the backend
+  std::vector<std::size_t> offsets{0};                         // mass_offsets()
+  std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
+  mutable std::vector<KnownExplosion> explosions;              // one per robot
+  mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
+  std::unique_ptr<Backend> backend;                            // last: released before the robots
+
+  // Throws as Simulation's constructors do.
+  Parts(const Configuration& initial, std::unique_ptr<Backend> stepped_by,
+        std::span<const std::shared_ptr<const Robot>> first_robots);
 
   std::size_t size() const { return robots.size(); }
   std::size_t masses(std::size_t robot) const { return offsets[robot + 1] - offsets[robot]; }
-  std::span<Material> table(std::size_t robot) {
-    return std::span(materials).subspan(robot * max_materials, max_materials);
-  }
 
   // Throw std::out_of_range.
   void require(std::size_t robot) const;
   void require_material(std::size_t robot, MaterialId id) const;
 
-  void load();
+  // Checks robots and takes them behind the others, without the backend. Throws InputError, and has no effect then.
+  void append(std::span<const std::shared_ptr<const Robot>> added);
+  // Forgets the robots from this index on, without the backend.
+  void truncate(std::size_t size);
+  // Sets robots from this index on down on the floor, if there is one.
+  void set_down(std::size_t first);
   void put_at_rest(std::size_t robot);
 
   // Without the explosion.
   State state(std::size_t robot) const;
-  BatchState save() const;
-  void restore(const BatchState& saved);
+  // All materials of a robot as they are now. Ids that the robot does not have are air.
+  MaterialTable table(std::size_t robot) const;
 
   const KnownExplosion& explosion(std::size_t robot, const RobotStatus& status) const;
   // Fills in the explosion, if there is one. `out` is a State or a Telemetry.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // States, explosions and telemetry of a Simulation.
+#include <oneapi/tbb/parallel_for.h>
+
 #include <bit>
 #include <stdexcept>
 
@@ -9,6 +11,8 @@
 
 namespace mercury {
 namespace {
+
+constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
 
 std::uint64_t fnv1a(std::span<const Vec3> values, std::uint64_t hash) {
   const auto add = [&](float value) {
@@ -29,22 +33,6 @@ State Simulation::Parts::state(std::size_t robot) const {
   State state{std::vector<Vec3>(masses(robot)), std::vector<Vec3>(masses(robot))};
   backend->read(robot, state.positions, state.velocities);
   return state;
-}
-
-BatchState Simulation::Parts::save() const {
-  BatchState saved;
-  for (std::size_t i = 0; i < size(); ++i) {
-    saved.states.push_back(state(i));
-    saved.statuses.push_back(backend->status(i));
-  }
-  return saved;
-}
-
-void Simulation::Parts::restore(const BatchState& saved) {
-  for (std::size_t i = 0; i < saved.states.size(); ++i) {
-    backend->write(i, saved.states[i].positions, saved.states[i].velocities);
-    backend->set_status(i, saved.statuses[i]);
-  }
 }
 
 const KnownExplosion& Simulation::Parts::explosion(std::size_t robot, const RobotStatus& status) const {
@@ -121,8 +109,22 @@ Telemetry Simulation::telemetry(std::size_t robot) const {
 
 std::uint64_t Simulation::hash(std::size_t robot) const {
   const State now = parts_->state(robot);
-  constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
   return fnv1a(now.velocities, fnv1a(now.positions, offset_basis));
+}
+
+std::vector<std::uint64_t> Simulation::hashes() const {
+  std::vector<std::uint64_t> all(size(), offset_basis);
+  std::vector<Vec3> values(mass_count());
+  const auto take_values = [&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+      all[i] = fnv1a(std::span(values).subspan(parts_->offsets[i], parts_->masses(i)), all[i]);
+    });
+  };
+  parts_->backend->read_positions(values);
+  take_values();
+  parts_->backend->read_velocities(values);
+  take_values();
+  return all;
 }
 
 }  // namespace mercury

@@ -4,13 +4,74 @@
 #include <algorithm>
 #include <exception>
 #include <future>
+#include <utility>
 
 namespace mercury {
 namespace {
 
+// Which part has which robots. Within a part, robots stand in the order of the batch.
+//
+//     batch    0  1  2  3  4  5  6
+//     part 0   0        3  4     6      four robots, three runs: 0, 3-4 and 6
+//     part 1      1  2        5
+class Shares {
+ public:
+  struct Place {
+    std::size_t part, index;  // index in the part
+  };
+
+  explicit Shares(std::size_t parts) : parts_(parts) {}
+
+  std::size_t size() const { return places_.size(); }
+  std::size_t size(std::size_t part) const { return parts_[part].robots.size(); }
+  std::size_t masses(std::size_t part) const { return parts_[part].masses; }
+  std::span<const Robot* const> robots(std::size_t part) const { return parts_[part].robots; }
+  Place place(std::size_t robot) const { return places_[robot]; }
+  std::span<const std::size_t> first_mass() const { return first_mass_; }  // by robot, then the number of all masses
+
+  // Takes the next robot of the batch into a part.
+  void append(std::size_t part, const Robot& robot) {
+    Part& to = parts_[part];
+    places_.push_back({part, to.robots.size()});
+    to.robots.push_back(&robot);
+    to.in_batch.push_back(places_.size() - 1);
+    to.masses += robot.masses.size();
+    to.springs += robot.springs.size();
+    first_mass_.push_back(first_mass_.back() + robot.masses.size());
+  }
+
+  // The part with the least work. Robots without springs count by their masses.
+  std::size_t least() const {
+    const auto work = [](const Part& part) { return std::pair(part.springs, part.masses); };
+    return static_cast<std::size_t>(std::ranges::min_element(parts_, {}, work) - parts_.begin());
+  }
+
+  // Calls visit(first in the part, first in the batch, count) for each run: robots that follow each other in both.
+  template <class Visit>
+  void for_each_run(std::size_t part, const Visit& visit) const {
+    const std::vector<std::size_t>& robots = parts_[part].in_batch;
+    for (std::size_t first = 0, last = 0; first < robots.size(); first = last) {
+      for (++last; last < robots.size() && robots[last] == robots[last - 1] + 1;) ++last;
+      visit(first, robots[first], last - first);
+    }
+  }
+
+ private:
+  struct Part {
+    std::vector<const Robot*> robots;
+    std::vector<std::size_t> in_batch;  // their indices
+    std::size_t masses = 0, springs = 0;
+  };
+
+  std::vector<Part> parts_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> first_mass_{0};
+};
+
 class SplitBackend final : public Backend {
  public:
-  explicit SplitBackend(std::vector<std::unique_ptr<Backend>> parts) : parts_(std::move(parts)) {}
+  explicit SplitBackend(std::vector<std::unique_ptr<Backend>> parts)
+      : parts_(std::move(parts)), shares_(parts_.size()) {}
 
   std::string device_name() const override {
     std::string names;
@@ -47,17 +108,35 @@ class SplitBackend final : public Backend {
   }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
-    first_robot_.assign(1, 0);
-    first_mass_.assign(1, 0);
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-      first_robot_.push_back(robots.size() * (p + 1) / parts_.size());
-      std::size_t masses = first_mass_.back();
-      for (std::size_t i = first_robot_[p]; i < first_robot_[p + 1]; ++i) masses += robots[i]->masses.size();
-      first_mass_.push_back(masses);
+    shares_ = Shares(parts_.size());
+    for (const Robot* robot : robots) shares_.append(shares_.least(), *robot);
+    for_each_part([&](std::size_t p) { parts_[p]->load(shares_.robots(p), configuration); });
+  }
+
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override {
+    std::vector<std::size_t> before;
+    for (std::size_t p = 0; p < parts_.size(); ++p) before.push_back(shares_.size(p));
+    for (const Robot* robot : robots.subspan(first_new)) shares_.append(shares_.least(), *robot);
+    for_each_part([&](std::size_t p) {
+      if (shares_.size(p) > before[p]) parts_[p]->add(shares_.robots(p), before[p]);
+    });
+  }
+
+  void keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices) override {
+    Shares remaining(parts_.size());
+    std::vector<std::vector<std::size_t>> kept(parts_.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      const Shares::Place before = shares_.place(indices[i]);
+      kept[before.part].push_back(before.index);
+      remaining.append(before.part, *robots[i]);
     }
     for_each_part([&](std::size_t p) {
-      parts_[p]->load(robots.subspan(first_robot_[p], first_robot_[p + 1] - first_robot_[p]), configuration);
+      if (kept[p].size() == shares_.size(p) && std::ranges::is_sorted(kept[p]))
+        parts_[p]->set_perturbations({});
+      else
+        parts_[p]->keep(remaining.robots(p), kept[p]);
     });
+    shares_ = std::move(remaining);
   }
 
   void configure(const Configuration& configuration) override {
@@ -74,15 +153,17 @@ class SplitBackend final : public Backend {
     part_of(robot).write(index_in_part(robot), positions, velocities);
   }
   void read_positions(std::span<Vec3> out) const override {
-    for_each_part([&](std::size_t p) { parts_[p]->read_positions(masses_of(p, out)); });
+    gather_masses(out, [](const Backend& part, std::span<Vec3> share) { part.read_positions(share); });
   }
   void read_velocities(std::span<Vec3> out) const override {
-    for_each_part([&](std::size_t p) { parts_[p]->read_velocities(masses_of(p, out)); });
+    gather_masses(out, [](const Backend& part, std::span<Vec3> share) { part.read_velocities(share); });
   }
 
   RobotStatus status(std::size_t robot) const override { return part_of(robot).status(index_in_part(robot)); }
   std::vector<RobotStatus> statuses() const override {
-    return gather<RobotStatus>([](const Backend& part) { return part.statuses(); });
+    std::vector<RobotStatus> all(shares_.size());
+    for_each_part([&](std::size_t p) { scatter<RobotStatus>(p, parts_[p]->statuses(), all); });
+    return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
     part_of(robot).set_status(index_in_part(robot), status);
@@ -90,8 +171,13 @@ class SplitBackend final : public Backend {
 
   void write_materials(std::span<const Material> tables) override {
     for_each_part([&](std::size_t p) {
-      parts_[p]->write_materials(
-          tables.subspan(first_robot_[p] * max_materials, (first_robot_[p + 1] - first_robot_[p]) * max_materials));
+      std::vector<Material> share;
+      share.reserve(shares_.size(p) * max_materials);
+      shares_.for_each_run(p, [&](std::size_t, std::size_t robot, std::size_t count) {
+        const auto run = tables.subspan(robot * max_materials, count * max_materials);
+        share.insert(share.end(), run.begin(), run.end());
+      });
+      parts_[p]->write_materials(share);
     });
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
@@ -101,28 +187,65 @@ class SplitBackend final : public Backend {
   void set_perturbations(std::span<const Perturbation> perturbations) override {
     std::vector<std::vector<Perturbation>> shares(parts_.size());
     for (Perturbation perturbation : perturbations) {
-      const std::size_t p = part_index(perturbation.robot);
-      perturbation.robot -= first_robot_[p];
-      shares[p].push_back(perturbation);
+      const auto [part, index] = shares_.place(perturbation.robot);
+      perturbation.robot = index;
+      shares[part].push_back(perturbation);
     }
     for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_perturbations(shares[p]);
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     for_each_part([&](std::size_t p) {
-      const std::size_t first = first_robot_[p], count = first_robot_[p + 1] - first;
-      parts_[p]->report(clock, telemetry.subspan(first, count), statuses.subspan(first, count));
+      std::vector<Telemetry> share(shares_.size(p));
+      std::vector<RobotStatus> share_statuses(share.size());
+      parts_[p]->report(clock, share, share_statuses);
+      scatter<Telemetry>(p, share, telemetry);
+      scatter<RobotStatus>(p, share_statuses, statuses);
+    });
+  }
+
+  // Parts do not wait for each other between samples.
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
+                       std::span<RobotStatus> statuses) override {
+    const auto portions = static_cast<std::size_t>(steps / every);
+    for_each_part([&](std::size_t p) {
+      const std::size_t robots = shares_.size(p);
+      std::vector<Telemetry> share(portions * robots);
+      std::vector<RobotStatus> share_statuses(share.size());
+      parts_[p]->step_and_report(clock, steps, every, share, share_statuses);
+      for (std::size_t i = 0; i < portions; ++i) {
+        scatter<Telemetry>(p, std::span(share).subspan(i * robots, robots), samples.subspan(i * shares_.size()));
+        scatter<RobotStatus>(p, std::span(share_statuses).subspan(i * robots, robots),
+                             statuses.subspan(i * shares_.size()));
+      }
     });
   }
 
  private:
-  std::size_t part_index(std::size_t robot) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(first_robot_, robot) - first_robot_.begin()) - 1;
+  Backend& part_of(std::size_t robot) const { return *parts_[shares_.place(robot).part]; }
+  std::size_t index_in_part(std::size_t robot) const { return shares_.place(robot).index; }
+
+  // Writes one value per robot of a part to the robots' places in the batch.
+  template <class T>
+  void scatter(std::size_t p, std::span<const T> share, std::span<T> all) const {
+    shares_.for_each_run(p, [&](std::size_t first, std::size_t robot, std::size_t count) {
+      std::ranges::copy(share.subspan(first, count), all.subspan(robot, count).begin());
+    });
   }
-  Backend& part_of(std::size_t robot) const { return *parts_[part_index(robot)]; }
-  std::size_t index_in_part(std::size_t robot) const { return robot - first_robot_[part_index(robot)]; }
-  std::span<Vec3> masses_of(std::size_t p, std::span<Vec3> all) const {
-    return all.subspan(first_mass_[p], first_mass_[p + 1] - first_mass_[p]);
+
+  // read(part, one vector per mass of that part) for all parts.
+  template <class Read>
+  void gather_masses(std::span<Vec3> out, const Read& read) const {
+    for_each_part([&](std::size_t p) {
+      std::vector<Vec3> share(shares_.masses(p));
+      read(*parts_[p], share);
+      std::span<const Vec3> left = share;
+      shares_.for_each_run(p, [&](std::size_t, std::size_t robot, std::size_t count) {
+        const std::size_t first = shares_.first_mass()[robot], masses = shares_.first_mass()[robot + count] - first;
+        std::ranges::copy(left.first(masses), out.subspan(first, masses).begin());
+        left = left.subspan(masses);
+      });
+    });
   }
 
   // Runs work(part) for all parts at once. If parts throw, the last exception is thrown when all are done.
@@ -144,17 +267,8 @@ class SplitBackend final : public Backend {
     if (error) std::rethrow_exception(error);
   }
 
-  template <class T, class Ask>
-  std::vector<T> gather(const Ask& ask) const {
-    std::vector<std::vector<T>> shares(parts_.size());
-    for_each_part([&](std::size_t p) { shares[p] = ask(*parts_[p]); });
-    std::vector<T> all;
-    for (const std::vector<T>& share : shares) all.insert(all.end(), share.begin(), share.end());
-    return all;
-  }
-
   std::vector<std::unique_ptr<Backend>> parts_;
-  std::vector<std::size_t> first_robot_{0}, first_mass_{0};  // of each part, then the end
+  Shares shares_;
 };
 
 }  // namespace

@@ -27,6 +27,7 @@ class Playback final : public Backend {
     configuration_ = configuration;
     go_to(0);
   }
+  BatchSettings settings() const override { return robots_->settings(); }
   void configure(const Configuration& configuration) override { robots_->configure(configuration); }
   void step(const Clock& clock, std::int64_t steps) override { go_to(clock.step + steps); }
 

@@ -58,6 +58,15 @@ class CpuBackend final : public Backend {
     configure(configuration);
   }
 
+  BatchSettings settings() const override {
+    BatchSettings now{.configuration = configuration_};
+    for (const Body& body : bodies_) {
+      now.materials.insert(now.materials.end(), body.materials.begin(), body.materials.end());
+      now.perturbations.insert(now.perturbations.end(), body.perturbations.begin(), body.perturbations.end());
+    }
+    return now;
+  }
+
   void configure(const Configuration& configuration) override {
     configuration_ = configuration;
     setting_ = setting_of(configuration);

@@ -53,7 +53,13 @@ class CudaBackend final : public Backend {
     begin_change();
     batch_ = Batch();
     batch_ = Batch(robots);
+    perturbations_.clear();
     configure(configuration);
+  }
+
+  BatchSettings settings() const override {
+    const std::span<const Material> tables = batch_.materials();
+    return {configuration_, {tables.begin(), tables.end()}, perturbations_};
   }
 
   void configure(const Configuration& configuration) override {
@@ -134,6 +140,7 @@ class CudaBackend final : public Backend {
   void set_perturbations(std::span<const Perturbation> perturbations) override {
     use_device();
     batch_.set_perturbations(perturbations);
+    perturbations_.assign(perturbations.begin(), perturbations.end());
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
@@ -210,6 +217,7 @@ class CudaBackend final : public Backend {
   mutable MappedArray<DeviceTelemetry> reports_;  // [robot], of the present state if report_valid_
   mutable bool report_valid_ = false, report_expected_ = false;
   mutable DeviceArray<float> packed_;  // vectors of all masses, on their way to the host
+  std::vector<Perturbation> perturbations_;
   Configuration configuration_;
   AnyEnvironmentModel model_ = OceanModel(Ocean{});
   StepConstants constants_;

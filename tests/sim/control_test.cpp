@@ -176,7 +176,7 @@ TEST_P(Control, ABadRobotIsNamedWithItsPlaceInTheBatch) {
 }
 
 TEST_P(Control, AnEmptyBatchCanGrow) {
-  Simulation simulation(configuration(), {});
+  Simulation simulation(configuration());
   EXPECT_EQ(simulation.size(), 0u);
   simulation.step(10);
   EXPECT_NEAR(simulation.time(), 0.01, 1e-12);

@@ -7,7 +7,7 @@
 //
 //     Simulation   checks arguments, owns robots, materials, configuration and clock
 //         |
-//         v        load, configure, step, read, write, report
+//         v        load, add, keep, configure, step, read, write, report
 //     Backend      owns the state: positions and velocities of all masses, the status of each robot
 //
 // Simulation checks every argument before it calls a backend: indices are in range and spans have the right sizes. One
@@ -39,6 +39,13 @@ struct RobotStatus {
   std::uint32_t bad_mass = no_mass;  // a mass whose position or force left the accepted range, if one is known
 };
 
+// What a batch is given besides its robots.
+struct BatchSettings {
+  Configuration configuration;
+  std::vector<Material> materials;  // [robot][max_materials]
+  std::vector<Perturbation> perturbations;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -56,6 +63,16 @@ class Backend {
   // and without perturbations. The robots outlive the backend or the next load(). Throws DeviceError if they do not
   // fit.
   virtual void load(std::span<const Robot* const> robots, const Configuration& configuration) = 0;
+  // Adds robots after those that the backend has. `robots` are all robots of the batch; those from `first_new` on are
+  // new and begin as after load(). The others keep states, statuses, materials and perturbations. The default reads
+  // everything back, loads all robots and writes everything again. Throws DeviceError if the robots do not fit.
+  virtual void add(std::span<const Robot* const> robots, std::size_t first_new);
+  // Keeps the robots with these indices, in this order, with their states, statuses and materials. The others go, and
+  // so do all perturbations. `robots` are those that remain, in the new order. No index appears twice. The default
+  // reads, loads and writes all robots that remain.
+  virtual void keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices);
+  // As they are now. Only the defaults of add() and keep() call this; a backend that uses neither need not override it.
+  virtual BatchSettings settings() const;
   // Applies to all later steps. The device does not change.
   virtual void configure(const Configuration& configuration) = 0;
   // Advances every robot that has not exploded by `steps` > 0 steps; the first begins at `clock`. A robot that explodes
@@ -91,6 +108,11 @@ class Backend {
   // Fills one element per robot: its telemetry except `exploded`, `exploded_at` and `culprit_spring`, which Simulation
   // derives from the status, and its status.
   virtual void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const = 0;
+
+  // step(), in portions of `every` > 0 steps with a report after each: `steps` is a multiple of `every`, `samples` and
+  // `statuses` are [portion][robot]. The default calls step() and report() in turn.
+  virtual void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
+                               std::span<RobotStatus> statuses);
 };
 
 // The backend that a configuration asks for. Throws DeviceError if this build or machine does not have the device.
@@ -100,8 +122,8 @@ std::unique_ptr<Backend> make_backend(const Device& device);
 std::unique_ptr<Backend> make_cpu_backend(const Device& device);
 std::unique_ptr<Backend> make_cuda_backend(const Device& device);  // one device, by index
 
-// Several backends as one. Each part gets an equal share of the robots, and all parts step at the same time. A robot
-// gives the same results bit for bit as in its part alone. `parts` is not empty.
+// Several backends as one. Each robot goes to the part that has the least springs, where it stays, and all parts step
+// at the same time. A robot gives the same results bit for bit as in its part alone. `parts` is not empty.
 std::unique_ptr<Backend> make_split_backend(std::vector<std::unique_ptr<Backend>> parts);
 
 }  // namespace mercury

@@ -40,16 +40,20 @@ class Simulation {
   // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), and
   // DeviceError if the device does not exist.
   explicit Simulation(const Configuration& configuration = {}, std::span<const Robot> robots = {});
+  // Shares the robots instead of copying them. One robot may appear many times; it is checked once. No pointer is null.
+  Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots);
   // Uses the given backend. The configuration's device has no effect.
   Simulation(const Configuration& configuration, std::span<const Robot> robots, std::unique_ptr<Backend> backend);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Adds robots, at rest at the present time; the others keep their state. Returns the index of the first new robot.
-  // Throws InputError as the constructor does.
+  // Adds robots, at rest at the present time; the others keep their states, materials and perturbations. Returns the
+  // index of the first new robot. Throws InputError as the constructor does.
   std::size_t add(std::span<const Robot> robots);
   std::size_t add(const Robot& robot) { return add(std::span(&robot, 1)); }
+  // Shares the robots instead of copying them, as the constructor does.
+  std::size_t add(std::span<const std::shared_ptr<const Robot>> robots);
 
   // Keeps these robots, in this order, with their states and materials, and removes the others and all perturbations.
   // Time does not change. Throws std::invalid_argument if an index appears twice.
@@ -81,6 +85,9 @@ class Simulation {
 
   // Advances every robot that has not exploded by `steps` >= 0 time steps. Returns when done.
   void step(std::int64_t steps = 1);
+  // The same with the telemetry after every `every` steps: [steps / every][robot], computed on the device. Throws
+  // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
+  std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
 
   // Puts every robot back to its rest pose at time 0; none has exploded. Materials keep their changes.
   void reset();
@@ -112,6 +119,8 @@ class Simulation {
   Telemetry telemetry(std::size_t robot) const;
   // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
+  // Of all robots, on all cores.
+  std::vector<std::uint64_t> hashes() const;
 
   // A robot's present material. Throws std::out_of_range if the robot's table has no such id.
   Material material(std::size_t robot, MaterialId id) const;

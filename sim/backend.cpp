@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a backend can do by its other functions alone.
+#include "mercury/backend.h"
+
+#include <algorithm>
+
+#include "mercury/state.h"
+
+namespace mercury {
+namespace {
+
+// The states of several robots, to restore them after the backend has loaded other robots.
+class SavedStates {
+ public:
+  void save(const Backend& backend, std::size_t robot, std::size_t masses) {
+    State& state = states_.emplace_back(State{std::vector<Vec3>(masses), std::vector<Vec3>(masses)});
+    backend.read(robot, state.positions, state.velocities);
+    statuses_.push_back(backend.status(robot));
+  }
+  // To the first robots of the backend.
+  void restore(Backend& backend) const {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      backend.write(i, states_[i].positions, states_[i].velocities);
+      backend.set_status(i, statuses_[i]);
+    }
+  }
+
+ private:
+  std::vector<State> states_;
+  std::vector<RobotStatus> statuses_;
+};
+
+}  // namespace
+
+BatchSettings Backend::settings() const {
+  throw std::logic_error("a backend without Backend::settings() can neither add nor keep robots");
+}
+
+void Backend::add(std::span<const Robot* const> robots, std::size_t first_new) {
+  BatchSettings now = settings();
+  SavedStates saved;
+  for (std::size_t i = 0; i < first_new; ++i) saved.save(*this, i, robots[i]->masses.size());
+  load(robots, now.configuration);
+  now.materials.resize(robots.size() * max_materials);
+  for (std::size_t i = first_new; i < robots.size(); ++i)
+    std::ranges::copy(materials_of(*robots[i]), std::span(now.materials).subspan(i * max_materials).begin());
+  write_materials(now.materials);
+  saved.restore(*this);
+  set_perturbations(now.perturbations);
+}
+
+void Backend::keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices) {
+  const BatchSettings now = settings();
+  SavedStates saved;
+  std::vector<Material> materials;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    saved.save(*this, indices[i], robots[i]->masses.size());
+    const auto table = std::span(now.materials).subspan(indices[i] * max_materials, max_materials);
+    materials.insert(materials.end(), table.begin(), table.end());
+  }
+  load(robots, now.configuration);
+  write_materials(materials);
+  saved.restore(*this);
+}
+
+void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
+                              std::span<RobotStatus> statuses) {
+  const std::size_t robots = samples.size() / static_cast<std::size_t>(steps / every);
+  Clock now = clock;
+  for (std::size_t first = 0; first < samples.size(); first += robots) {
+    step(now, every);
+    now.step += every;
+    report(now, samples.subspan(first, robots), statuses.subspan(first, robots));
+  }
+}
+
+}  // namespace mercury
