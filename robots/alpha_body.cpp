@@ -1,107 +1,213 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes CGAL: it compiles slowly, and its triangulations are under the GPL.
+// How the tetrahedra of an alpha shape are found without computing a single radius exactly, as a rule:
+//
+//   squared radii, each between two bounds      --[-]-[--]----[-]---[-----]---[-]---->
+//   classes: bounds that overlap                  [    1 ]    [2]   [  3        ]
+//
+// All radii of a class are smaller than those of the next one, so a class is either inside or outside of an alpha shape
+// as long as alpha does not fall into it. Only the class that decides is split exactly. In a mirrored body it holds a
+// tetrahedron and its mirror image, whose radii are equal.
 #include "robots/alpha_body.h"
-
-#include <CGAL/Alpha_shape_3.h>
-#include <CGAL/Alpha_shape_cell_base_3.h>
-#include <CGAL/Alpha_shape_vertex_base_3.h>
-#include <CGAL/Delaunay_triangulation_3.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mercury/error.h"
+#include "robots/circumradius.h"
+#include "robots/exact_geometry.h"
 
 namespace mercury {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Exactly = CGAL::Tag_true;  // radii are compared exactly too
-using IndexedVertex = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
-using VertexBase = CGAL::Alpha_shape_vertex_base_3<Kernel, IndexedVertex, Exactly>;
-using CellBase = CGAL::Alpha_shape_cell_base_3<Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>, Exactly>;
-using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
-using AlphaShape = CGAL::Alpha_shape_3<Delaunay, Exactly>;
-using SquaredRadius = AlphaShape::NT;
-
-Delaunay triangulate(std::span<const Vec3> points) {
-  std::vector<std::pair<Kernel::Point_3, std::uint32_t>> indexed;
-  indexed.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    indexed.emplace_back(Kernel::Point_3(points[i].x, points[i].y, points[i].z), i);
-  return Delaunay(indexed.begin(), indexed.end());
-}
-
-// CGAL's cells have a positive volume. Even permutations keep it positive.
-Tetrahedron lowest_first(AlphaShape::Cell_handle cell) {
-  Tetrahedron t;
-  for (int i = 0; i < 4; ++i) t[static_cast<std::size_t>(i)] = cell->vertex(i)->info();
-  const auto lowest = std::min_element(t.begin(), t.end()) - t.begin();
-  if (lowest == 1) t = {t[1], t[0], t[3], t[2]};
-  if (lowest == 2) t = {t[2], t[3], t[0], t[1]};
-  if (lowest == 3) t = {t[3], t[2], t[1], t[0]};
-  std::rotate(t.begin() + 1, std::min_element(t.begin() + 1, t.end()), t.end());
-  return t;
-}
-
 // The tetrahedra of a triangulation, from the smallest circumscribed sphere to the largest.
-struct Filtration {
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<SquaredRadius> squared_radii;
-  std::vector<Neighbours> neighbours;
+class Filtration {
+ public:
+  Filtration(std::span<const Vec3> points, Triangulation triangulation)
+      : points_(points), tetrahedra_(std::move(triangulation.tetrahedra)),
+        neighbours_(std::move(triangulation.neighbours)) {
+    sort();
+  }
 
-  explicit Filtration(const AlphaShape& shape) {
-    std::vector<std::pair<Tetrahedron, SquaredRadius>> cells;
-    for (auto cell = shape.finite_cells_begin(); cell != shape.finite_cells_end(); ++cell)
-      cells.emplace_back(lowest_first(cell), cell->get_alpha());
-    std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
-      return a.second < b.second || (a.second == b.second && a.first < b.first);
-    });
-    for (const auto& [tetrahedron, squared_radius] : cells) {
-      tetrahedra.push_back(tetrahedron);
-      squared_radii.push_back(squared_radius);
+  // Number of tetrahedra with a squared radius of at most that.
+  std::uint32_t count_within(double squared_alpha) {
+    for (std::size_t k = 0; k < classes_.size(); ++k) {
+      if (classes_[k].bounds.high <= squared_alpha) continue;
+      if (classes_[k].bounds.low > squared_alpha) return begin_of(k);
+      split(k);
+      if (exact(begin_of(k)).compare(squared_alpha) > 0) return begin_of(k);
     }
-    neighbours = neighbours_of(tetrahedra);
+    return classes_.back().end;
   }
 
-  // Number of tetrahedra inside the alpha shape.
-  std::size_t inside(const SquaredRadius& squared_alpha) const {
-    return static_cast<std::size_t>(std::upper_bound(squared_radii.begin(), squared_radii.end(), squared_alpha) -
-                                    squared_radii.begin());
+  // Number of tetrahedra in the smallest alpha shape of which a body holds all points. Such a body only grows with
+  // alpha, so a search that halves finds it. It is mostly near the first alpha shape that has all points in it.
+  std::uint32_t count_for_all_points() {
+    std::size_t first = class_of(last_point()), last = classes_.size() - 1;
+    const auto search = [&] {
+      for (std::size_t stride = 1; first < last; stride *= 2) {
+        const std::size_t probe = std::min(first + stride - 1, first + (last - first) / 2);
+        if (mercury::largest_body(tetrahedra_, neighbours_, classes_[probe].end).points == points_.size())
+          last = probe;
+        else
+          first = probe + 1;
+      }
+    };
+    search();
+    last += split(first) - 1;
+    search();
+    return classes_[first].end;
   }
 
-  SolidBody body(std::size_t count) const { return largest_body(tetrahedra, neighbours, count); }
+  // The body with most points that the first `count` tetrahedra form; of equal ones the one with the smallest sphere.
+  SolidBody largest_body(std::uint32_t count) {
+    for (;;) {
+      SolidBody body = mercury::largest_body(tetrahedra_, neighbours_, count);
+      if (body.rival == no_neighbour) return body;
+      const std::size_t k = class_of(body.tetrahedra.front());
+      if (classes_[k].is_exact || class_of(body.rival) != k) return body;
+      split(k);  // it holds the smallest spheres of both
+    }
+  }
 
-  // The smallest alpha at which a body holds that many points. Such a body only grows with alpha, so bisection finds
-  // it.
-  SquaredRadius smallest_alpha(std::size_t points) const {
-    std::size_t first = 0, last = squared_radii.size() - 1;
-    while (first < last) {
-      const std::size_t middle = (first + last) / 2;
-      if (body(inside(squared_radii[middle])).points >= points)
-        last = middle;
+  // Largest radius of the first `count` tetrahedra, rounded.
+  double radius(std::uint32_t count) const {
+    const Bounds squared = classes_[class_of(count - 1)].bounds;
+    return std::sqrt((squared.low + squared.high) / 2);
+  }
+
+  // The tetrahedra of a body, and their neighbours in it.
+  void copy(const SolidBody& body, std::vector<Tetrahedron>& tetrahedra, std::vector<Neighbours>& neighbours) const {
+    std::vector<std::uint32_t> index_of(tetrahedra_.size(), no_neighbour);
+    for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i) index_of[body.tetrahedra[i]] = i;
+    tetrahedra.reserve(body.tetrahedra.size());
+    neighbours.reserve(body.tetrahedra.size());
+    for (const std::uint32_t i : body.tetrahedra) {
+      tetrahedra.push_back(tetrahedra_[i]);
+      Neighbours n = neighbours_[i];
+      for (std::uint32_t& other : n)
+        if (other != no_neighbour) other = index_of[other];
+      neighbours.push_back(n);
+    }
+  }
+
+ private:
+  struct Class {
+    std::uint32_t end = 0;  // of its tetrahedra; they begin where those of the class before end
+    Bounds bounds;          // of the squared radii
+    bool is_exact = false;  // all radii are equal, the tetrahedra are sorted by their points
+  };
+
+  std::uint32_t begin_of(std::size_t k) const { return k == 0 ? 0 : classes_[k - 1].end; }
+  std::size_t class_of(std::uint32_t tetrahedron) const {
+    return static_cast<std::size_t>(
+        std::ranges::upper_bound(classes_, tetrahedron, {}, [](const Class& c) { return c.end; }) - classes_.begin());
+  }
+  ExactSquaredRadius exact(std::uint32_t i) const { return {points_, tetrahedra_[i]}; }
+
+  void sort() {
+    struct Entry {
+      Bounds bounds;
+      std::uint32_t index;
+    };
+    std::vector<Entry> entries;
+    entries.reserve(tetrahedra_.size());
+    for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i) {
+      const Tetrahedron& t = tetrahedra_[i];
+      Bounds bounds = squared_circumradius(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
+      if (!std::isfinite(bounds.high)) bounds = exact(i).bounds();
+      entries.push_back({bounds, i});
+    }
+    std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.bounds.low, e.index); });
+    std::vector<std::uint32_t> order;
+    order.reserve(entries.size());
+    for (const Entry& e : entries) {
+      if (classes_.empty() || e.bounds.low > classes_.back().bounds.high)
+        classes_.push_back({.bounds = e.bounds});
       else
-        first = middle + 1;
+        classes_.back().bounds.high = std::max(classes_.back().bounds.high, e.bounds.high);
+      order.push_back(e.index);
+      classes_.back().end = static_cast<std::uint32_t>(order.size());
     }
-    return squared_radii[first];
+    reorder(order, 0);
   }
+
+  // Puts tetrahedron order[i] at first + i.
+  void reorder(std::span<const std::uint32_t> order, std::uint32_t first) {
+    std::vector<std::uint32_t> moved_to(order.size());
+    std::vector<Tetrahedron> tetrahedra;
+    std::vector<Neighbours> neighbours;
+    tetrahedra.reserve(order.size());
+    neighbours.reserve(order.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      moved_to[order[i] - first] = first + i;
+      tetrahedra.push_back(tetrahedra_[order[i]]);
+      neighbours.push_back(neighbours_[order[i]]);
+    }
+    std::ranges::copy(tetrahedra, tetrahedra_.begin() + first);
+    std::ranges::copy(neighbours, neighbours_.begin() + first);
+    for (Neighbours& n : neighbours_)
+      for (std::uint32_t& other : n)
+        if (other - first < order.size()) other = moved_to[other - first];
+  }
+
+  // Splits a class into classes of equal radii. Returns their number.
+  std::size_t split(std::size_t k) {
+    const std::uint32_t begin = begin_of(k), end = classes_[k].end;
+    if (classes_[k].is_exact || end - begin == 1) return 1;
+    struct Entry {
+      ExactSquaredRadius radius;
+      Tetrahedron points;
+      std::uint32_t index;
+    };
+    std::vector<Entry> entries;
+    for (std::uint32_t i = begin; i < end; ++i) entries.push_back({exact(i), lowest_first(tetrahedra_[i]), i});
+    std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
+      const auto order = a.radius.compare(b.radius);
+      return order != 0 ? order < 0 : a.points < b.points;
+    });
+    std::vector<Class> parts;
+    std::vector<std::uint32_t> order;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (i == 0 || entries[i].radius.compare(entries[i - 1].radius) != 0)
+        parts.push_back({.bounds = entries[i].radius.bounds(), .is_exact = true});
+      order.push_back(entries[i].index);
+      parts.back().end = begin + static_cast<std::uint32_t>(order.size());
+    }
+    reorder(order, begin);
+    const auto place = classes_.erase(classes_.begin() + static_cast<std::ptrdiff_t>(k));
+    classes_.insert(place, parts.begin(), parts.end());
+    return parts.size();
+  }
+
+  // The points come in one after the other, each with its first tetrahedron: the tetrahedron of the last point.
+  std::uint32_t last_point() const {
+    std::vector<bool> seen(points_.size(), false);
+    std::uint32_t last = 0;
+    for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i)
+      for (const std::uint32_t point : tetrahedra_[i]) {
+        if (!seen[point]) last = i;
+        seen[point] = true;
+      }
+    return last;
+  }
+
+  std::span<const Vec3> points_;
+  std::vector<Tetrahedron> tetrahedra_;
+  std::vector<Neighbours> neighbours_;
+  std::vector<Class> classes_;
 };
 
 }  // namespace
 
 AlphaBody alpha_body(std::span<const Vec3> points, double alpha) {
-  Delaunay triangulation = triangulate(points);
-  if (triangulation.dimension() < 3) throw InputError("cloud", "its points lie in one plane, they span no body");
-  const AlphaShape shape(triangulation, 0, AlphaShape::REGULARIZED);
-  const Filtration filtration(shape);
-  const SquaredRadius squared = alpha > 0 ? SquaredRadius(alpha * alpha) : filtration.smallest_alpha(points.size());
-  const SolidBody body = filtration.body(filtration.inside(squared));
-  if (body.tetrahedra.empty()) throw InputError("alpha", "no tetrahedron of the cloud is as small as the given radius");
-  AlphaBody result{std::sqrt(CGAL::to_double(squared)), {}};
-  for (const std::uint32_t index : body.tetrahedra) result.tetrahedra.push_back(filtration.tetrahedra[index]);
-  std::sort(result.tetrahedra.begin(), result.tetrahedra.end());
+  Triangulation triangulation = triangulate(points);
+  if (triangulation.tetrahedra.empty()) throw InputError("cloud", "its points lie in one plane, they span no body");
+  Filtration filtration(points, std::move(triangulation));
+  const std::uint32_t count = alpha > 0 ? filtration.count_within(alpha * alpha) : filtration.count_for_all_points();
+  if (count == 0) throw InputError("alpha", "no tetrahedron of the cloud is as small as the given radius");
+  AlphaBody result{alpha > 0 ? alpha : filtration.radius(count), {}, {}};
+  filtration.copy(filtration.largest_body(count), result.tetrahedra, result.neighbours);
   return result;
 }
 

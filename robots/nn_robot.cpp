@@ -99,10 +99,12 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
 struct Frame {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Edge> springs;
+  std::vector<Triangle> skin;
 };
 
-Frame sound_frame(std::vector<Tetrahedron> tetrahedra, const std::vector<CloudPoint>& cloud) {
-  for (;;) {
+Frame sound_frame(AlphaBody whole, const std::vector<CloudPoint>& cloud) {
+  std::vector<Tetrahedron> tetrahedra = std::move(whole.tetrahedra);
+  for (bool is_whole = true;; is_whole = false) {
     std::vector<Edge> springs = edges_of(tetrahedra);
     std::erase_if(springs, [&](const Edge& e) {
       return !(length(cloud[e.second].place - cloud[e.first].place) >= min_rest_length);
@@ -115,7 +117,15 @@ Frame sound_frame(std::vector<Tetrahedron> tetrahedra, const std::vector<CloudPo
     const auto cut_off = [&](const Tetrahedron& t) {
       return std::any_of(t.begin(), t.end(), [&](std::uint32_t p) { return part[p] != largest; });
     };
-    if (std::erase_if(tetrahedra, cut_off) == 0) return {std::move(tetrahedra), std::move(springs)};
+    if (std::none_of(tetrahedra.begin(), tetrahedra.end(), cut_off)) {
+      std::vector<Triangle> skin = is_whole ? skin_of(tetrahedra, whole.neighbours) : skin_of(tetrahedra);
+      return {std::move(tetrahedra), std::move(springs), std::move(skin)};
+    }
+    if (is_whole) {  // their order decides between bodies of equal size
+      std::transform(tetrahedra.begin(), tetrahedra.end(), tetrahedra.begin(), lowest_first);
+      std::sort(tetrahedra.begin(), tetrahedra.end());
+    }
+    std::erase_if(tetrahedra, cut_off);
     require(!tetrahedra.empty(), "cloud", "its points lie within 0.001 m of each other");
     const SolidBody body = largest_body(tetrahedra, neighbours_of(tetrahedra), tetrahedra.size());
     std::vector<Tetrahedron> kept;
@@ -144,7 +154,7 @@ Robot grow(const NnGenome& genome, const std::string& name) {
   require(cloud.size() >= 4, "cloud", "the network puts all its points on fewer than four places");
   std::vector<Vec3> places;
   for (const CloudPoint& p : cloud) places.push_back(p.place);
-  const auto [tetrahedra, springs] = sound_frame(alpha_body(places, genome.alpha).tetrahedra, cloud);
+  const auto [tetrahedra, springs, skin] = sound_frame(alpha_body(places, genome.alpha), cloud);
 
   Robot robot;
   robot.name = name;
@@ -162,7 +172,7 @@ Robot grow(const NnGenome& genome, const std::string& name) {
     robot.springs.push_back(
         {mass_a, mass_b, combine(cloud[a].material, cloud[b].material), rest_distance(robot, mass_a, mass_b)});
   }
-  for (const auto& [a, b, c] : skin_of(tetrahedra)) robot.faces.push_back({mass_of[a], mass_of[b], mass_of[c]});
+  for (const auto& [a, b, c] : skin) robot.faces.push_back({mass_of[a], mass_of[b], mass_of[c]});
   robot.origin = to_origin(genome);
   return robot;
 }

@@ -3,9 +3,29 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace mercury {
 namespace {
+
+// The sides of a tetrahedron seen from outside; side i is opposite to point i.
+std::array<Triangle, 4> sides_of(const Tetrahedron& t) {
+  const auto& [a, b, c, d] = t;
+  return {Triangle{b, c, d}, Triangle{a, d, c}, Triangle{a, b, d}, Triangle{a, c, b}};
+}
+
+Triangle lowest_first(Triangle triangle) {
+  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+  return triangle;
+}
+
+// One above the highest point.
+std::uint32_t end_of_points(std::span<const Tetrahedron> tetrahedra) {
+  std::uint32_t end = 0;
+  for (const Tetrahedron& t : tetrahedra)
+    for (const std::uint32_t point : t) end = std::max(end, point + 1);
+  return end;
+}
 
 struct Side {
   Triangle points;  // sorted
@@ -18,8 +38,7 @@ std::vector<Side> sorted_sides(std::span<const Tetrahedron> tetrahedra) {
   std::vector<Side> sides;
   sides.reserve(4 * tetrahedra.size());
   for (std::uint32_t i = 0; i < tetrahedra.size(); ++i) {
-    const auto& [a, b, c, d] = tetrahedra[i];
-    for (const Triangle& outward : {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{a, d, c}, Triangle{b, c, d}}) {
+    for (const Triangle& outward : sides_of(tetrahedra[i])) {
       Triangle points = outward;
       std::sort(points.begin(), points.end());
       sides.push_back({points, outward, i});
@@ -35,14 +54,38 @@ bool is_shared(const std::vector<Side>& sides, std::size_t i) {
 
 }  // namespace
 
+// Even permutations keep the volume positive.
+Tetrahedron lowest_first(const Tetrahedron& tetrahedron) {
+  Tetrahedron t = tetrahedron;
+  const auto lowest = std::min_element(t.begin(), t.end()) - t.begin();
+  if (lowest == 1) t = {t[1], t[0], t[3], t[2]};
+  if (lowest == 2) t = {t[2], t[3], t[0], t[1]};
+  if (lowest == 3) t = {t[3], t[2], t[1], t[0]};
+  std::rotate(t.begin() + 1, std::min_element(t.begin() + 1, t.end()), t.end());
+  return t;
+}
+
+// Collects the higher ends of each point's edges, about 40, of which 7 differ.
 std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra) {
+  const std::uint32_t points = end_of_points(tetrahedra);
+  std::vector<std::uint32_t> ends_of(points + 1, 0), ends(6 * tetrahedra.size());
+  const auto for_each = [&](auto visit) {
+    for (const Tetrahedron& t : tetrahedra)
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i + 1; j < 4; ++j) visit(std::min(t[i], t[j]), std::max(t[i], t[j]));
+  };
+  for_each([&](std::uint32_t low, std::uint32_t) { ++ends_of[low]; });
+  std::exclusive_scan(ends_of.begin(), ends_of.end(), ends_of.begin(), 0u);
+  for_each([&](std::uint32_t low, std::uint32_t high) { ends[ends_of[low]++] = high; });
   std::vector<Edge> edges;
-  edges.reserve(6 * tetrahedra.size());
-  for (const Tetrahedron& t : tetrahedra)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) edges.push_back(std::minmax(t[i], t[j]));
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.reserve(2 * tetrahedra.size());
+  std::vector<std::uint32_t> last_seen_by(points, no_neighbour);
+  for (std::uint32_t low = 0, i = 0; low < points; ++low) {
+    const auto first = static_cast<std::ptrdiff_t>(edges.size());
+    for (; i < ends_of[low]; ++i)
+      if (std::exchange(last_seen_by[ends[i]], low) != low) edges.emplace_back(low, ends[i]);
+    std::sort(edges.begin() + first, edges.end());
+  }
   return edges;
 }
 
@@ -54,10 +97,17 @@ std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra) {
       ++i;
       continue;
     }
-    Triangle triangle = sides[i].outward;
-    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
-    skin.push_back(triangle);
+    skin.push_back(lowest_first(sides[i].outward));
   }
+  std::sort(skin.begin(), skin.end());
+  return skin;
+}
+
+std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> opposite) {
+  std::vector<Triangle> skin;
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    for (std::size_t i = 0; i < 4; ++i)
+      if (opposite[t][i] == no_neighbour) skin.push_back(lowest_first(sides_of(tetrahedra[t])[i]));
   std::sort(skin.begin(), skin.end());
   return skin;
 }
@@ -79,10 +129,8 @@ std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
 
 SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
                        std::size_t count) {
-  std::uint32_t highest = 0;
-  for (const Tetrahedron& t : tetrahedra.first(count))
-    highest = std::max(highest, *std::max_element(t.begin(), t.end()));
-  std::vector<std::uint32_t> last_visit(highest + 1, no_neighbour);  // of a point, by the body's first tetrahedron
+  std::vector<std::uint32_t> last_visit(end_of_points(tetrahedra.first(count)),
+                                        no_neighbour);  // of a point, by the body's first tetrahedron
   std::vector<bool> reached(count, false);
   SolidBody best;
   for (std::uint32_t first = 0; first < count; ++first) {
@@ -100,7 +148,10 @@ SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const 
         body.tetrahedra.push_back(other);
       }
     }
-    if (body.points > best.points) best = std::move(body);
+    if (body.points > best.points)
+      best = std::move(body);
+    else if (body.points == best.points && best.rival == no_neighbour)
+      best.rival = first;
   }
   return best;
 }

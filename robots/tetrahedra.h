@@ -19,6 +19,9 @@ using Triangle = std::array<std::uint32_t, 3>;
 // Two points, the lower one first.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
+// The same starting with its lowest point, then the lowest of the others.
+Tetrahedron lowest_first(const Tetrahedron& tetrahedron);
+
 // Every edge once, sorted.
 std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra);
 
@@ -27,16 +30,20 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra);
 // touches itself along an edge, that edge has four triangles.
 std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra);
 
-// For each tetrahedron its neighbours across its sides; no_neighbour where there is none.
+// For each tetrahedron its neighbours across its sides, in no certain order; no_neighbour where there is none.
 inline constexpr std::uint32_t no_neighbour = 0xffffffff;
 using Neighbours = std::array<std::uint32_t, 4>;
 std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra);
 
+// The same, faster, where it is known that neighbour i is opposite to point i.
+std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> opposite);
+
 // The first `count` tetrahedra form bodies, joined side to side. Returns the body that holds most points; of equal
 // bodies, the one with the earliest tetrahedron.
 struct SolidBody {
-  std::vector<std::uint32_t> tetrahedra;  // indices
+  std::vector<std::uint32_t> tetrahedra;  // indices, the earliest one first
   std::size_t points = 0;
+  std::uint32_t rival = no_neighbour;  // earliest tetrahedron of the next body with as many points, if there is one
 };
 SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
                        std::size_t count);

@@ -26,6 +26,20 @@ TEST(Tetrahedra, ASideBetweenTwoIsNotSkin) {
   EXPECT_THAT(skin, testing::Contains(Triangle{1, 2, 4}));
 }
 
+TEST(Tetrahedra, SkinFollowsFromTheNeighboursOppositeToEachPoint) {
+  const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {2, 1, 3, 4}};
+  const std::uint32_t none = no_neighbour;
+  const std::vector<Neighbours> opposite = {{1, none, none, none}, {none, none, none, 0}};
+  EXPECT_EQ(skin_of(two, opposite), skin_of(two));
+}
+
+TEST(Tetrahedra, StartWithTheLowestPointOnTheSameSide) {
+  EXPECT_EQ(lowest_first({0, 1, 2, 3}), (Tetrahedron{0, 1, 2, 3}));
+  EXPECT_EQ(lowest_first({1, 0, 3, 2}), (Tetrahedron{0, 1, 2, 3}));  // two swaps
+  EXPECT_EQ(lowest_first({3, 1, 2, 0}), (Tetrahedron{0, 1, 3, 2}));  // the mirror image
+  EXPECT_EQ(lowest_first({9, 4, 7, 2}), (Tetrahedron{2, 4, 9, 7}));
+}
+
 TEST(Tetrahedra, EdgesAreListedOnce) {
   const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {1, 2, 3, 4}};
   EXPECT_THAT(edges_of(two), ElementsAre(Edge(0, 1), Edge(0, 2), Edge(0, 3), Edge(1, 2), Edge(1, 3), Edge(1, 4),
@@ -47,7 +61,10 @@ TEST(Tetrahedra, TheLargestBodyHoldsMostPointsAndIsJoinedBySides) {
   const SolidBody all = largest_body(tetrahedra, neighbours, 3);
   EXPECT_THAT(all.tetrahedra, UnorderedElementsAre(1, 2));
   EXPECT_EQ(all.points, 5u);
-  EXPECT_THAT(largest_body(tetrahedra, neighbours, 2).tetrahedra, ElementsAre(0));  // equals: the earliest
+  EXPECT_EQ(all.rival, no_neighbour);
+  const SolidBody first = largest_body(tetrahedra, neighbours, 2);  // equals: the earliest
+  EXPECT_THAT(first.tetrahedra, ElementsAre(0));
+  EXPECT_EQ(first.rival, 1u);
   EXPECT_TRUE(largest_body(tetrahedra, neighbours, 0).tetrahedra.empty());
 }
 
