@@ -6,6 +6,8 @@
 #include <future>
 #include <utility>
 
+#include "sim/devices.h"
+
 namespace mercury {
 namespace {
 
@@ -74,13 +76,9 @@ class SplitBackend final : public Backend {
       : parts_(std::move(parts)), shares_(parts_.size()) {}
 
   std::string device_name() const override {
-    std::string names;
-    for (std::size_t first = 0, last = 0; first < parts_.size(); first = last) {
-      const std::string name = parts_[first]->device_name();
-      while (last < parts_.size() && parts_[last]->device_name() == name) ++last;
-      names += (names.empty() ? "" : ", ") + (last - first > 1 ? std::to_string(last - first) + " x " : "") + name;
-    }
-    return names;
+    std::vector<std::string> names;
+    for (const auto& part : parts_) names.push_back(part->device_name());
+    return joined_device_names(names);
   }
 
   std::vector<std::string> notes() const override {

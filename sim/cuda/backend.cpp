@@ -260,6 +260,13 @@ std::string cuda_device_name(int index) {
   return properties.name;
 }
 
+std::size_t free_cuda_memory(int index) {
+  check(cudaSetDevice(index), "choosing the device");
+  std::size_t free = 0, total = 0;
+  check(cudaMemGetInfo(&free, &total), "asking for free memory");
+  return free;
+}
+
 bool built_with_cuda() { return true; }
 
 }  // namespace mercury

@@ -12,6 +12,7 @@ std::unique_ptr<Backend> make_cuda_backend(const Device&) {
 ChipFit chip_fit(const Robot&, const Configuration&, int) { throw DeviceError("this build has no CUDA backend"); }
 int cuda_device_count() { return 0; }
 std::string cuda_device_name(int) { return {}; }
+std::size_t free_cuda_memory(int) { throw DeviceError("this build has no CUDA backend"); }
 bool built_with_cuda() { return false; }
 
 }  // namespace mercury

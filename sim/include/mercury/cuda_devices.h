@@ -16,6 +16,8 @@ bool built_with_cuda();
 int cuda_device_count();
 // For example "NVIDIA H100 80GB HBM3"; empty in a build without CUDA. Throws DeviceError if the device does not exist.
 std::string cuda_device_name(int index);
+// Memory of a device that no program uses [bytes]. Throws DeviceError if the device does not exist.
+std::size_t free_cuda_memory(int index);
 
 // The shared memory that a thread block needs to step this robot on the chip, without any that only serves speed
 // [bytes]: 36 per mass (paper, Table II), the material table, the rest lengths, and on land the grid that finds

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of an evaluator.
+//
+//     maker ──> waiting portions ──> worker, worker, ... of device 0 ──> finished portions ──> next()
+//       ^                       └──> worker, worker, ... of device 1 ──┘                         |
+//       └────────────────────── memory of robots that were yielded ──────────────────────────────┘
+//
+// 1. One thread makes portions, one after the other, each on all cores. A portion is complete when it is as large as
+//    the device wants it; when a device has too little to do; or when its share of the memory is used up. So portions
+//    are small as long as stepping is faster than making, and large otherwise.
+// 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
+//    another are loaded. The CPU has one worker, since stepping itself uses all cores.
+// 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
+//    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
+// 4. `end` is the index behind the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
+// the
+//    first robot of the portion, and whoever works on robots from there on gives up.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mercury/evaluator.h"
+#include "mercury/simulation.h"
+#include "sim/evaluator_clock.h"
+#include "sim/evaluator_portion.h"
+#include "sim/evaluator_trial.h"
+
+namespace mercury {
+
+struct FinishedPortion {
+  std::vector<Evaluation> results;
+  std::vector<std::size_t> bytes;  // of each
+  std::size_t next = 0;            // the first that is not yet yielded
+
+  bool empty() const { return next == results.size(); }
+};
+
+struct Evaluator::Parts {
+  struct DeviceParts {
+    MakeBackend make_backend;
+    bool is_cpu = false;
+    // The rest is guarded by the mutex.
+    std::string name;         // empty = not yet started
+    std::size_t in_hand = 0;  // portions that its workers have
+    std::size_t idle_workers = 0;
+    std::size_t robots = 0;  // stepped to the end
+    std::size_t robots_at_once = 0;
+    UnionClock stepping{};
+  };
+
+  Parts(const EvaluationRequest& wanted, RobotSource robots, std::size_t number);
+  ~Parts();
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  // Starts the threads; without `given`, on the configuration's devices.
+  void start(std::vector<MakeBackend> given);
+  // What the threads do. These functions do not throw.
+  void start_devices(const std::vector<MakeBackend>& given);
+  void make_portions();
+  void work(DeviceParts& device);
+
+  // Of the maker.
+  bool is_large_enough(std::size_t first, std::size_t robots) const;
+  bool may_make() const;             // to be called with the mutex locked, as all functions below marked so
+  std::size_t memory_share() const;  // locked
+
+  // Of the workers.
+  int workers_of(const DeviceParts& device) const;
+  void device_started(DeviceParts& device, const Simulation& simulation);
+  std::optional<Portion> take(DeviceParts& device);
+  void evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace);
+  void loaded(DeviceParts& device, const Simulation& simulation);
+  void finish(DeviceParts& device, const Portion& portion, FinishedPortion result);
+
+  // Of all.
+  void fail(std::size_t first, std::exception_ptr exception);  // in the portion that begins there
+  bool next_is_known() const;                                  // locked
+  void end_at(std::size_t index);                              // locked
+  void update_demand();                                        // locked
+  void notify_all();                                           // locked
+
+  const EvaluationRequest request;
+  const RobotSource source;
+  const std::size_t count;
+  const std::size_t memory_limit;
+
+  mutable std::mutex mutex;  // guards what follows, atomics apart
+  std::condition_variable maker_may_go_on, portion_waits, result_waits, device_has_started;
+  std::deque<DeviceParts> devices;  // complete once `devices_are_known`
+  bool devices_are_known = false;
+  std::deque<Portion> waiting;
+  bool all_made = false;
+  std::map<std::size_t, FinishedPortion> finished;  // by the index of the first robot
+  std::size_t next_index = 0;                       // of the portion that is yielded after `current`
+  std::exception_ptr error;                         // thrown by next() when it comes to `end`
+  std::size_t error_index = unknown_count;
+  std::vector<std::string> notes;
+  std::size_t made = 0, done = 0;
+
+  std::atomic<std::size_t> end;
+  std::atomic<bool> stopping = false;
+  std::atomic<std::size_t> memory_in_use = 0;              // by portions and results that are not yet yielded
+  std::atomic<std::size_t> largest_robot = 0;              // [bytes]
+  std::atomic<std::size_t> portion_robots = 0;             // wanted per portion, at most
+  std::atomic<std::size_t> portion_bytes = unknown_count;  // accepted per portion because of the devices' memory
+  std::atomic<std::size_t> device_count = 0;
+  std::atomic<bool> device_is_hungry = false;  // a device has too little to do
+  std::atomic<std::int64_t> robot_steps = 0;
+
+  UnionClock starting, making, loading, stepping, reading;
+
+  FinishedPortion current;  // of the thread that calls next()
+
+  std::thread maker, starter;
+  std::vector<std::thread> workers;  // used by the starter, until it has ended
+};
+
+}  // namespace mercury

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of an evaluator, see evaluator_parts.h.
+#include <algorithm>
+#include <utility>
+
+#include "mercury/cuda_devices.h"
+#include "mercury/error.h"
+#include "sim/available_memory.h"
+#include "sim/devices.h"
+#include "sim/evaluator_parts.h"
+
+namespace mercury {
+namespace {
+
+// Per device. On CUDA, one portion steps, one is loaded, and one is read or waits for the other two.
+constexpr int cuda_workers = 3, cpu_workers = 1;
+// Robots per portion, unless the request says how many. On the CPU, more robots make fuller lockstep groups.
+constexpr std::size_t cpu_robots_per_thread = 512;
+constexpr std::size_t smallest_portion = 128, usual_portion = 512, largest_portion = 8192;
+// Portions that may wait before the devices have started, and per device afterwards.
+constexpr std::size_t waiting_at_start = 16, waiting_per_device = 2;
+
+}  // namespace
+
+Evaluator::Parts::Parts(const EvaluationRequest& wanted, RobotSource robots, std::size_t number)
+    : request(wanted), source(std::move(robots)), count(number),
+      memory_limit(wanted.memory_limit > 0 ? wanted.memory_limit : available_host_memory() / 4), end(number) {
+  portion_robots = request.portion > 0 ? request.portion : usual_portion;
+}
+
+Evaluator::Parts::~Parts() {
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+    end = 0;
+    notify_all();
+  }
+  if (starter.joinable()) starter.join();
+  maker.join();
+  for (std::thread& worker : workers) worker.join();
+}
+
+void Evaluator::Parts::start(std::vector<MakeBackend> given) {
+  const bool are_known = !given.empty() || request.configuration.device.kind == DeviceKind::cpu || !built_with_cuda();
+  if (are_known) start_devices(given);
+  maker = std::thread([this] { make_portions(); });
+  // To look for CUDA devices can take a while; robots are made meanwhile.
+  if (!are_known) starter = std::thread([this, given = std::move(given)] { start_devices(given); });
+}
+
+void Evaluator::Parts::start_devices(const std::vector<MakeBackend>& given) {
+  try {
+    std::deque<DeviceParts> found;
+    for (const MakeBackend& make : given) found.emplace_back().make_backend = make;
+    if (given.empty())
+      for (const Device& device : single_devices(request.configuration.device)) {
+        DeviceParts& parts = found.emplace_back();
+        parts.is_cpu = device.kind == DeviceKind::cpu;
+        parts.make_backend = [device] { return make_backend(device); };
+      }
+    {
+      const std::lock_guard lock(mutex);
+      devices.swap(found);
+      devices_are_known = true;
+      update_demand();
+      maker_may_go_on.notify_one();
+    }
+    for (DeviceParts& device : devices)
+      for (int i = 0; i < workers_of(device); ++i) workers.emplace_back([this, &device] { work(device); });
+  } catch (...) {
+    fail(0, std::current_exception());
+  }
+}
+
+int Evaluator::Parts::workers_of(const DeviceParts& device) const {
+  return request.workers > 0 ? request.workers : device.is_cpu ? cpu_workers : cuda_workers;
+}
+
+// --- The maker
+
+void Evaluator::Parts::make_portions() {
+  std::size_t first = 0;
+  try {
+    for (bool is_complete = count == 0; !is_complete;) {
+      PortionLimits limits{.bytes = 0,
+                           .enough = [&](std::size_t robots) { return is_large_enough(first, robots); },
+                           .cancelled = [&] { return stopping || first >= end; }};
+      {
+        std::unique_lock lock(mutex);
+        maker_may_go_on.wait(lock, [&] { return limits.cancelled() || may_make(); });
+        if (limits.cancelled()) break;
+        limits.bytes = std::min(memory_share(), portion_bytes.load());
+      }
+      std::optional<UnionClock::Interval> interval(std::in_place, making);
+      Portion portion = make_portion(source, first, count, limits, largest_robot);
+      interval.reset();
+      const std::lock_guard lock(mutex);
+      if (limits.cancelled()) break;
+      is_complete = portion.is_last || portion.candidates.empty();
+      first += portion.candidates.size();
+      made += portion.candidates.size();
+      memory_in_use += portion.bytes();
+      if (!portion.candidates.empty()) waiting.push_back(std::move(portion));
+      update_demand();
+      portion_waits.notify_all();
+    }
+  } catch (...) {
+    fail(first, std::current_exception());
+  }
+  const std::lock_guard lock(mutex);
+  all_made = true;
+  end_at(first);
+  notify_all();
+}
+
+bool Evaluator::Parts::may_make() const {
+  const std::size_t most_waiting = devices_are_known ? waiting_per_device * devices.size() : waiting_at_start;
+  const std::size_t in_use = memory_in_use;
+  return waiting.size() < most_waiting &&
+         (in_use == 0 || in_use + std::max(memory_share(), largest_robot.load()) <= memory_limit);
+}
+
+// What one portion may take, so that each worker can have one, and others wait to be loaded or yielded.
+std::size_t Evaluator::Parts::memory_share() const {
+  std::size_t portions = 2;
+  for (const DeviceParts& device : devices) portions += static_cast<std::size_t>(workers_of(device));
+  if (!devices_are_known) portions += cuda_workers;
+  return memory_limit / portions;
+}
+
+bool Evaluator::Parts::is_large_enough(std::size_t first, std::size_t robots) const {
+  std::size_t most = portion_robots;
+  if (request.portion == 0 && count != unknown_count) {
+    const std::size_t remaining = count - first;
+    if (device_count > 1)  // all devices should end at the same time
+      most = std::min(most, std::max(smallest_portion, remaining / (2 * device_count)));
+    else if (remaining <= most + most / 4)  // rather a larger portion than a tiny one at the end
+      most = remaining;
+  }
+  return robots >= most || (request.portion == 0 && device_is_hungry && robots >= smallest_portion);
+}
+
+void Evaluator::Parts::update_demand() {
+  device_count = devices.size();
+  device_is_hungry = waiting.empty() && std::ranges::any_of(devices, [](const DeviceParts& device) {
+                       return !device.is_cpu && !device.name.empty() && device.in_hand < 2;
+                     });
+  if (request.portion > 0) return;
+  std::size_t most = 0;
+  for (const DeviceParts& device : devices) {
+    const auto cores = static_cast<std::size_t>(request.configuration.device.threads);
+    const std::size_t threads = cores > 0 ? cores : std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t wanted = device.is_cpu                ? cpu_robots_per_thread * threads
+                               : device.robots_at_once == 0 ? usual_portion
+                                                            : device.robots_at_once;
+    most = std::max(most, std::clamp(wanted, smallest_portion, largest_portion));
+  }
+  if (most > 0) portion_robots = most;
+}
+
+// --- The workers
+
+void Evaluator::Parts::work(DeviceParts& device) {
+  std::size_t first = 0;
+  try {
+    std::optional<UnionClock::Interval> interval(std::in_place, starting);
+    Simulation simulation(request.configuration, std::span<const Robot>(), device.make_backend());
+    interval.reset();
+    device_started(device, simulation);
+    StepPace pace;
+    while (std::optional<Portion> portion = take(device)) {
+      first = portion->first;
+      evaluate(device, simulation, *std::move(portion), pace);
+    }
+  } catch (...) {
+    fail(first, std::current_exception());
+  }
+}
+
+void Evaluator::Parts::device_started(DeviceParts& device, const Simulation& simulation) {
+  const int cuda = simulation.cuda_device();
+  const std::size_t free = cuda >= 0 ? free_cuda_memory(cuda) : portion_bytes.load();
+  const std::lock_guard lock(mutex);
+  device.name = simulation.device_name();
+  portion_bytes = std::min(portion_bytes.load(), free / static_cast<std::size_t>(workers_of(device) + 1));
+  update_demand();
+  device_has_started.notify_all();
+  portion_waits.notify_all();
+}
+
+std::optional<Portion> Evaluator::Parts::take(DeviceParts& device) {
+  std::unique_lock lock(mutex);
+  ++device.idle_workers;
+  const auto has_more_to_do = [&](const DeviceParts& other) {
+    return other.idle_workers > 0 && other.in_hand < device.in_hand;
+  };
+  portion_waits.wait(lock, [&] {
+    return all_made || stopping || (!waiting.empty() && std::ranges::none_of(devices, has_more_to_do));
+  });
+  --device.idle_workers;
+  if (waiting.empty()) return std::nullopt;
+  Portion portion = std::move(waiting.front());
+  waiting.pop_front();
+  ++device.in_hand;
+  update_demand();
+  maker_may_go_on.notify_one();
+  portion_waits.notify_all();
+  return portion;
+}
+
+void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace) {
+  const std::size_t first = portion.first;
+  const TrialContext context{.cancelled = [&] { return first >= end; },
+                             .stopping = [&] { return stopping.load(); },
+                             .stepped = [&](std::int64_t steps) { robot_steps += steps; },
+                             .device_stepping = &device.stepping,
+                             .stepping = &stepping};
+  FinishedPortion result;
+  if (!stopping) {
+    std::optional<UnionClock::Interval> interval(std::in_place, loading);
+    load(simulation, portion);
+    interval.reset();
+    loaded(device, simulation);
+    Trial trial(simulation, request, context, pace);
+    if (!stopping && trial.run()) {
+      interval.emplace(reading);
+      result.results = trial.results(portion);
+    }
+    simulation.keep({});
+  }
+  // From here on, only the results hold the robots.
+  for (Candidate& candidate : portion.candidates) candidate.robot.reset();
+  finish(device, portion, std::move(result));
+}
+
+void Evaluator::Parts::loaded(DeviceParts& device, const Simulation& simulation) {
+  const std::size_t at_once = simulation.robots_at_once();
+  const std::lock_guard lock(mutex);
+  if (at_once > 0) device.robots_at_once = at_once;
+  for (const std::string& note : simulation.notes())
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+  update_demand();
+}
+
+// Without results if the portion was given up.
+void Evaluator::Parts::finish(DeviceParts& device, const Portion& portion, FinishedPortion result) {
+  const std::lock_guard lock(mutex);
+  --device.in_hand;
+  if (result.results.empty()) {
+    memory_in_use -= portion.bytes();
+    end_at(portion.first);
+  } else {
+    for (const Candidate& candidate : portion.candidates) {
+      result.bytes.push_back(candidate.bytes);
+      if (candidate.failure.empty())
+        ++device.robots;
+      else
+        robot_steps += request.settling + request.steps;
+    }
+    done += portion.candidates.size();
+    finished.emplace(portion.first, std::move(result));
+  }
+  update_demand();
+  notify_all();
+}
+
+// --- All
+
+bool Evaluator::Parts::next_is_known() const { return next_index >= end || finished.contains(next_index); }
+
+void Evaluator::Parts::end_at(std::size_t index) { end = std::min(end.load(), index); }
+
+void Evaluator::Parts::fail(std::size_t first, std::exception_ptr exception) {
+  const std::lock_guard lock(mutex);
+  if (first <= error_index) {
+    error = std::move(exception);
+    error_index = first;
+  }
+  end_at(first);
+  notify_all();
+}
+
+void Evaluator::Parts::notify_all() {
+  maker_may_go_on.notify_all();
+  portion_waits.notify_all();
+  result_waits.notify_all();
+  device_has_started.notify_all();
+}
+
+}  // namespace mercury

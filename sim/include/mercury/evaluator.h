@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any number of robots, each tried for the same number of steps.
+//
+// A simulation holds a batch, and the batch must be there before its first step. An evaluator takes a source of robots
+// instead. It makes the robots on all cores, in portions, while the devices step earlier ones, and yields the results
+// in the order of the source:
+//
+//     source     |0..127|128..639|640..1151|...               made on all cores, one portion after the other
+//     device 0          |0..127 |640..1151        |...        loaded and stepped, by the first device that is free
+//     device 1                   |128..639      |...
+//     next()                    0, 1, 2, ...                  in order, whatever finished first
+//
+// The number of robots that exist at a time is limited by memory, not by the length of the source.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mercury/backend.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+#include "mercury/state.h"
+#include "mercury/telemetry.h"
+
+namespace mercury {
+
+// The robot of an index; nullptr for every index from the end of the source on. Several threads call it at the same
+// time, in no particular order. An InputError becomes the result of that index (Evaluation::failure); any other
+// exception ends the evaluation.
+using RobotSource = std::function<std::shared_ptr<const Robot>(std::size_t index)>;
+
+// Robots that are there already.
+RobotSource source_of(std::vector<std::shared_ptr<const Robot>> robots);
+
+struct EvaluationRequest {
+  Configuration configuration;    // the device may be cuda:all: each portion goes to one device
+  std::int64_t settling = 0;      // steps before the start of the trial, at least 0
+  std::int64_t steps = 0;         // of the trial, at least 0
+  std::int64_t sample_every = 0;  // steps between two samples of the telemetry; 0 = only at start and end
+  bool hashes = false;            // of the final states
+  bool states = false;            // the final states themselves
+
+  // About how much host memory the robots may take that are made and not yet yielded, with what it takes to step them
+  // [bytes]. 0 = a quarter of what is available. One robot at a time is always accepted.
+  std::size_t memory_limit = 0;
+
+  // Results do not depend on these. 0 = chosen by the evaluator.
+  std::size_t portion = 0;  // robots that are loaded together, at most
+  int workers = 0;          // portions in hand per device: one steps, others load or are read
+};
+
+// What became of one robot.
+struct Evaluation {
+  std::size_t index = 0;               // in the source
+  std::shared_ptr<const Robot> robot;  // nullptr if the source threw
+  std::string failure;                 // why this robot cannot be used; empty = it was stepped
+  std::int64_t steps = 0;              // of the trial that it made; fewer than requested only after stop()
+  Telemetry start, end;                // at the start of the trial, after settling, and at its end
+  double path = 0;                     // length of the path of the center of mass from sample to sample [m]
+  double largest_strain = 0;           // of all samples [1]
+  std::uint64_t hash = 0;              // Simulation::hash() of the final state, if requested
+  State state;                         // the final state, if requested
+};
+
+// Where an evaluation stands. The parts overlap: while robots are stepped, others are made and loaded.
+struct EvaluationProgress {
+  struct Device {
+    std::string name;
+    double busy_seconds = 0;  // during which it stepped robots [s]
+    std::size_t robots = 0;   // that it stepped to the end
+  };
+  std::vector<Device> devices;
+  std::size_t made = 0, done = 0;  // robots: made, or without success; ready to be yielded
+  std::int64_t robot_steps = 0;    // of all robots together; a robot that failed counts with all its steps
+  // How long at least one portion was being started, made, ... [s]
+  double starting = 0;  // of the devices
+  double making = 0, loading = 0, stepping = 0, reading = 0;
+};
+
+class Evaluator {
+ public:
+  static constexpr std::size_t unknown_count = std::numeric_limits<std::size_t>::max();
+  // Makes a backend of one device. Each worker calls it once.
+  using MakeBackend = std::function<std::unique_ptr<Backend>()>;
+
+  // Begins at once. `count` = robots of the source; if it is unknown, the source ends with a nullptr. Throws InputError
+  // for a configuration that breaks a rule, std::invalid_argument for a negative number of steps.
+  Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count = unknown_count);
+  // Uses these devices. The configuration's device has no effect.
+  Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count, std::vector<MakeBackend> devices);
+  // Cancels what has not been yielded. Waits for the robots that are being made and for one call of step(), about a
+  // tenth of a second.
+  ~Evaluator();
+  Evaluator(const Evaluator&) = delete;
+  Evaluator& operator=(const Evaluator&) = delete;
+
+  // Waits for the next result in the order of the source; nothing after the last one. Throws DeviceError if a device
+  // fails or does not exist, and what the source throws, after the results before.
+  std::optional<Evaluation> next();
+  // Waits until next() would return at once, or until the time is over. Returns whether next() would.
+  bool wait_for(std::chrono::milliseconds time);
+
+  // Makes no more robots. Those that are being stepped stop within about a tenth of a second, and next() yields what
+  // they have reached; it omits robots that have not started, and all behind them.
+  void stop();
+
+  // Of all devices, as Simulation::device_name(). Waits until they have started; throws DeviceError.
+  std::string device_name();
+  // What Simulation::notes() said for any portion so far, each line once.
+  std::vector<std::string> notes() const;
+  EvaluationProgress progress() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury
