@@ -13,46 +13,53 @@ constexpr float farthest = 1e6f;  // [m]
 
 std::string place(const char* list, std::size_t index) { return std::string(list) + std::to_string(index); }
 
-void validate_mass_index(std::size_t mass, const Robot& robot, const std::string& where) {
-  if (mass >= robot.masses.size())
-    throw InputError(where, "mass " + std::to_string(mass) + " is out of range, the robot has " +
-                                std::to_string(robot.masses.size()));
+[[noreturn]] void refuse_mass(std::size_t mass, const Robot& robot, const std::string& where) {
+  throw InputError(
+      where, "mass " + std::to_string(mass) + " is out of range, the robot has " + std::to_string(robot.masses.size()));
 }
+
+bool in_reach(Vec3 x) { return std::abs(x.x) <= farthest && std::abs(x.y) <= farthest && std::abs(x.z) <= farthest; }
 
 void validate_masses(const Robot& robot) {
   if (robot.masses.empty()) throw InputError("/masses", "a robot needs at least one mass");
   if (robot.masses.size() > max_masses)
     throw InputError("/masses", std::to_string(robot.masses.size()) + " masses, at most 65535 are accepted");
-  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
-    const Vec3 x = robot.masses[i];
-    if (!(std::abs(x.x) <= farthest && std::abs(x.y) <= farthest && std::abs(x.z) <= farthest))
+  for (std::size_t i = 0; i < robot.masses.size(); ++i)
+    if (!in_reach(robot.masses[i]))
       throw InputError(place("/masses/", i), "a position must be finite and within 1e6 m of the origin");
-  }
 }
 
-void validate_spring(const Robot& robot, std::size_t index) {
+bool is_valid(const Spring& spring, std::size_t masses, std::size_t materials) {
+  return spring.a < masses && spring.b < masses && spring.a != spring.b && spring.material != air &&
+         spring.material < materials && spring.rest_length >= min_rest_length && spring.rest_length <= farthest;
+}
+
+// Says what is wrong with a spring that is not valid.
+[[noreturn]] void refuse_spring(const Robot& robot, std::size_t index) {
   const Spring& spring = robot.springs[index];
   const std::string where = place("/springs/", index);
-  validate_mass_index(spring.a, robot, where);
-  validate_mass_index(spring.b, robot, where);
+  for (const std::size_t mass : {spring.a, spring.b})
+    if (mass >= robot.masses.size()) refuse_mass(mass, robot, where);
   if (spring.a == spring.b) throw InputError(where, "joins mass " + std::to_string(spring.a) + " to itself");
-  const std::size_t materials = materials_of(robot).size();
   if (spring.material == air) throw InputError(where, "material 0 is air, a spring needs another");
-  if (spring.material >= materials)
+  if (const std::size_t materials = materials_of(robot).size(); spring.material >= materials)
     throw InputError(where, "material " + std::to_string(spring.material) + " is out of range, the table has " +
                                 std::to_string(materials));
-  if (!(spring.rest_length >= min_rest_length && spring.rest_length <= farthest))
-    throw InputError(where, "rest length " + std::to_string(spring.rest_length) + " m, at least 0.001 m is accepted");
+  throw InputError(where, "rest length " + std::to_string(spring.rest_length) + " m, at least 0.001 m is accepted");
 }
 
-void validate_face(const Robot& robot, std::size_t index) {
+bool is_valid(const Face& face, std::size_t masses) {
+  return face.a < masses && face.b < masses && face.c < masses && face.a != face.b && face.b != face.c &&
+         face.c != face.a;
+}
+
+// Says what is wrong with a face that is not valid.
+[[noreturn]] void refuse_face(const Robot& robot, std::size_t index) {
   const Face& face = robot.faces[index];
   const std::string where = place("/faces/", index);
-  validate_mass_index(face.a, robot, where);
-  validate_mass_index(face.b, robot, where);
-  validate_mass_index(face.c, robot, where);
-  if (face.a == face.b || face.b == face.c || face.c == face.a)
-    throw InputError(where, "a face needs three different masses");
+  for (const std::size_t mass : {face.a, face.b, face.c})
+    if (mass >= robot.masses.size()) refuse_mass(mass, robot, where);
+  throw InputError(where, "a face needs three different masses");
 }
 
 }  // namespace
@@ -86,10 +93,15 @@ void validate(const Robot& robot) {
     throw InputError("/materials", std::to_string(robot.materials.size()) + " materials, at most 256 are accepted");
   if (!robot.material_names.empty() && robot.material_names.size() != robot.materials.size())
     throw InputError("/materials", "every material needs a name, or none");
-  for (std::size_t i = 0; i < robot.materials.size(); ++i) validate(robot.materials[i], place("/materials/", i));
+  // The text of a place is made only where it is needed: a batch has millions of springs.
+  for (std::size_t i = 0; i < robot.materials.size(); ++i)
+    if (!is_valid(robot.materials[i])) validate(robot.materials[i], place("/materials/", i));
   validate_masses(robot);
-  for (std::size_t i = 0; i < robot.springs.size(); ++i) validate_spring(robot, i);
-  for (std::size_t i = 0; i < robot.faces.size(); ++i) validate_face(robot, i);
+  const std::size_t masses = robot.masses.size(), materials = materials_of(robot).size();
+  for (std::size_t i = 0; i < robot.springs.size(); ++i)
+    if (!is_valid(robot.springs[i], masses, materials)) refuse_spring(robot, i);
+  for (std::size_t i = 0; i < robot.faces.size(); ++i)
+    if (!is_valid(robot.faces[i], masses)) refuse_face(robot, i);
 }
 
 }  // namespace mercury

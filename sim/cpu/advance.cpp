@@ -11,37 +11,44 @@
 namespace mercury::cpu {
 namespace {
 
-// Factors of the bodies' materials. A body with the same table as the previous one has the same factors.
+// Factors of the bodies' materials. Bodies with the same table as the previous one share what is known of it.
 class FactorCache {
  public:
   explicit FactorCache(Muscles& muscles) : muscles_(muscles) {}
 
+  // The factors of the body's materials, perhaps of others, too.
   const std::array<FactorId, max_materials>& factors_of(const Body& body) {
-    if (previous_ == nullptr || previous_->measures.used != body.measures.used ||
-        std::memcmp(previous_->materials.data(), body.materials.data(), max_materials * sizeof(Material)) != 0)
-      factors_ = muscles_.add(body.materials, body.measures.used);
-    previous_ = &body;
+    if (!is_table_of(body)) known_ = {};
+    table_ = body.materials;
+    std::array<bool, max_materials> wanted;
+    for (std::size_t id = 0; id < max_materials; ++id) wanted[id] = body.measures.used[id] && !known_[id];
+    for (std::size_t id = 0; id < max_materials; ++id) known_[id] |= wanted[id];
+    muscles_.add(table_, wanted, factors_);
     return factors_;
   }
 
  private:
+  bool is_table_of(const Body& body) const {
+    return body.materials.size() == table_.size() &&
+           (body.materials.data() == table_.data() ||
+            std::memcmp(body.materials.data(), table_.data(), table_.size_bytes()) == 0);
+  }
+
   Muscles& muscles_;
-  const Body* previous_ = nullptr;
+  std::span<const Material> table_;
+  std::array<bool, max_materials> known_{};
   std::array<FactorId, max_materials> factors_{};
 };
 
-void update_spring_parameters(WorkBatch& batch, std::span<Body> bodies, const AnyEnvironmentModel& model) {
+void update_spring_parameters(WorkBatch& batch, const AnyEnvironmentModel& model) {
   batch.muscles = {};
   FactorCache factor_cache(batch.muscles);
   for (LockstepGroup& group : batch.groups) {
     std::vector<std::array<FactorId, max_materials>> factors;
-    for (const std::size_t i : group.bodies) {
-      factors.push_back(factor_cache.factors_of(bodies[i]));
-      set_factors(bodies[i], factors.back());  // in case the group breaks up
-    }
-    if (!group.bodies.empty()) set_spring_parameters(group, bodies, model, factors);
+    for (const Body* body : group.bodies) factors.push_back(factor_cache.factors_of(*body));
+    if (!group.bodies.empty()) set_spring_parameters(group, model, factors);
   }
-  for (const std::size_t i : batch.bodies) set_factors(bodies[i], factor_cache.factors_of(bodies[i]));
+  for (Body* body : batch.bodies) set_factors(*body, factor_cache.factors_of(*body));
   batch.spring_parameters_are_stale = false;
 }
 
@@ -56,15 +63,20 @@ bool could_overflow(const Body& body) {
 }
 
 // Whether all members can be stepped in lockstep.
-bool is_ready(const LockstepGroup& group, std::span<Body> bodies) {
-  return std::ranges::all_of(group.bodies, [&](std::size_t i) {
-    Body& body = bodies[i];
-    return body.status.exploded_step < 0 && (!body.written || (!could_overflow(body) && accept_state(body)));
+bool is_ready(const LockstepGroup& group) {
+  return std::ranges::all_of(group.bodies, [](Body* body) {
+    return body->status.exploded_step < 0 && (!body->written || (!could_overflow(*body) && accept_state(*body)));
   });
 }
 
+// The members' muscles are among those of the batch already.
 void break_up(LockstepGroup& group, WorkBatch& batch) {
   store(group);
+  FactorCache factor_cache(batch.muscles);
+  for (Body* body : group.bodies) {
+    prepare_to_step_alone(*body);
+    set_factors(*body, factor_cache.factors_of(*body));
+  }
   batch.bodies.insert(batch.bodies.end(), group.bodies.begin(), group.bodies.end());
   group = {};
 }
@@ -78,9 +90,9 @@ void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting,
 
 }  // namespace
 
-std::size_t advance(const Kernel& kernel, WorkBatch& batch, std::span<Body> bodies, const StepSetting& setting,
-                    const Clock& clock, std::int64_t steps) {
-  if (batch.spring_parameters_are_stale) update_spring_parameters(batch, bodies, setting.model);
+std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
+                    std::int64_t steps) {
+  if (batch.spring_parameters_are_stale) update_spring_parameters(batch, setting.model);
   std::size_t broken_up = 0;
   const auto break_up_counted = [&](LockstepGroup& group) {
     break_up(group, batch);
@@ -88,11 +100,11 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, std::span<Body> bodi
   };
   for (LockstepGroup& group : batch.groups) {
     if (group.bodies.empty()) continue;
-    if (!is_ready(group, bodies)) {
+    if (!is_ready(group)) {
       break_up_counted(group);
       continue;
     }
-    if (!group.holds_state()) load(group, bodies);
+    if (!group.holds_state()) load(group);
     set_perturbations(group);
   }
   batch.muscles.move_to(clock);
@@ -112,7 +124,7 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, std::span<Body> bodi
       return_to_checkpoint(group);
       break_up_counted(group);
     }
-    for (const std::size_t i : batch.bodies) advance_alone(kernel, bodies[i], setting, factors, clock.step + done, now);
+    for (Body* body : batch.bodies) advance_alone(kernel, *body, setting, factors, clock.step + done, now);
   }
   return broken_up;
 }

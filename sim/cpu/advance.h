@@ -12,8 +12,8 @@ namespace mercury::cpu {
 
 // Advances those of the batch's bodies that have not exploded. The batch's groups may hold states from then on. Returns
 // the number of groups that were broken up because a member may have exploded.
-std::size_t advance(const Kernel& kernel, WorkBatch& batch, std::span<Body> bodies, const StepSetting& setting,
-                    const Clock& clock, std::int64_t steps);
+std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
+                    std::int64_t steps);
 
 // Brings all states back to the bodies.
 void store(std::span<WorkBatch> batches);

@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <optional>
+#include <unordered_set>
 
 #include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
@@ -40,7 +42,7 @@ class CpuBackend final : public Backend {
   std::vector<std::string> notes() const override { return {}; }
 
   std::size_t robots_at_once() const override {
-    const bool together = !bodies_.empty() && fits_in_group(bodies_.front());
+    const bool together = !bodies_.empty() && fits_in_group(*bodies_.front());
     return static_cast<std::size_t>(arena_.max_concurrency()) * (together ? kernel_.lanes : 1);
   }
   double spring_limit() const override { return 0; }
@@ -48,20 +50,36 @@ class CpuBackend final : public Backend {
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     batches_.clear();
+    loose_.clear();
     bodies_.clear();
-    bodies_.resize(robots.size());
-    for_each_body([&](std::size_t i) {
-      bodies_[i] = make_body(*robots[i], kernel_.lanes);
-      const std::vector<Vec3> at_rest(robots[i]->masses.size());
-      set_state(bodies_[i], robots[i]->masses, at_rest);
-    });
-    configure(configuration);
+    configuration_ = configuration;
+    setting_ = setting_of(configuration);
+    ungroup();
+    append(robots);
+  }
+
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override { append(robots.subspan(first_new)); }
+
+  void keep(std::span<const Robot* const>, std::span<const std::size_t> indices) override {
+    std::vector<std::unique_ptr<Body>> kept;
+    kept.reserve(indices.size());
+    for (const std::size_t i : indices) kept.push_back(std::move(bodies_[i]));
+    std::swap(bodies_, kept);
+    for (const auto& body : bodies_) body->perturbations.clear();
+    std::unordered_set<const Body*> gone;
+    for (const auto& body : kept)
+      if (body) gone.insert(body.get());
+    if (gone.empty() || batches_.empty()) return;
+    std::erase_if(loose_, [&](const Body* body) { return gone.contains(body); });
+    std::ranges::copy(take_out(gone, batches_), std::back_inserter(loose_));
   }
 
   BatchSettings settings() const override {
     BatchSettings now{.configuration = configuration_};
-    for (const Body& body : bodies_) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Body& body = *bodies_[i];
       now.materials.insert(now.materials.end(), body.materials.begin(), body.materials.end());
+      now.materials.resize((i + 1) * max_materials);
       now.perturbations.insert(now.perturbations.end(), body.perturbations.begin(), body.perturbations.end());
     }
     return now;
@@ -71,17 +89,16 @@ class CpuBackend final : public Backend {
     configuration_ = configuration;
     setting_ = setting_of(configuration);
     ungroup();
-    for_each_body([&](std::size_t i) { update_spring_parameters(bodies_[i], configuration_); });
+    for_each_body([&](std::size_t i) { update_spring_parameters(*bodies_[i], configuration_); });
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
     const auto start = std::chrono::steady_clock::now();
     std::atomic<std::size_t> broken_up = 0;
     arena_.execute([&] {
-      if (batches_.empty())
-        batches_ = make_work_batches(bodies_, static_cast<std::size_t>(arena_.max_concurrency()), configuration_);
+      group_bodies();
       oneapi::tbb::parallel_for(std::size_t{0}, batches_.size(), [&](std::size_t i) {
-        broken_up += advance(kernel_, batches_[i], bodies_, setting_, clock, steps);
+        broken_up += advance(kernel_, batches_[i], setting_, clock, steps);
       });
     });
     changes_since_grouping_ += broken_up;
@@ -93,35 +110,39 @@ class CpuBackend final : public Backend {
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
-    const Body& body = bodies_[robot];
+    const Body& body = *bodies_[robot];
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = body.position(i);
     for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i] = body.velocity(i);
   }
 
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    if (bodies_[robot].location.group) cpu::store(*bodies_[robot].location.group);
-    set_state(bodies_[robot], positions, velocities);
+    Body& body = *bodies_[robot];
+    if (body.location.group) cpu::store(*body.location.group);
+    set_state(body, positions, velocities);
   }
 
   void read_positions(std::span<Vec3> out) const override {
-    for (const Body& body : bodies_)
-      for (std::size_t i = 0; i < body.robot->masses.size(); ++i, out = out.subspan(1)) out.front() = body.position(i);
+    for (const auto& body : bodies_)
+      for (std::size_t i = 0; i < body->robot->masses.size(); ++i, out = out.subspan(1))
+        out.front() = body->position(i);
   }
 
   void read_velocities(std::span<Vec3> out) const override {
-    for (const Body& body : bodies_)
-      for (std::size_t i = 0; i < body.robot->masses.size(); ++i, out = out.subspan(1)) out.front() = body.velocity(i);
+    for (const auto& body : bodies_)
+      for (std::size_t i = 0; i < body->robot->masses.size(); ++i, out = out.subspan(1))
+        out.front() = body->velocity(i);
   }
 
-  RobotStatus status(std::size_t robot) const override { return bodies_[robot].status; }
+  RobotStatus status(std::size_t robot) const override { return bodies_[robot]->status; }
   std::vector<RobotStatus> statuses() const override {
     std::vector<RobotStatus> all;
-    for (const Body& body : bodies_) all.push_back(body.status);
+    for (const auto& body : bodies_) all.push_back(body->status);
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    if ((bodies_[robot].status.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
-    bodies_[robot].status = status;
+    RobotStatus& present = bodies_[robot]->status;
+    if ((present.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
+    present = status;
   }
 
   void write_materials(std::span<const Material> tables) override {
@@ -134,42 +155,77 @@ class CpuBackend final : public Backend {
   }
 
   void set_perturbations(std::span<const Perturbation> perturbations) override {
-    for (Body& body : bodies_) body.perturbations.clear();
+    for (const auto& body : bodies_) body->perturbations.clear();
     for (const Perturbation& perturbation : perturbations)
-      bodies_[perturbation.robot].perturbations.push_back(perturbation);
+      bodies_[perturbation.robot]->perturbations.push_back(perturbation);
   }
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     for_each_body([&](std::size_t i) {
-      telemetry[i] = measure_state(bodies_[i], configuration_, clock);
-      statuses[i] = bodies_[i].status;
+      telemetry[i] = measure_state(*bodies_[i], configuration_, clock);
+      statuses[i] = bodies_[i]->status;
     });
   }
 
  private:
   template <class Work>
-  void for_each_body(const Work& work) const {
-    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
+  void for_each_body(const Work& work, std::size_t first = 0) const {
+    arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), [&](std::size_t i) { work(i); }); });
+  }
+
+  void append(std::span<const Robot* const> robots) {
+    const std::size_t first = bodies_.size();
+    bodies_.resize(first + robots.size());
+    for_each_body(
+        [&](std::size_t i) {
+          const Robot& robot = *robots[i - first];
+          bodies_[i] = std::make_unique<Body>(make_body(robot, kernel_.lanes));
+          update_spring_parameters(*bodies_[i], configuration_);
+          const std::vector<Vec3> at_rest(robot.masses.size());
+          set_state(*bodies_[i], robot.masses, at_rest);
+        },
+        first);
+    if (batches_.empty()) return;
+    for (std::size_t i = first; i < bodies_.size(); ++i) loose_.push_back(bodies_[i].get());
+  }
+
+  // Puts all bodies into work batches. Bodies that come later get batches of their own. When they have become a quarter
+  // of all since the last time, everything is grouped again: with the new bodies there may be better groups.
+  void group_bodies() {
+    loosened_since_grouping_ += loose_.size();
+    if (4 * loosened_since_grouping_ > bodies_.size()) ungroup();
+    const auto threads = static_cast<std::size_t>(arena_.max_concurrency());
+    if (batches_.empty()) {
+      std::vector<Body*> all;
+      for (const auto& body : bodies_) all.push_back(body.get());
+      batches_ = make_work_batches(all, threads, configuration_);
+    } else if (!loose_.empty()) {
+      std::ranges::move(make_work_batches(loose_, 1, configuration_), std::back_inserter(batches_));
+    }
+    loose_.clear();
   }
 
   // Brings all states back to the bodies. The next step makes new batches.
   void ungroup() {
     cpu::store(batches_);
     batches_.clear();
-    changes_since_grouping_ = 0;
+    loose_.clear();
+    loosened_since_grouping_ = changes_since_grouping_ = 0;
   }
 
   void replace_table(std::size_t robot, std::span<const Material> table) {
-    std::ranges::copy(table, bodies_[robot].materials.begin());
-    update_spring_parameters(bodies_[robot], configuration_);
+    set_materials(*bodies_[robot], table);
+    update_spring_parameters(*bodies_[robot], configuration_);
   }
 
   const Kernel kernel_;
   std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
-  std::vector<Body> bodies_;
-  std::vector<WorkBatch> batches_;          // empty = to be made before the next step
-  std::size_t changes_since_grouping_ = 0;  // groups broken up, exploded robots set by the caller
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<WorkBatch> batches_;           // empty = all are to be made before the next step
+  std::vector<Body*> loose_;                 // in no batch, if there are batches
+  std::size_t loosened_since_grouping_ = 0;  // bodies that came, or whose groups broke up when others went
+  std::size_t changes_since_grouping_ = 0;   // groups broken up, exploded robots set by the caller
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;

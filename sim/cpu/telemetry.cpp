@@ -40,7 +40,8 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
   result.velocity = velocity.over(masses);
   const float scale = stiffness_scale_of(configuration.environment);
   std::array<float, max_materials> factor{};
-  for (std::size_t id = 0; id < max_materials; ++id) factor[id] = muscle_factor(body.materials[id], clock);
+  for (std::size_t id = 0; id < body.materials.size(); ++id)
+    if (body.measures.used[id]) factor[id] = muscle_factor(body.materials[id], clock);
   for (const Spring& spring : body.robot->springs) {
     const float distance = length(body.position(spring.b) - body.position(spring.a));
     const float too_long = stretch(distance, spring.rest_length, factor[spring.material]);

@@ -17,8 +17,8 @@ class Batch {
   explicit Batch(std::span<const Robot* const> robots);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
-  std::uint32_t tiles() const { return sizes_.tiles; }     // of the largest robot
-  bool same_materials() const { return same_materials_; }  // all robots have the same table
+  std::uint32_t tiles() const { return sizes_.tiles; }                // of the largest robot
+  bool same_materials() const { return same_materials_; }             // all robots have the same table
   std::span<const Material> materials() const { return materials_; }  // [robot][max_materials]
   BatchView view() const;
 

@@ -10,49 +10,10 @@
 #include "backend.h"
 #include "bodies.h"
 #include "mercury/error.h"
+#include "plain_backend.h"
 
 namespace mercury {
 namespace {
-
-// A CPU backend behind the interface, without its own add(), keep() and step_and_report().
-class Defaults final : public Backend {
- public:
-  std::string device_name() const override { return cpu_->device_name(); }
-  std::vector<std::string> notes() const override { return cpu_->notes(); }
-  std::size_t robots_at_once() const override { return cpu_->robots_at_once(); }
-  double spring_limit() const override { return cpu_->spring_limit(); }
-  double busy_seconds() const override { return cpu_->busy_seconds(); }
-  void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
-    cpu_->load(robots, configuration);
-  }
-  BatchSettings settings() const override { return cpu_->settings(); }
-  void configure(const Configuration& configuration) override { cpu_->configure(configuration); }
-  void step(const Clock& clock, std::int64_t steps) override { cpu_->step(clock, steps); }
-  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
-    cpu_->read(robot, positions, velocities);
-  }
-  void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
-    cpu_->write(robot, positions, velocities);
-  }
-  void read_positions(std::span<Vec3> out) const override { cpu_->read_positions(out); }
-  void read_velocities(std::span<Vec3> out) const override { cpu_->read_velocities(out); }
-  RobotStatus status(std::size_t robot) const override { return cpu_->status(robot); }
-  std::vector<RobotStatus> statuses() const override { return cpu_->statuses(); }
-  void set_status(std::size_t robot, const RobotStatus& status) override { cpu_->set_status(robot, status); }
-  void write_materials(std::span<const Material> tables) override { cpu_->write_materials(tables); }
-  void write_materials(std::size_t robot, std::span<const Material> table) override {
-    cpu_->write_materials(robot, table);
-  }
-  void set_perturbations(std::span<const Perturbation> perturbations) override {
-    cpu_->set_perturbations(perturbations);
-  }
-  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
-    cpu_->report(clock, telemetry, statuses);
-  }
-
- private:
-  std::unique_ptr<Backend> cpu_ = make_cpu_backend({});
-};
 
 std::unique_ptr<Backend> split_over_three() {
   std::vector<std::unique_ptr<Backend>> parts;
@@ -97,14 +58,14 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(Maker{"cpu", [] { return make_cpu_backend({}); }},
                                      Maker{"cuda", [] { return make_cuda_backend({.kind = DeviceKind::cuda}); }},
                                      Maker{"split", split_over_three},
-                                     Maker{"defaults", [] { return std::make_unique<Defaults>(); }}),
+                                     Maker{"defaults", [] { return std::make_unique<test::PlainBackend>(); }}),
                      testing::Values(Solver::force, Solver::xpbd), testing::ValuesIn(environment_names())),
     BatchEdits::name);
 
 // Some alike, some of their own, so that some step in lockstep and some alone.
-std::vector<Robot> herd() {
+std::vector<Robot> herd(std::size_t size = 24) {
   std::vector<Robot> robots;
-  for (std::uint64_t seed = 0; seed < 24; ++seed)
+  for (std::uint64_t seed = 0; seed < size; ++seed)
     robots.push_back(bodies::random_voxels({.x = seed % 4 == 0 ? 1 + static_cast<int>(seed) % 3 : 2}, seed));
   return robots;
 }
@@ -171,6 +132,26 @@ TEST_P(BatchEdits, KeptRobotsMoveAsIfAllHadStayed) {
     EXPECT_EQ(edited.robot(i), robots[kept[i]]);
   }
   EXPECT_EQ(edited.material(4, 5), soft);
+}
+
+TEST_P(BatchEdits, ARemovedRobotChangesNothingForTheOthers) {
+  const std::vector<Robot> robots = herd(80);
+  Simulation alone = start(robots), edited = start(robots);
+  for (Simulation* simulation : {&alone, &edited}) simulation->step(10);
+  std::vector<std::size_t> kept(robots.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i;
+  for (const std::ptrdiff_t gone : {31, 0}) {  // with a step in between, and then with an addition before the step
+    kept.erase(kept.begin() + gone);
+    std::vector<std::size_t> indices(edited.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = i;
+    indices.erase(indices.begin() + gone);
+    edited.keep(indices);
+    if (gone == 0) edited.add(robots[0]);
+    for (Simulation* simulation : {&alone, &edited}) simulation->step(10);
+  }
+  const std::vector<std::uint64_t> hashes = edited.hashes(), expected = alone.hashes();
+  ASSERT_EQ(hashes.size(), kept.size() + 1);
+  for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(hashes[i], expected[kept[i]]) << kept[i];
 }
 
 // Generation after generation: the worst go, children come, and every robot still moves as it would alone.

@@ -17,17 +17,32 @@ namespace {
 
 using test::mixed_robots;
 
-std::vector<cpu::Body> bodies_of(const std::vector<Robot>& robots, std::size_t lanes) {
-  std::vector<cpu::Body> bodies;
-  for (const Robot& robot : robots) bodies.push_back(cpu::make_body(robot, lanes));
-  return bodies;
-}
+class Bodies {
+ public:
+  Bodies(const std::vector<Robot>& robots, std::size_t lanes) {
+    for (const Robot& robot : robots) {
+      bodies_.push_back(std::make_unique<cpu::Body>(cpu::make_body(robot, lanes)));
+      pointers_.push_back(bodies_.back().get());
+    }
+  }
+  operator std::span<cpu::Body* const>() const { return pointers_; }
+  const cpu::Body& operator[](std::size_t i) const { return *bodies_[i]; }
+  std::vector<cpu::Body*> members(const cpu::GroupPlan& plan) const {
+    std::vector<cpu::Body*> members;
+    for (const std::size_t i : plan.bodies) members.push_back(pointers_[i]);
+    return members;
+  }
+
+ private:
+  std::vector<std::unique_ptr<cpu::Body>> bodies_;
+  std::vector<cpu::Body*> pointers_;
+};
 
 // Without this, the tests of mixed batches would show nothing: they could pass with each robot stepped alone.
 TEST(LockstepGroups, MixRobotsOfDifferentTopologies) {
   for (const cpu::Kernel& kernel : cpu::kernels()) {
     const std::vector<Robot> robots = mixed_robots(kernel.lanes);
-    const std::vector<cpu::Body> bodies = bodies_of(robots, kernel.lanes);
+    const Bodies bodies(robots, kernel.lanes);
     const std::vector<cpu::GroupPlan> plans = cpu::plan_lockstep_groups(bodies, 1, {});
     std::set<std::size_t> members;
     for (const cpu::GroupPlan& plan : plans) members.insert(plan.bodies.begin(), plan.bodies.end());
@@ -68,7 +83,7 @@ TEST(LockstepGroups, KeepRobotsOfOneShapeTogether) {
 
 TEST(LockstepGroups, HoldEachMassSpringAndFacePairOnce) {
   const std::vector<Robot> robots = mixed_robots(8);
-  const std::vector<cpu::Body> bodies = bodies_of(robots, 8);
+  const Bodies bodies(robots, 8);
   for (const cpu::GroupPlan& plan : cpu::plan_lockstep_groups(bodies, 1, {})) {
     const cpu::Topology& topology = *plan.merged.topology;
     std::vector<std::uint32_t> owners;
@@ -99,10 +114,10 @@ TEST(LockstepGroups, HoldEachMassSpringAndFacePairOnce) {
 TEST(LockstepGroups, GiveEachLaneTheCornersOfItsOwnFacePairs) {
   for (const std::size_t lanes : {4u, 8u, 16u}) {
     const std::vector<Robot> robots = mixed_robots(lanes);
-    const std::vector<cpu::Body> bodies = bodies_of(robots, lanes);
+    const Bodies bodies(robots, lanes);
     std::size_t split = 0;
     for (const cpu::GroupPlan& plan : cpu::plan_lockstep_groups(bodies, 1, {})) {
-      const cpu::LockstepGroup group = cpu::make_lockstep_group(bodies, plan.bodies, plan.merged, false);
+      const cpu::LockstepGroup group = cpu::make_lockstep_group(bodies.members(plan), plan.merged, false);
       split += group.split_face_tiles.size();
       for (std::size_t lane = 0; lane < plan.bodies.size(); ++lane) {
         const cpu::IndexMap& index_map = *group.index_maps[lane];

@@ -22,6 +22,8 @@ std::size_t footprint(std::size_t entries, std::size_t slots, std::size_t lanes)
   return lanes * (entries * (2 * sizeof(float) + sizeof(FactorId)) + slots * 9 * sizeof(float));
 }
 
+double factor_of_lanes(std::size_t lanes) { return lanes > 8 ? costs.many_lanes : lanes < 8 ? costs.few_lanes : 1.0; }
+
 }  // namespace
 
 double cost_in_lockstep(const Topology& topology, bool faces) {
@@ -40,7 +42,17 @@ double cost_alone(const Body& body, bool faces) {
                       costs.gathered_row * static_cast<double>(schedule.partners.size() / lanes) +
                       per_tile * static_cast<double>(body.slots.tiles()) +
                       (faces ? costs.face_tile * static_cast<double>(body.face_tiles.size() / (4 * lanes)) : 0.0);
-  return (lanes > 8 ? costs.many_lanes : lanes < 8 ? costs.few_lanes : 1.0) * cost;
+  return factor_of_lanes(lanes) * cost;
+}
+
+// As if all springs were in full runs.
+double least_cost_alone(const Body& body, bool faces) {
+  const std::size_t lanes = body.slots.lanes;
+  const auto rows = [&](std::size_t items) { return static_cast<double>((items + lanes - 1) / lanes); };
+  const double cost = costs.body + costs.run * rows(body.robot->springs.size()) +
+                      (faces ? costs.tile_with_faces : costs.tile) * static_cast<double>(body.slots.tiles()) +
+                      (faces ? costs.face_tile * rows(body.face_pairs.size()) : 0.0);
+  return factor_of_lanes(lanes) * cost;
 }
 
 std::size_t footprint(const Topology& topology, std::size_t lanes) {

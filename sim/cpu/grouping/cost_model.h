@@ -59,7 +59,8 @@ inline constexpr GroupingLimits limits;
 
 // Costs of one step. `faces`: whether they give forces.
 double cost_in_lockstep(const Topology& topology, bool faces);
-double cost_alone(const Body& body, bool faces);
+double cost_alone(const Body& body, bool faces);        // from prepare_to_step_alone() on
+double least_cost_alone(const Body& body, bool faces);  // no more than cost_alone()
 
 // Bytes that a step of a group touches, and about those of a body alone.
 std::size_t footprint(const Topology& topology, std::size_t lanes);

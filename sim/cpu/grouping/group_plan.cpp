@@ -23,15 +23,15 @@ bool have_same_topology(const Body& a, const Body& b) {
 }
 
 // Takes groups of robots with the same topology from `left`, if at least three quarters of their lanes have a member.
-std::vector<Group> groups_of_same_topology(std::span<const Body> bodies, Group& left) {
-  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i].topology_key; });
+std::vector<Group> groups_of_same_topology(std::span<Body* const> bodies, Group& left) {
+  std::ranges::stable_sort(left, {}, [&](std::size_t i) { return bodies[i]->topology_key; });
   std::vector<Group> groups;
   Group others;
   for (auto first = left.begin(); first != left.end();) {
-    const std::size_t lanes = bodies[*first].slots.lanes;
+    const std::size_t lanes = bodies[*first]->slots.lanes;
     auto last = first + 1;
     while (last != left.end() && static_cast<std::size_t>(last - first) < lanes &&
-           have_same_topology(bodies[*first], bodies[*last]))
+           have_same_topology(*bodies[*first], *bodies[*last]))
       ++last;
     if (4 * static_cast<std::size_t>(last - first) >= 3 * lanes)
       groups.emplace_back(first, last);
@@ -46,33 +46,33 @@ std::vector<Group> groups_of_same_topology(std::span<const Body> bodies, Group& 
 // Lattice cells by body and mass; empty for bodies that take part in no group of similar robots.
 using Patterns = std::vector<std::vector<LatticeCell>>;
 
-Patterns patterns_of(std::span<const Body> bodies, std::span<const std::size_t> wanted, bool faces) {
+Patterns patterns_of(std::span<Body* const> bodies, std::span<const std::size_t> wanted, bool faces) {
   Patterns patterns(bodies.size());
   oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t w) {
-    const std::vector<LatticeCell>& cells = bodies[wanted[w]].cells;
+    const std::vector<LatticeCell>& cells = bodies[wanted[w]]->cells;
     patterns[wanted[w]] = faces || cells.empty() ? cells : in_common_pose(cells);
   });
   return patterns;
 }
 
-std::vector<Group> groups_of_similar(std::span<const Body> bodies, const Patterns& patterns,
+std::vector<Group> groups_of_similar(std::span<Body* const> bodies, const Patterns& patterns,
                                      std::span<const std::size_t> left, bool faces) {
   Group candidates;
   std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
   if (candidates.empty()) return {};
   std::vector<RobotItems> robots;
   for (const std::size_t i : candidates) {
-    robots.push_back({patterns[i], bodies[i].robot->springs, {}});
-    if (faces) robots.back().face_pairs = bodies[i].face_pairs;
+    robots.push_back({patterns[i], bodies[i]->robot->springs, {}});
+    if (faces) robots.back().face_pairs = bodies[i]->face_pairs;
   }
-  std::vector<Group> groups = partition_by_similarity(robots, bodies[candidates.front()].slots.lanes);
+  std::vector<Group> groups = partition_by_similarity(robots, bodies[candidates.front()]->slots.lanes);
   for (Group& group : groups)
     for (std::size_t& robot : group) robot = candidates[robot];
   return groups;
 }
 
-GroupPlan plan_same_topology(std::span<const Body> bodies, Group group) {
-  const Body& first = bodies[group.front()];
+GroupPlan plan_same_topology(std::span<Body* const> bodies, Group group) {
+  const Body& first = *bodies[group.front()];
   std::vector<std::uint32_t> slots(first.robot->masses.size());
   std::iota(slots.begin(), slots.end(), 0u);
   const Member member{first.robot, first.face_pairs, slots};
@@ -110,7 +110,7 @@ std::size_t index_of(LatticeCell c) {
 }
 
 // Slots are the cells in which any member has a mass, in the order z, y, x.
-GroupPlan plan_similar(std::span<const Body> bodies, const Patterns& patterns, Group group) {
+GroupPlan plan_similar(std::span<Body* const> bodies, const Patterns& patterns, Group group) {
   constexpr std::uint32_t none = 0xffffffffu;
   std::vector<std::uint32_t> slot_of_cell(std::size_t{max_cells_across} * max_cells_across * max_cells_across, none);
   for (const std::size_t i : group)
@@ -120,28 +120,36 @@ GroupPlan plan_similar(std::span<const Body> bodies, const Patterns& patterns, G
     if (slot != none) slot = slots++;
   std::vector<Member> members;
   for (const std::size_t i : group) {
-    members.push_back({bodies[i].robot, bodies[i].face_pairs, {}});
+    members.push_back({bodies[i]->robot, bodies[i]->face_pairs, {}});
     for (const LatticeCell c : patterns[i]) members.back().slots.push_back(slot_of_cell[index_of(c)]);
   }
   GroupPlan plan{std::move(group), merge_topologies(members, slots)};
-  if (bodies[plan.bodies.front()].slots.lanes >= min_lanes_to_split) maximize_split_face_tiles(plan);
+  if (bodies[plan.bodies.front()]->slots.lanes >= min_lanes_to_split) maximize_split_face_tiles(plan);
   return plan;
 }
 
-bool is_faster_than_alone(std::span<const Body> bodies, const GroupPlan& plan, bool faces) {
-  double alone = 0;
-  for (const std::size_t i : plan.bodies) alone += cost_alone(bodies[i], faces);
+// Prepares the bodies to step alone if a bound of their costs does not decide.
+bool is_faster_than_alone(std::span<Body* const> bodies, const GroupPlan& plan, bool faces) {
   const Topology& topology = *plan.merged.topology;
-  return fits_in_cache(topology, bodies[plan.bodies.front()].slots.lanes) && cost_in_lockstep(topology, faces) < alone;
+  if (!fits_in_cache(topology, bodies[plan.bodies.front()]->slots.lanes)) return false;
+  const double together = cost_in_lockstep(topology, faces);
+  double alone = 0, at_least = 0;
+  for (const std::size_t i : plan.bodies) at_least += least_cost_alone(*bodies[i], faces);
+  if (together < at_least) return true;
+  for (const std::size_t i : plan.bodies) {
+    prepare_to_step_alone(*bodies[i]);
+    alone += cost_alone(*bodies[i], faces);
+  }
+  return together < alone;
 }
 
 }  // namespace
 
-std::vector<GroupPlan> plan_lockstep_groups(std::span<const Body> bodies, std::size_t threads,
+std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::size_t threads,
                                             const Configuration& configuration) {
   Group left;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (fits_in_group(bodies[i])) left.push_back(i);
+    if (fits_in_group(*bodies[i])) left.push_back(i);
   const bool faces = has_faces(configuration.environment);
   std::vector<Group> groups = groups_of_same_topology(bodies, left);
   const std::size_t same = groups.size();

@@ -25,12 +25,12 @@
 namespace mercury::cpu {
 
 struct GroupPlan {
-  std::vector<std::size_t> bodies;  // 1 to as many as there are lanes
+  std::vector<std::size_t> bodies;  // 1 to as many as there are lanes, by index in the span given
   MergedTopology merged;            // one index map per body
 };
 
 // Each body is in one plan at most; the others step alone.
-std::vector<GroupPlan> plan_lockstep_groups(std::span<const Body> bodies, std::size_t threads,
+std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::size_t threads,
                                             const Configuration& configuration);
 
 }  // namespace mercury::cpu

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/grouping/work_batch.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "sim/cpu/grouping/cost_model.h"
@@ -39,27 +43,60 @@ std::size_t max_muscles_of(const Body& body) {
   return static_cast<std::size_t>(std::ranges::count(body.measures.used, true));
 }
 
+std::vector<LockstepGroup> make_groups(std::span<Body* const> bodies, std::vector<GroupPlan>& plans, bool contacts) {
+  std::vector<LockstepGroup> groups(plans.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, plans.size(), [&](std::size_t g) {
+    std::vector<Body*> members;
+    for (const std::size_t i : plans[g].bodies) members.push_back(bodies[i]);
+    groups[g] = make_lockstep_group(std::move(members), std::move(plans[g].merged), contacts);
+  });
+  return groups;
+}
+
 }  // namespace
 
-std::vector<WorkBatch> make_work_batches(std::span<const Body> bodies, std::size_t threads,
+std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::size_t threads,
                                          const Configuration& configuration) {
   std::vector<GroupPlan> plans = plan_lockstep_groups(bodies, threads, configuration);
   const bool contacts = has_contacts(configuration.environment);
-  std::vector<bool> is_member(bodies.size());
+  std::vector<std::uint8_t> is_member(bodies.size());
+  for (const GroupPlan& plan : plans)
+    for (const std::size_t i : plan.bodies) is_member[i] = 1;
+  oneapi::tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+    if (contacts) prepare_contacts(*bodies[i]);
+    if (!is_member[i]) prepare_to_step_alone(*bodies[i]);
+  });
+
   BatchFiller filler(std::max<std::size_t>(1, bodies.size() / (limits.batches_per_thread * threads)));
-  for (GroupPlan& plan : plans) {
+  for (LockstepGroup& group : make_groups(bodies, plans, contacts)) {
     std::size_t muscles = 0;
-    for (const std::size_t i : plan.bodies) {
-      is_member[i] = true;
-      muscles += max_muscles_of(bodies[i]);
-    }
-    const std::size_t bytes = footprint(*plan.merged.topology, bodies[plan.bodies.front()].slots.lanes);
-    WorkBatch& batch = filler.batch_for(plan.bodies.size(), muscles, bytes);
-    batch.groups.push_back(make_lockstep_group(bodies, std::move(plan.bodies), std::move(plan.merged), contacts));
+    for (const Body* body : group.bodies) muscles += max_muscles_of(*body);
+    const std::size_t bytes = footprint(*group.topology, group.lanes);
+    filler.batch_for(group.bodies.size(), muscles, bytes).groups.push_back(std::move(group));
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!is_member[i]) filler.batch_for(1, max_muscles_of(bodies[i]), footprint(bodies[i])).bodies.push_back(i);
+    if (!is_member[i])
+      filler.batch_for(1, max_muscles_of(*bodies[i]), footprint(*bodies[i])).bodies.push_back(bodies[i]);
   return filler.take();
+}
+
+std::vector<Body*> take_out(const std::unordered_set<const Body*>& bodies, std::vector<WorkBatch>& batches) {
+  const auto is_out = [&](const Body* body) { return bodies.contains(body); };
+  std::vector<Body*> loose;
+  for (WorkBatch& batch : batches) {
+    std::erase_if(batch.bodies, is_out);
+    for (LockstepGroup& group : batch.groups) {
+      if (std::ranges::none_of(group.bodies, is_out)) continue;
+      store(group);
+      std::ranges::copy_if(group.bodies, std::back_inserter(loose), std::not_fn(is_out));
+      group = {};
+    }
+  }
+  std::erase_if(batches, [](const WorkBatch& batch) {
+    return batch.bodies.empty() &&
+           std::ranges::all_of(batch.groups, [](const LockstepGroup& group) { return group.bodies.empty(); });
+  });
+  return loose;
 }
 
 }  // namespace mercury::cpu

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "sim/cpu/layout/lockstep_group.h"
@@ -16,16 +17,20 @@
 namespace mercury::cpu {
 
 struct WorkBatch {
-  std::vector<std::size_t> bodies;    // stepped alone
+  std::vector<Body*> bodies;          // stepped alone
   std::vector<LockstepGroup> groups;  // a group without bodies was broken up
   Muscles muscles;
   Aligned<float> factors;                   // of the next steps
   bool spring_parameters_are_stale = true;  // the bodies' materials have changed
 };
 
-// Distributes all bodies. The batches are valid until the bodies are loaded or configured again; after an explosion, or
-// the end of one, other groups may be faster.
-std::vector<WorkBatch> make_work_batches(std::span<const Body> bodies, std::size_t threads,
+// Distributes all bodies. The batches are valid until the bodies are configured again; after an explosion, or the end
+// of one, other groups may be faster. Uses all cores.
+std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::size_t threads,
                                          const Configuration& configuration);
+
+// Takes these bodies out of their batches. The rest of their groups break up: their bodies are in no batch, either.
+// Returns those, without the ones that are taken.
+std::vector<Body*> take_out(const std::unordered_set<const Body*>& bodies, std::vector<WorkBatch>& batches);
 
 }  // namespace mercury::cpu

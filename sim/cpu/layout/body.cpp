@@ -9,29 +9,54 @@
 
 namespace mercury::cpu {
 
+namespace {
+
+void set_scheduled_stiffness(Body& body) {
+  SpringSchedule& springs = body.springs;
+  for (std::size_t i = 0; i < springs.stiffness.size(); ++i)
+    springs.stiffness[i] = springs.spring[i] == no_spring ? 0 : body.stiffness[springs.spring[i]];
+}
+
+}  // namespace
+
 Body make_body(const Robot& robot, std::size_t lanes) {
   Body body;
   body.robot = &robot;
   body.measures = measure(robot);
   body.slots = assign_slots(robot, lanes);
   body.topology_key = topology_key(robot);
-  body.springs = schedule_springs(robot, body.slots);
   body.face_pairs = pair_faces(robot);
-  body.face_tiles = tile_faces(body.face_pairs, body.slots);
   body.cells = lattice_cells_of(robot);
-  body.near_pairs = NearPairs(robot, body.slots);
-  body.materials.assign(max_materials, {});
-  std::ranges::copy(materials_of(robot), body.materials.begin());
+  body.materials = materials_of(robot);
+  body.stiffness.resize(robot.springs.size());
   const std::size_t size = body.slots.size_with_spare();
   body.x.assign(size, 0);
   body.v.assign(size, 0);
+  return body;
+}
+
+void prepare_to_step_alone(Body& body) {
+  if (body.steps_alone) return;
+  body.steps_alone = true;
+  body.springs = schedule_springs(*body.robot, body.slots);
+  set_scheduled_stiffness(body);
+  body.face_tiles = tile_faces(body.face_pairs, body.slots);
+  const std::size_t size = body.slots.size_with_spare();
   body.sums.own.assign(size, 0);
   body.sums.reaction.assign(reaction_arrays * size, 0);
   body.sums.scattered.assign(4 * size, 0);
   body.sums.taken.assign(size, 0);
   body.x_aos.assign(4 * size, 0);
   body.v_aos.assign(4 * size, 0);
-  return body;
+}
+
+void prepare_contacts(Body& body) {
+  if (!body.near_pairs.is_prepared()) body.near_pairs = NearPairs(*body.robot, body.slots);
+}
+
+void set_materials(Body& body, std::span<const Material> table) {
+  body.changed_materials.assign(table.begin(), table.end());
+  body.materials = body.changed_materials;
 }
 
 void clear(Sums& sums) {
@@ -48,8 +73,10 @@ void update_spring_parameters(Body& body, const Configuration& configuration) {
   body.scale = fixed_point_scale(body.measures, body.materials, configuration);
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
   const bool force = configuration.solver == Solver::force;
-  std::array<float, max_materials> coefficient;  // by material: stiffness (force solver) or compliance (XPBD), in units
-  for (std::size_t id = 0; id < max_materials; ++id) {
+  // By material that springs have: stiffness (force solver) or compliance (XPBD), in units.
+  std::array<float, max_materials> coefficient;
+  for (std::size_t id = 0; id < body.materials.size(); ++id) {
+    if (!body.measures.used[id]) continue;
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
     coefficient[id] =
         force ? static_cast<float>(stiffness) * body.scale.force
@@ -57,18 +84,15 @@ void update_spring_parameters(Body& body, const Configuration& configuration) {
   }
   coefficient[air] = force ? 0 : std::numeric_limits<float>::infinity();
 
-  const std::vector<std::uint32_t> valence = valences(robot);
+  const std::vector<std::uint32_t> valence = force ? std::vector<std::uint32_t>() : valences(robot);
   const float per_scale = 1 / body.scale.correction;
-  body.stiffness.resize(robot.springs.size());
   for (std::size_t s = 0; s < robot.springs.size(); ++s) {
     const Spring& spring = robot.springs[s];
-    const auto valence_sum = static_cast<float>(valence[spring.a] + valence[spring.b]);
+    const auto valence_sum = [&] { return static_cast<float>(valence[spring.a] + valence[spring.b]); };
     body.stiffness[s] =
-        force ? coefficient[spring.material] : xpbd_stiffness(valence_sum * per_scale, coefficient[spring.material]);
+        force ? coefficient[spring.material] : xpbd_stiffness(valence_sum() * per_scale, coefficient[spring.material]);
   }
-  SpringSchedule& springs = body.springs;
-  for (std::size_t i = 0; i < springs.stiffness.size(); ++i)
-    springs.stiffness[i] = springs.spring[i] == no_spring ? 0 : body.stiffness[springs.spring[i]];
+  set_scheduled_stiffness(body);
 }
 
 void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {

@@ -25,6 +25,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "mercury/backend.h"
@@ -80,18 +81,23 @@ struct Body {
   std::vector<FacePair> face_pairs;
   std::vector<LatticeCell> cells;
   Slots slots;
-  SpringSchedule springs;
-  std::vector<std::uint32_t> face_tiles;  // tile_faces()
-  NearPairs near_pairs;
-  std::vector<Material> materials;  // max_materials elements
+  std::span<const Material> materials;      // by id: those of the robot, or `changed_materials`
+  std::vector<Material> changed_materials;  // max_materials elements if the caller has written them
   FixedPointScale scale;
   // By spring, in units: k of the force solver, or xpbd_stiffness(). 0 for springs of air.
   std::vector<float> stiffness;
 
-  StateLocation location;       // while a group holds the state, x and v are undefined
-  Triples<float> x, v;          // between XPBD's prediction and correction: the prediction and v + dt F
-  Aligned<float> x_aos, v_aos;  // [slot][x, y, z, unused]
+  // What only bodies need that are stepped alone: from prepare_to_step_alone() on.
+  bool steps_alone = false;
+  SpringSchedule springs;
+  std::vector<std::uint32_t> face_tiles;  // tile_faces()
+  Aligned<float> x_aos, v_aos;            // [slot][x, y, z, unused]
   Sums sums;
+  // What only contacts need: from prepare_contacts() on.
+  NearPairs near_pairs;
+
+  StateLocation location;  // while a group holds the state, x and v are undefined
+  Triples<float> x, v;     // between XPBD's prediction and correction: the prediction and v + dt F
 
   float squared_diagonal = std::numeric_limits<float>::infinity();  // of the box around all masses [m2], if known
   bool aos_is_current = false;                                      // x_aos and v_aos
@@ -110,13 +116,19 @@ struct Body {
   }
 };
 
-// A body for kernels of this number of lanes, without a state.
+// A body for kernels of this number of lanes, without a state. Most small robots step in groups, so the parts that
+// only others need are made on request; a second request has no effect.
 Body make_body(const Robot& robot, std::size_t lanes);
+void prepare_to_step_alone(Body& body);
+void prepare_contacts(Body& body);
+
+// Replaces the materials by a table of max_materials elements. To be followed by update_spring_parameters().
+void set_materials(Body& body, std::span<const Material> table);
 
 // Computes what depends on materials and configuration.
 void update_spring_parameters(Body& body, const Configuration& configuration);
 
-// Sets which factor each spring reads, by material.
+// Sets which factor each spring reads, by material, for a body that steps alone.
 void set_factors(Body& body, const std::array<FactorId, max_materials>& factors);
 
 // No group may hold the body's state.

@@ -30,7 +30,7 @@ std::size_t member_of(const LockstepGroup& group, std::size_t lane) { return lan
 
 std::vector<std::uint64_t> current_searches(const LockstepGroup& group) {
   std::vector<std::uint64_t> searches;
-  for (const Body* body : group.members) searches.push_back(body->near_pairs.searches());
+  for (std::size_t lane = 0; lane < group.lanes; ++lane) searches.push_back(group.body_in(lane).near_pairs.searches());
   return searches;
 }
 
@@ -107,10 +107,9 @@ std::optional<FaceCoefficients<float>> face_coefficients_of(const AnyEnvironment
 
 }  // namespace
 
-LockstepGroup make_lockstep_group(std::span<const Body> bodies, std::vector<std::size_t> members, MergedTopology merged,
-                                  bool contacts) {
+LockstepGroup make_lockstep_group(std::vector<Body*> members, MergedTopology merged, bool contacts) {
   LockstepGroup group;
-  group.lanes = bodies[members.front()].slots.lanes;
+  group.lanes = members.front()->slots.lanes;
   group.bodies = std::move(members);
   set_topology(group, std::move(merged));
   make_face_tiles(group);
@@ -124,7 +123,7 @@ LockstepGroup make_lockstep_group(std::span<const Body> bodies, std::vector<std:
   return group;
 }
 
-void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, const AnyEnvironmentModel& model,
+void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& model,
                            std::span<const std::array<FactorId, max_materials>> factors) {
   std::ranges::fill(group.rest_length, 0.0f);
   std::ranges::fill(group.factor, FactorId{0});
@@ -134,7 +133,7 @@ void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, c
   std::ranges::fill(group.face_tangential, 0.0f);
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const std::size_t member = member_of(group, lane);
-    const Body& body = bodies[group.bodies[member]];
+    const Body& body = *group.bodies[member];
     const IndexMap& index_map = *group.index_maps[lane];
     for (std::size_t s = 0; s < index_map.entries.size(); ++s) {
       const Spring& spring = body.robot->springs[s];
@@ -159,11 +158,9 @@ void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, c
   }
 }
 
-void load(LockstepGroup& group, std::span<Body> bodies) {
-  group.members.clear();
+void load(LockstepGroup& group) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
-    Body& body = bodies[group.bodies[member_of(group, lane)]];
-    group.members.push_back(&body);
+    const Body& body = group.body_in(lane);
     const std::vector<std::uint32_t>& slots = group.index_maps[lane]->slots;
     for (std::size_t mass = 0; mass < slots.size(); ++mass) {
       const std::size_t offset = group.offset_of(slots[mass], lane);
@@ -172,8 +169,8 @@ void load(LockstepGroup& group, std::span<Body> bodies) {
     }
   }
   for (std::size_t lane = 0; lane < group.bodies.size(); ++lane)
-    group.members[lane]->location = {&group, group.x.data() + lane, group.v.data() + lane,
-                                     group.index_maps[lane]->slots.data(), group.lanes};
+    group.bodies[lane]->location = {&group, group.x.data() + lane, group.v.data() + lane,
+                                    group.index_maps[lane]->slots.data(), group.lanes};
   std::ranges::fill(group.squared_diagonal, std::numeric_limits<float>::infinity());
   group.steps_since_padding_reset = std::numeric_limits<std::int64_t>::max() / 2;
   if (group.searches != current_searches(group)) group.searches.clear();
@@ -182,8 +179,8 @@ void load(LockstepGroup& group, std::span<Body> bodies) {
 void store(LockstepGroup& group) {
   if (!group.holds_state()) return;
   std::vector<Vec3> positions, velocities;
-  for (std::size_t lane = 0; lane < group.bodies.size(); ++lane) {
-    Body& body = *group.members[lane];
+  for (Body* const member : group.bodies) {
+    Body& body = *member;
     const std::size_t masses = body.robot->masses.size();
     positions.resize(masses);
     velocities.resize(masses);
@@ -212,9 +209,9 @@ void reset_padding(LockstepGroup& group, std::int64_t steps_ahead) {
 void set_perturbations(LockstepGroup& group) {
   group.perturbations.clear();
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
-    for (const Perturbation& perturbation : group.members[lane]->perturbations)
+    for (const Perturbation& perturbation : group.body_in(lane).perturbations)
       group.perturbations.push_back({group.offset_of(group.index_maps[lane]->slots[perturbation.mass], lane),
-                                     perturbation.target, perturbation.stiffness * group.members[lane]->scale.force});
+                                     perturbation.target, perturbation.stiffness * group.body_in(lane).scale.force});
 }
 
 void add_perturbations(LockstepGroup& group) {
@@ -227,7 +224,7 @@ void add_perturbations(LockstepGroup& group) {
 void search_near_pairs(LockstepGroup& group, std::uint32_t lanes, void (*search)(Body&)) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     if ((lanes >> lane & 1) == 0) continue;
-    Body& body = *group.members[lane];
+    Body& body = group.body_in(lane);
     for (std::size_t mass = 0; mass < body.robot->masses.size(); ++mass) {
       const std::size_t slot = body.slots.of_mass[mass],
                         offset = group.offset_of(group.index_maps[lane]->slots[mass], lane);
@@ -244,7 +241,7 @@ void search_near_pairs(LockstepGroup& group, std::uint32_t lanes, void (*search)
 
 void add_contacts(LockstepGroup& group, float stiffness) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
-    const Body& body = *group.members[lane];
+    const Body& body = group.body_in(lane);
     const std::vector<std::uint32_t>& slots = group.index_maps[lane]->slots;
     const auto offset = [&](std::uint32_t slot) { return group.offset_of(slots[body.slots.mass_at[slot]], lane); };
     for_each_contact(

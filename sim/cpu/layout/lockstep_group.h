@@ -40,9 +40,8 @@ namespace mercury::cpu {
 struct LockstepGroup {
   std::shared_ptr<const Topology> topology;
   std::size_t lanes = 1;
-  std::vector<std::size_t> bodies;  // by member; there may be fewer than lanes, the other lanes repeat member 0
+  std::vector<Body*> bodies;  // by member; there may be fewer than lanes, the other lanes repeat member 0
   std::vector<std::shared_ptr<const IndexMap>> index_maps;  // by lane
-  std::vector<Body*> members;                               // by lane, from load() on
 
   // The topology. For a slot, `partners` and corners hold the offset where the slot's values start in x.
   struct Slot {
@@ -99,22 +98,22 @@ struct LockstepGroup {
   Aligned<float> face_force_bound;  // no face's force exceeds this times |2 A n| |sum of velocities|^2 [units]
   Aligned<float> squared_diagonal;  // of the box around all masses of the lane [m2]; infinite if not known
 
-  bool holds_state() const { return !members.empty() && members.front()->location.group == this; }
+  Body& body_in(std::size_t lane) const { return *bodies[lane < bodies.size() ? lane : 0]; }
+  bool holds_state() const { return !bodies.empty() && bodies.front()->location.group == this; }
   std::uint32_t offset_of(std::uint32_t slot) const { return static_cast<std::uint32_t>(3 * lanes) * slot; }
   std::size_t offset_of(std::uint32_t slot, std::size_t lane) const { return offset_of(slot) + lane; }
 };
 
 // A group of at most as many bodies as they have lanes, `merged` being their topology. It has no spring parameters and
 // no state yet.
-LockstepGroup make_lockstep_group(std::span<const Body> bodies, std::vector<std::size_t> members, MergedTopology merged,
-                                  bool contacts);
+LockstepGroup make_lockstep_group(std::vector<Body*> members, MergedTopology merged, bool contacts);
 
 // Copies the bodies' spring parameters; `factors`, by member, are those of the materials.
-void set_spring_parameters(LockstepGroup& group, std::span<const Body> bodies, const AnyEnvironmentModel& model,
+void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& model,
                            std::span<const std::array<FactorId, max_materials>> factors);
 
 // Takes the bodies' states, and gives them back.
-void load(LockstepGroup& group, std::span<Body> bodies);
+void load(LockstepGroup& group);
 void store(LockstepGroup& group);
 
 // Puts padding back where it could leave its robot within the next steps.

@@ -15,10 +15,9 @@ Muscles::Muscles() {
   factor_of_.emplace(Movement{0, 0, 0}, FactorId{0});
 }
 
-std::array<FactorId, max_materials> Muscles::add(std::span<const Material> table,
-                                                 const std::array<bool, max_materials>& wanted) {
-  std::array<FactorId, max_materials> factors{};
-  for (std::size_t id = 0; id < max_materials; ++id) {
+void Muscles::add(std::span<const Material> table, const std::array<bool, max_materials>& wanted,
+                  std::array<FactorId, max_materials>& factors) {
+  for (std::size_t id = 0; id < table.size(); ++id) {
     if (!wanted[id]) continue;
     const Material& m = table[id];
     const Movement movement = m.amplitude == 0 ? Movement{0, 0, 0} : Movement{m.amplitude, m.frequency, m.phase};
@@ -29,7 +28,6 @@ std::array<FactorId, max_materials> Muscles::add(std::span<const Material> table
     }
     factors[id] = found->second;
   }
-  return factors;
 }
 
 void Muscles::move_to(const Clock& clock) {

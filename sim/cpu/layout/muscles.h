@@ -22,9 +22,9 @@ class Muscles {
  public:
   Muscles();
 
-  // Adds the wanted materials of a table of max_materials elements. Returns the factor of each; 0 if not wanted.
-  std::array<FactorId, max_materials> add(std::span<const Material> table,
-                                          const std::array<bool, max_materials>& wanted);
+  // Adds the wanted materials of a table and sets the factor of each; the other elements of `factors` stay.
+  void add(std::span<const Material> table, const std::array<bool, max_materials>& wanted,
+           std::array<FactorId, max_materials>& factors);
   // The number of factors.
   std::size_t size() const { return movements_.size(); }
 

@@ -62,6 +62,7 @@ class NearPairs {
   void start(std::span<const float> x, std::span<const float> y, std::span<const float> z);
   void add(Pair pair) { pairs_.push_back(pair); }
 
+  bool is_prepared() const { return !start_.empty(); }
   bool listed() const { return listed_; }
   std::uint64_t searches() const { return searches_; }  // identifies a list
   std::span<const Pair> pairs() const { return pairs_; }
