@@ -46,9 +46,9 @@ void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::siz
 }
 
 std::vector<std::shared_ptr<const Robot>> copies_of(std::span<const Robot> robots) {
-  std::vector<std::shared_ptr<const Robot>> copies;
-  copies.reserve(robots.size());
-  for (const Robot& robot : robots) copies.push_back(std::make_shared<const Robot>(robot));
+  std::vector<std::shared_ptr<const Robot>> copies(robots.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(),
+                            [&](std::size_t i) { copies[i] = std::make_shared<const Robot>(robots[i]); });
   return copies;
 }
 

@@ -41,7 +41,7 @@ inline constexpr CostModel costs;
 
 struct GroupingLimits {
   // Search for similar robots.
-  std::size_t robots_compared = 1024;      // with one another
+  std::size_t robots_compared = 512;       // with one another
   std::size_t candidates_compared = 256;   // for each place in a group
   std::size_t items_distinguished = 4096;  // cells, springs and face pairs, of each at most
   std::size_t springs_per_robot = 128;     // on average; if there are more, cells stand for their springs

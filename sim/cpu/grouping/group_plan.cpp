@@ -85,43 +85,61 @@ GroupPlan plan_same_topology(std::span<Body* const> bodies, Group group) {
 void maximize_split_face_tiles(GroupPlan& plan) {
   std::vector<std::shared_ptr<const IndexMap>>& index_maps = plan.merged.index_maps;
   const std::size_t members = plan.bodies.size(), half = members / 2;
+  std::vector<std::uint64_t> members_of_pair(plan.merged.topology->face_pairs.size());  // one bit per index in `order`
+  for (std::size_t m = 0; m < members; ++m)
+    for (const std::uint32_t pair : index_maps[m]->face_pairs) members_of_pair[pair] |= std::uint64_t{1} << m;
+  std::vector<std::size_t> order(members);
+  std::iota(order.begin(), order.end(), std::size_t{0});
   const auto split_tiles = [&] {
-    const auto [lower, upper] = half_face_pairs(plan.merged.topology->face_pairs.size(), index_maps);
-    return std::min(lower.size(), upper.size());
-  };
-  const auto exchange = [&](std::size_t i, std::size_t j) {
-    std::swap(index_maps[i], index_maps[j]);
-    std::swap(plan.bodies[i], plan.bodies[j]);
+    std::uint64_t in_lower = 0;
+    for (std::size_t m = 0; 2 * m < members; ++m) in_lower |= std::uint64_t{1} << order[m];
+    std::size_t lower = 0, upper = 0;
+    for (const std::uint64_t pair : members_of_pair) {
+      lower += (pair & ~in_lower) == 0;
+      upper += (pair & in_lower) == 0;
+    }
+    return std::min(lower, upper);
   };
   std::size_t most = split_tiles();
   for (std::size_t i = 0; i < half; ++i)
     for (std::size_t j = half; j < members; ++j) {
-      exchange(i, j);
+      std::swap(order[i], order[j]);
       if (const std::size_t now = split_tiles(); now > most)
         most = now;
       else
-        exchange(i, j);
+        std::swap(order[i], order[j]);
     }
-}
-
-std::size_t index_of(LatticeCell c) {
-  constexpr std::size_t across = max_cells_across;
-  return c.x + across * (c.y + across * std::size_t{c.z});
+  const GroupPlan before = plan;
+  for (std::size_t m = 0; m < members; ++m) {
+    plan.bodies[m] = before.bodies[order[m]];
+    index_maps[m] = before.merged.index_maps[order[m]];
+  }
 }
 
 // Slots are the cells in which any member has a mass, in the order z, y, x.
 GroupPlan plan_similar(std::span<Body* const> bodies, const Patterns& patterns, Group group) {
   constexpr std::uint32_t none = 0xffffffffu;
-  std::vector<std::uint32_t> slot_of_cell(std::size_t{max_cells_across} * max_cells_across * max_cells_across, none);
+  std::size_t width = 0, height = 0, depth = 0;
   for (const std::size_t i : group)
-    for (const LatticeCell c : patterns[i]) slot_of_cell[index_of(c)] = 0;
+    for (const LatticeCell c : patterns[i]) {
+      width = std::max<std::size_t>(width, c.x + 1u);
+      height = std::max<std::size_t>(height, c.y + 1u);
+      depth = std::max<std::size_t>(depth, c.z + 1u);
+    }
+  std::vector<std::uint32_t> slot_of_cell(width * height * depth, none);
+  const auto slot_of = [&](LatticeCell c) -> std::uint32_t& {
+    return slot_of_cell[c.x + width * (c.y + height * c.z)];
+  };
+  for (const std::size_t i : group)
+    for (const LatticeCell c : patterns[i]) slot_of(c) = 0;
   std::uint32_t slots = 0;
   for (std::uint32_t& slot : slot_of_cell)
     if (slot != none) slot = slots++;
   std::vector<Member> members;
   for (const std::size_t i : group) {
     members.push_back({bodies[i]->robot, bodies[i]->face_pairs, {}});
-    for (const LatticeCell c : patterns[i]) members.back().slots.push_back(slot_of_cell[index_of(c)]);
+    members.back().slots.reserve(patterns[i].size());
+    for (const LatticeCell c : patterns[i]) members.back().slots.push_back(slot_of(c));
   }
   GroupPlan plan{std::move(group), merge_topologies(members, slots)};
   if (bodies[plan.bodies.front()]->slots.lanes >= min_lanes_to_split) maximize_split_face_tiles(plan);

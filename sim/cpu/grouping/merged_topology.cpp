@@ -8,43 +8,46 @@
 namespace mercury::cpu {
 namespace {
 
-// One member's spring or face pair. `item` is its index in the robot; `copy` counts the member's items between the same
-// slots.
+// One member's spring or face pair. `item` is its index in the robot.
 struct Item {
   std::uint64_t slots = 0;  // packed
-  std::uint32_t copy = 0, member = 0, item = 0;
-
-  auto order() const { return std::tuple(slots, copy, member); }
+  std::uint32_t member = 0, item = 0;
 };
 
-// Counts copies, and sorts by order().
-void sort(std::vector<Item>& items) {
-  std::ranges::sort(items, {}, [](const Item& i) { return std::tuple(i.slots, i.member, i.item); });
-  for (auto first = items.begin(); first != items.end();) {
-    auto last = first + 1;
-    bool has_copies = false;
-    for (; last != items.end() && last->slots == first->slots; ++last)
-      if (last->member == (last - 1)->member) {
-        last->copy = (last - 1)->copy + 1;
-        has_copies = true;
-      }
-    if (has_copies) std::sort(first, last, [](const Item& a, const Item& b) { return a.order() < b.order(); });
-    first = last;
+// Sorts by slots. Items between the same slots keep their order. One pass per slot of an item, the least significant
+// first; a pass counts how many items have each slot.
+void sort_by_slots(std::vector<Item>& items, int slots_per_item, std::size_t slots) {
+  std::vector<Item> sorted(items.size());
+  std::vector<std::uint32_t> next(slots + 1);
+  for (int digit = 0; digit < slots_per_item; ++digit) {
+    const auto slot_of = [&](const Item& item) { return item.slots >> 16 * digit & 0xffff; };
+    std::ranges::fill(next, 0u);
+    for (const Item& item : items) ++next[slot_of(item) + 1];
+    for (std::size_t slot = 0; slot < slots; ++slot) next[slot + 1] += next[slot];
+    for (const Item& item : items) sorted[next[slot_of(item)]++] = item;
+    std::swap(items, sorted);
   }
 }
 
-// Numbers the items: those of different members between the same slots get the same number. Calls start(item) before
-// each new number and visit(item, number) for each item.
+// Numbers the items, which are sorted by slots, then by member: those of different members between the same slots get
+// the same number, those of one member different numbers. Calls start(slots) for each number and visit(item, number)
+// for each item.
 template <class Start, class Visit>
-void number_items(std::vector<Item>& items, const Start& start, const Visit& visit) {
-  sort(items);
+void number_items(const std::vector<Item>& items, const Start& start, const Visit& visit) {
   std::uint32_t numbers = 0;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i == 0 || items[i].slots != items[i - 1].slots || items[i].copy != items[i - 1].copy) {
-      start(items[i]);
-      ++numbers;
+  for (auto first = items.begin(); first != items.end();) {
+    std::uint32_t copy = 0, copies = 0;  // of the present member; at most of any member
+    auto i = first;
+    for (; i != items.end() && i->slots == first->slots; ++i) {
+      copy = i != first && i->member == (i - 1)->member ? copy + 1 : 0;
+      visit(*i, numbers + copy);
+      if (copy == copies) {
+        start(first->slots);
+        ++copies;
+      }
     }
-    visit(items[i], numbers - 1);
+    numbers += copies;
+    first = i;
   }
 }
 
@@ -57,10 +60,9 @@ FacePair unpacked(std::uint64_t slots) {
   return {corner(0), corner(1), corner(2), corner(3)};
 }
 
-void merge_springs(std::vector<Item>& springs, Topology& topology, std::vector<IndexMap>& index_maps) {
-  const auto add_entry = [&](const Item& item) {
-    const auto owner = static_cast<std::uint32_t>(item.slots >> 16),
-               partner = static_cast<std::uint32_t>(item.slots & 0xffff);
+void merge_springs(const std::vector<Item>& springs, Topology& topology, std::vector<IndexMap>& index_maps) {
+  const auto add_entry = [&](std::uint64_t slots) {
+    const auto owner = static_cast<std::uint32_t>(slots >> 16), partner = static_cast<std::uint32_t>(slots & 0xffff);
     topology.partners.push_back(partner);
     ++topology.slots[owner].owned;
     ++topology.slots[owner].valence;
@@ -70,9 +72,9 @@ void merge_springs(std::vector<Item>& springs, Topology& topology, std::vector<I
                [&](const Item& item, std::uint32_t entry) { index_maps[item.member].entries[item.item] = entry; });
 }
 
-void merge_face_pairs(std::vector<Item>& pairs, Topology& topology, std::vector<IndexMap>& index_maps) {
+void merge_face_pairs(const std::vector<Item>& pairs, Topology& topology, std::vector<IndexMap>& index_maps) {
   number_items(
-      pairs, [&](const Item& item) { topology.face_pairs.push_back(unpacked(item.slots)); },
+      pairs, [&](std::uint64_t corners) { topology.face_pairs.push_back(unpacked(corners)); },
       [&](const Item& item, std::uint32_t pair) { index_maps[item.member].face_pairs[item.item] = pair; });
 }
 
@@ -83,16 +85,25 @@ MergedTopology merge_topologies(std::span<const Member> members, std::size_t slo
   topology.slots.resize(slots);
   std::vector<IndexMap> index_maps;
   std::vector<Item> springs, pairs;
+  std::size_t all_springs = 0, all_pairs = 0;
+  for (const Member& member : members) {
+    all_springs += member.robot->springs.size();
+    all_pairs += member.face_pairs.size();
+  }
+  springs.reserve(all_springs);
+  pairs.reserve(all_pairs);
   for (std::uint32_t m = 0; m < members.size(); ++m) {
     const auto& [robot, face_pairs, slot] = members[m];
     index_maps.push_back(
         {slot, std::vector<std::uint32_t>(robot->springs.size()), std::vector<std::uint32_t>(face_pairs.size())});
     for (std::uint32_t i = 0; i < robot->springs.size(); ++i) {
       const auto [owner, partner] = std::minmax(slot[robot->springs[i].a], slot[robot->springs[i].b]);
-      springs.push_back({packed(owner, partner), 0, m, i});
+      springs.push_back({packed(owner, partner), m, i});
     }
-    for (std::uint32_t i = 0; i < face_pairs.size(); ++i) pairs.push_back({packed(face_pairs[i], slot), 0, m, i});
+    for (std::uint32_t i = 0; i < face_pairs.size(); ++i) pairs.push_back({packed(face_pairs[i], slot), m, i});
   }
+  sort_by_slots(springs, 2, slots);
+  sort_by_slots(pairs, 4, slots);
   merge_springs(springs, topology, index_maps);
   merge_face_pairs(pairs, topology, index_maps);
   MergedTopology merged{std::make_shared<const Topology>(std::move(topology)), {}};

@@ -23,7 +23,72 @@ std::uint32_t index_of(LatticeCell c) {
   return static_cast<std::uint32_t>(c.x + max_cells_across * (c.y + max_cells_across * c.z));
 }
 
-// The robots' sets: bits of cells, then of springs, then of face pairs.
+// Bits that `robot` has and `to` does not, of one block of words. Counts in all bytes at once: there are at most 64 in
+// each.
+constexpr std::size_t block = 8;
+std::uint64_t count_new_bits(const Word* to, const Word* robot) {
+  Word bytes = 0;
+  for (std::size_t w = 0; w < block; ++w) {
+    Word x = robot[w] & ~to[w];
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    bytes += (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  }
+  constexpr Word even = 0x00ff00ff00ff00ffu;
+  return ((bytes & even) + (bytes >> 8 & even)) * 0x0001000100010001u >> 48;
+}
+
+// One robot's cell, spring or face pair.
+struct Item {
+  std::uint64_t key;
+  std::uint32_t robot;
+};
+
+// Numbers the keys that several items have, in ascending order, up to the limit. Calls visit(item, number) for each of
+// these items. A hash table counts the items of each key.
+class CommonItems {
+ public:
+  explicit CommonItems(std::span<const Item> items) : items_(items) {
+    entries_.resize(std::bit_ceil(2 * items.size() + 1));
+    for (const Item& item : items) {
+      Entry& entry = find(item.key);
+      entry.key = item.key;
+      if (++entry.count == 2) common_.push_back(item.key);
+    }
+    std::ranges::sort(common_);
+    common_.resize(std::min(common_.size(), limits.items_distinguished));
+    for (std::uint32_t number = 0; number < common_.size(); ++number) find(common_[number]).number = number;
+  }
+
+  std::size_t size() const { return common_.size(); }
+
+  template <class Visit>
+  void for_each(const Visit& visit) {
+    for (const Item& item : items_)
+      if (const std::uint32_t number = find(item.key).number; number != none) visit(item, number);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffu;
+  struct Entry {
+    std::uint64_t key = 0;
+    std::uint32_t count = 0, number = none;
+  };
+
+  // The entry of the key, or the free one where it belongs.
+  Entry& find(std::uint64_t key) {
+    const std::size_t mask = entries_.size() - 1;
+    std::size_t i = (key * 0x9e3779b97f4a7c15u) >> 32 & mask;
+    while (entries_[i].count != 0 && entries_[i].key != key) i = (i + 1) & mask;
+    return entries_[i];
+  }
+
+  std::span<const Item> items_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint64_t> common_;
+};
+
+// The robots' sets: bits of cells, then of springs, then of face pairs, each in whole blocks.
 class ItemSets {
  public:
   explicit ItemSets(std::span<const RobotItems> robots, std::span<const std::size_t> members) {
@@ -42,39 +107,45 @@ class ItemSets {
     std::vector<Item> cells, springs, pairs;
     for (std::uint32_t m = 0; m < members.size(); ++m)
       append_items(robots[members[m]], m, few_springs, cells, springs, pairs);
-    const auto words_of = [](std::vector<Item>& items) { return (sort_and_count_common(items) + 63) / 64; };
-    springs_start_ = words_of(cells);
-    pairs_start_ = springs_start_ + words_of(springs);
-    words_ = pairs_start_ + words_of(pairs);
+    CommonItems common_cells(cells), common_springs(springs), common_pairs(pairs);
+    const auto words_of = [](const CommonItems& items) {
+      return (items.size() + 64 * block - 1) / (64 * block) * block;
+    };
+    springs_start_ = words_of(common_cells);
+    pairs_start_ = springs_start_ + words_of(common_springs);
+    words_ = pairs_start_ + words_of(common_pairs);
     bits_.resize(words_ * members.size());
-    set_bits(cells, 0);
-    set_bits(springs, springs_start_);
-    set_bits(pairs, pairs_start_);
+    set_bits(common_cells, 0);
+    set_bits(common_springs, springs_start_);
+    set_bits(common_pairs, pairs_start_);
   }
 
   std::size_t words() const { return words_; }
   const Word* of(std::size_t robot) const { return bits_.data() + words_ * robot; }
   double cost(std::size_t robot) const { return costs_[robot]; }
-  // What a robot adds to the cost of a union.
-  double added(const Word* to, const Word* robot) const {
-    const auto new_items = [&](std::size_t first, std::size_t last) {
-      int count = 0;
-      for (std::size_t w = first; w < last; ++w) count += std::popcount(robot[w] & ~to[w]);
-      return count;
+  // What a robot adds to the cost of a union; infinity if that is more than `limit`.
+  double added(const Word* to, const Word* robot, double limit = std::numeric_limits<double>::infinity()) const {
+    std::uint64_t cells = 0, springs = 0, pairs = 0;
+    const auto cost_so_far = [&] {
+      return cell_cost_ * static_cast<double>(cells) + costs.entry * static_cast<double>(springs) +
+             costs.face_pair * static_cast<double>(pairs);
     };
-    return cell_cost_ * new_items(0, springs_start_) + costs.entry * new_items(springs_start_, pairs_start_) +
-           costs.face_pair * new_items(pairs_start_, words_);
+    const auto count = [&](std::uint64_t& items, std::size_t first, std::size_t last) {
+      for (std::size_t w = first; w < last; w += block) {
+        items += count_new_bits(to + w, robot + w);
+        if (cost_so_far() > limit) return false;
+      }
+      return true;
+    };
+    const bool within = count(cells, 0, springs_start_) && count(pairs, pairs_start_, words_) &&
+                        count(springs, springs_start_, pairs_start_);
+    return within ? cost_so_far() : std::numeric_limits<double>::infinity();
   }
   void unite(Word* with, const Word* robot) const {
     for (std::size_t w = 0; w < words_; ++w) with[w] |= robot[w];
   }
 
  private:
-  struct Item {
-    std::uint64_t key;
-    std::uint32_t robot;
-  };
-
   static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs, std::vector<Item>& cells,
                            std::vector<Item>& springs, std::vector<Item>& pairs) {
     const auto index = [&](std::uint16_t mass) { return std::uint64_t{index_of(items.cells[mass])}; };
@@ -88,25 +159,9 @@ class ItemSets {
       pairs.push_back({((index(a) << 16 | index(b)) << 16 | index(c)) << 16 | index(d), robot});
   }
 
-  // Calls visit(number, first, last) for the items of each key that several robots have.
-  template <class Visit>
-  static void for_each_common(const std::vector<Item>& items, const Visit& visit) {
-    std::size_t number = 0;
-    for (auto first = items.begin(); first != items.end() && number < limits.items_distinguished;) {
-      const auto last = std::find_if(first, items.end(), [&](const Item& item) { return item.key != first->key; });
-      if (last - first > 1) visit(number++, first, last);
-      first = last;
-    }
-  }
-  static std::size_t sort_and_count_common(std::vector<Item>& items) {
-    std::ranges::sort(items, {}, &Item::key);
-    std::size_t count = 0;
-    for_each_common(items, [&](std::size_t, auto, auto) { ++count; });
-    return count;
-  }
-  void set_bits(const std::vector<Item>& items, std::size_t first_word) {
-    for_each_common(items, [&](std::size_t number, auto first, auto last) {
-      for (; first != last; ++first) bits_[words_ * first->robot + first_word + number / 64] |= Word{1} << number % 64;
+  void set_bits(CommonItems& items, std::size_t first_word) {
+    items.for_each([&](const Item& item, std::uint32_t number) {
+      bits_[words_ * item.robot + first_word + number / 64] |= Word{1} << number % 64;
     });
   }
 
@@ -129,8 +184,10 @@ std::vector<Group> greedy_groups(const ItemSets& sets, std::size_t robots, std::
       group.push_back(*chosen);
       left.erase(chosen);
     };
-    const auto price = [&](std::size_t robot) {
-      return sets.added(all_items.data(), sets.of(robot)) - costs.worth_of_size * sets.cost(robot);
+    // Infinity if it is more than `limit`.
+    const auto price = [&](std::size_t robot, double limit) {
+      const double worth = costs.worth_of_size * sets.cost(robot);
+      return sets.added(all_items.data(), sets.of(robot), limit + worth) - worth;
     };
     take(left.begin());
     while (group.size() < group_size && !left.empty()) {
@@ -138,7 +195,7 @@ std::vector<Group> greedy_groups(const ItemSets& sets, std::size_t robots, std::
       auto best = left.begin();
       double least = std::numeric_limits<double>::infinity();
       for (auto i = left.begin(); i != end; ++i)
-        if (const double p = price(*i); p < least) {
+        if (const double p = price(*i, least); p < least) {
           least = p;
           best = i;
         }
@@ -175,9 +232,9 @@ class Exchange {
       for (std::size_t j = 0; j < groups_[h].size(); ++j) {
         double gain = own_[g][i] + own_[h][j];
         if (gain <= most) continue;
-        gain -= sets_.added(others(g, i), sets_.of(groups_[h][j]));
+        gain -= sets_.added(others(g, i), sets_.of(groups_[h][j]), gain - most);
         if (gain <= most) continue;
-        gain -= sets_.added(others(h, j), mine);
+        gain -= sets_.added(others(h, j), mine, gain - most);
         if (gain <= most) continue;
         most = gain;
         best_group = h;

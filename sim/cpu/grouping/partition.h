@@ -27,7 +27,8 @@ struct RobotItems {
   std::span<const FacePair> face_pairs;  // empty if they give no force
 };
 
-// Groups of robots, by index. All have `group_size` members, except the last group of each thousand robots or so.
+// Groups of robots, by index. All have `group_size` members, except the last group of every
+// GroupingLimits::robots_compared robots.
 std::vector<std::vector<std::size_t>> partition_by_similarity(std::span<const RobotItems> robots,
                                                               std::size_t group_size);
 

@@ -28,7 +28,7 @@ std::vector<LatticeCell> lattice_cells_of(const Robot& robot) {
     std::array<std::size_t, 3> cell{};
     const std::array<float, 3> distance{x.x - low.x, x.y - low.y, x.z - low.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float coordinate = std::round(distance[axis] * per_metre);
+      const float coordinate = distance[axis] * per_metre + 0.5f;  // rounded below; none is negative
       if (!(coordinate < static_cast<float>(across))) return {};
       cell[axis] = static_cast<std::size_t>(coordinate);
     }
