@@ -1,37 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/network.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/perceptron.h"
 
 namespace mercury {
-namespace {
-
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// A value that is not a number stays one, so that it is found in the result.
-float relu(float x) { return x < 0 ? 0 : x; }
-
-// Points are columns. Eigen's matrix product sums in an order that depends on the instruction set; a column at a time
-// the order is ours, and still all outputs of a point are computed side by side.
-Eigen::MatrixXf apply(const Layer& layer, const Eigen::MatrixXf& inputs) {
-  const Eigen::MatrixXf weights = Eigen::Map<const RowMajor>(layer.weights.data(), layer.outputs, layer.inputs);
-  const Eigen::Map<const Eigen::VectorXf> biases(layer.biases.data(), layer.outputs);
-  Eigen::MatrixXf outputs(layer.outputs, inputs.cols());
-  for (Eigen::Index point = 0; point < inputs.cols(); ++point) {
-    auto output = outputs.col(point);
-    output = biases;
-    for (Eigen::Index k = 0; k < layer.inputs; ++k) output += inputs(k, point) * weights.col(k);
-  }
-  return outputs;
-}
-
-}  // namespace
-
 std::vector<int> sizes_of(const Network& network) {
   std::vector<int> sizes;
   if (network.layers.empty()) return sizes;
@@ -71,14 +48,7 @@ std::vector<float> evaluate(const Network& network, std::span<const float> point
 }
 
 std::vector<float> evaluate(std::span<const Layer> layers, std::span<const float> points) {
-  const Eigen::Index inputs = layers.front().inputs;
-  Eigen::MatrixXf values =
-      Eigen::Map<const Eigen::MatrixXf>(points.data(), inputs, static_cast<Eigen::Index>(points.size()) / inputs);
-  for (const Layer& layer : layers) {
-    if (&layer != &layers.front()) values = values.unaryExpr(&relu);
-    values = apply(layer, values);
-  }
-  return {values.data(), values.data() + values.size()};
+  return evaluate_layers(layers, points);
 }
 
 std::vector<double> softmax(std::span<const float> scores) {
