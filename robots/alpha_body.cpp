@@ -15,6 +15,7 @@
 
 #include "mercury/error.h"
 #include "robots/circumradius.h"
+#include "robots/delaunay.h"
 #include "robots/exact_geometry.h"
 
 namespace mercury {

@@ -1,38 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes CGAL: it compiles slowly, and its triangulations are under the GPL.
+// The only file that includes CGAL: it compiles slowly, and is under the GPL.
 #include "robots/exact_geometry.h"
 
-#include <CGAL/Delaunay_triangulation_3.h>
-#include <CGAL/Delaunay_triangulation_cell_base_3.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
+#include <CGAL/Mpzf.h>
 #include <CGAL/Simple_cartesian.h>
-#include <CGAL/Triangulation_cell_base_with_info_3.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 namespace mercury {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Vertex = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
-using Cell =
-    CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
-using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
-using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using Whole = CGAL::Simple_cartesian<CGAL::Mpzf>;  // no division
+using Fractions = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+
+template <class Kernel>
+typename Kernel::Point_3 exact(const Vec3& p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
 
 std::strong_ordering ordering(CGAL::Comparison_result result) { return static_cast<int>(result) <=> 0; }
 
 }  // namespace
 
+int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return Whole::Orientation_3()(exact<Whole>(a), exact<Whole>(b), exact<Whole>(c), exact<Whole>(d));
+}
+
+int exact_side_of_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p) {
+  return Whole::Side_of_oriented_sphere_3()(exact<Whole>(a), exact<Whole>(b), exact<Whole>(c), exact<Whole>(d),
+                                            exact<Whole>(p));
+}
+
+bool are_exactly_collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return Whole::Collinear_3()(exact<Whole>(a), exact<Whole>(b), exact<Whole>(c));
+}
+
 struct ExactSquaredRadius::Fraction {
   CGAL::Exact_rational value;
 };
 
-ExactSquaredRadius::ExactSquaredRadius(std::span<const Vec3> points, const Tetrahedron& t) {
-  const auto exact = [&](std::uint32_t i) { return Exact::Point_3(points[i].x, points[i].y, points[i].z); };
-  value_ = std::make_shared<const Fraction>(
-      Fraction{CGAL::squared_radius(exact(t[0]), exact(t[1]), exact(t[2]), exact(t[3]))});
-}
+ExactSquaredRadius::ExactSquaredRadius(std::span<const Vec3> points, const Tetrahedron& t)
+    : value_(std::make_shared<const Fraction>(
+          Fraction{CGAL::squared_radius(exact<Fractions>(points[t[0]]), exact<Fractions>(points[t[1]]),
+                                        exact<Fractions>(points[t[2]]), exact<Fractions>(points[t[3]]))})) {}
 
 Bounds ExactSquaredRadius::bounds() const {
   const auto [low, high] = CGAL::to_interval(value_->value);
@@ -45,33 +54,6 @@ std::strong_ordering ExactSquaredRadius::compare(const ExactSquaredRadius& other
 
 std::strong_ordering ExactSquaredRadius::compare(double other) const {
   return ordering(CGAL::compare(value_->value, CGAL::Exact_rational(other)));
-}
-
-Triangulation triangulate(std::span<const Vec3> points) {
-  std::vector<std::pair<Kernel::Point_3, std::uint32_t>> indexed;
-  indexed.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    indexed.emplace_back(Kernel::Point_3(points[i].x, points[i].y, points[i].z), i);
-  Delaunay delaunay(indexed.begin(), indexed.end());
-  Triangulation result;
-  if (delaunay.dimension() < 3) return result;
-  std::uint32_t count = 0;
-  for (auto cell = delaunay.all_cells_begin(); cell != delaunay.all_cells_end(); ++cell)
-    cell->info() = delaunay.is_infinite(cell) ? no_neighbour : count++;
-  result.tetrahedra.reserve(count);
-  result.neighbours.reserve(count);
-  for (auto cell = delaunay.all_cells_begin(); cell != delaunay.all_cells_end(); ++cell) {
-    if (cell->info() == no_neighbour) continue;
-    Tetrahedron t;
-    Neighbours n;
-    for (int i = 0; i < 4; ++i) {
-      t[static_cast<std::size_t>(i)] = cell->vertex(i)->info();
-      n[static_cast<std::size_t>(i)] = cell->neighbor(i)->info();
-    }
-    result.tetrahedra.push_back(t);
-    result.neighbours.push_back(n);
-  }
-  return result;
 }
 
 }  // namespace mercury

@@ -12,6 +12,16 @@
 
 namespace mercury {
 
+// The sign of the determinant (b-a) x (c-a) . (d-a): 1 if d is on the side from which a, b, c run counter-clockwise,
+// 0 if all four lie in one plane.
+int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+// For a tetrahedron of positive orientation: 1 if p is inside of the sphere through its corners, 0 if it is on the
+// sphere, -1 if it is outside.
+int exact_side_of_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& p);
+
+bool are_exactly_collinear(const Vec3& a, const Vec3& b, const Vec3& c);
+
 // The squared radius of the sphere through the corners of a tetrahedron that is not flat, as a fraction.
 class ExactSquaredRadius {
  public:
@@ -24,14 +34,5 @@ class ExactSquaredRadius {
   struct Fraction;
   std::shared_ptr<const Fraction> value_;
 };
-
-// The Delaunay triangulation of distinct points; empty if they all lie in one plane. Cospherical points are decided by
-// a symbolic perturbation (Devillers and Teillaud 2011), so the tetrahedra depend on the points alone; their order does
-// not matter to anybody.
-struct Triangulation {
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<Neighbours> neighbours;
-};
-Triangulation triangulate(std::span<const Vec3> points);
 
 }  // namespace mercury
