@@ -28,12 +28,12 @@ constexpr std::uint32_t none = 0xffffffff;      // no cell
 class Builder {
  public:
   // Returns false if all points lie in one plane.
-  bool build(std::span<const Vec3> points) {
-    points_ = points;
+  [[gnu::noinline]] bool build(std::span<const Vec3> points) {
+    points_.assign(points.begin(), points.end());
+    errors_ = errors_in_box();
     cells_.clear();
     marks_.clear();
     free_.clear();
-    open_edges_.clear();
     const std::array<std::uint32_t, 4> first = spanning_points();
     if (first[3] == none) return false;
     begin(first);
@@ -77,26 +77,31 @@ class Builder {
     std::array<std::uint32_t, 4> neighbours;
   };
   struct Side {
-    std::uint32_t cell;  // in the cavity
+    std::uint32_t cell;  // in the cavity; its neighbour there is the outer cell, then the new cell
     std::uint32_t corner;
   };
-  struct OpenEdge {
-    std::uint64_t corners = 0;
-    std::uint32_t mark = 0;
-    std::uint32_t cell_and_corner = 0;
-  };
   static constexpr std::uint32_t unused = 0;  // mark of a cell
+
+  RoundingErrors errors_in_box() const {
+    if (points_.empty()) return {0, 0, 0};
+    ExactPoint low = points_[0], high = points_[0];
+    for (const ExactPoint& p : points_) {
+      low.x = std::min(low.x, p.x), low.y = std::min(low.y, p.y), low.z = std::min(low.z, p.z);
+      high.x = std::max(high.x, p.x), high.y = std::max(high.y, p.y), high.z = std::max(high.z, p.z);
+    }
+    return errors_of(high - low);
+  }
 
   // Four points that lie in no plane, of positive orientation; the last one is `none` if there are no such points.
   std::array<std::uint32_t, 4> spanning_points() const {
     std::array<std::uint32_t, 4> found = {0, none, none, none};
-    const auto at = [&](std::uint32_t i) -> const Vec3& { return points_[i]; };
+    const auto at = [&](std::uint32_t i) -> const ExactPoint& { return points_[i]; };
     for (std::uint32_t i = 1; i < points_.size(); ++i) {
       if (found[1] == none) {
         if (at(i) != at(0)) found[1] = i;
       } else if (found[2] == none) {
-        if (!are_exactly_collinear(at(0), at(found[1]), at(i))) found[2] = i;
-      } else if (const int side = orientation(at(0), at(found[1]), at(found[2]), at(i)); side != 0) {
+        if (!are_exactly_collinear(at(0).as_floats(), at(found[1]).as_floats(), at(i).as_floats())) found[2] = i;
+      } else if (const int side = orientation(at(0), at(found[1]), at(found[2]), at(i), errors_); side != 0) {
         found[3] = i;
         if (side < 0) std::swap(found[1], found[2]);
         break;
@@ -142,14 +147,14 @@ class Builder {
     return i;
   }
 
-  int orientation_with(const Cell& cell, std::size_t corner, const Vec3& point) const {
-    const auto at = [&](std::size_t i) -> const Vec3& { return i == corner ? point : points_[cell.corners[i]]; };
-    return orientation(at(0), at(1), at(2), at(3));
+  int orientation_with(const Cell& cell, std::size_t corner, const ExactPoint& point) const {
+    const auto at = [&](std::size_t i) -> const ExactPoint& { return i == corner ? point : points_[cell.corners[i]]; };
+    return orientation(at(0), at(1), at(2), at(3), errors_);
   }
 
   // A cell that holds the point or has it beyond its side of the hull. The walk steps towards the point through any
   // side that has it on the other side; in a Delaunay triangulation it ends.
-  std::uint32_t locate(const Vec3& point) const {
+  std::uint32_t locate(const ExactPoint& point) const {
     std::uint32_t cell = hint_, last = none;
     for (;;) {
       const Cell& here = cells_[cell];
@@ -162,12 +167,12 @@ class Builder {
     }
   }
 
-  bool in_conflict(std::uint32_t index, const Vec3& point) const {
+  bool in_conflict(std::uint32_t index, const ExactPoint& point) const {
     const Cell& cell = cells_[index];
     const std::size_t outer = corner_at_infinity(cell);
     if (outer == 4) {
       const auto& [a, b, c, d] = cell.corners;
-      return is_in_sphere(points_[a], points_[b], points_[c], points_[d], point);
+      return is_in_sphere(points_[a], points_[b], points_[c], points_[d], point, errors_);
     }
     if (const int side = orientation_with(cell, outer, point); side != 0) return side > 0;
     // In the plane of the side, the sphere of the cell before it cuts out the circle through the side.
@@ -175,7 +180,7 @@ class Builder {
   }
 
   void insert(std::uint32_t index) {
-    const Vec3 point = points_[index];
+    const ExactPoint point = points_[index];
     const std::uint32_t start = locate(point);
     for (const std::uint32_t corner : cells_[start].corners)
       if (corner != infinite && points_[corner] == point) return;
@@ -183,81 +188,91 @@ class Builder {
     fill_cavity(index);
   }
 
-  void find_cavity(std::uint32_t start, const Vec3& point) {
+  // What a cell turns out to be decides no branch here, since no processor could predict it.
+  void find_cavity(std::uint32_t start, const ExactPoint& point) {
     ++mark_;
     const std::uint32_t outside = 2 * mark_, inside = outside + 1;
-    cavity_.assign(1, start);
     marks_[start] = inside;
-    sides_.clear();
-    for (std::size_t k = 0; k < cavity_.size(); ++k) {
+    std::size_t cells = 1, sides = 0;
+    cavity_.resize(std::max<std::size_t>(cavity_.size(), 64));
+    sides_.resize(std::max<std::size_t>(sides_.size(), 64));
+    cavity_[0] = start;
+    for (std::size_t k = 0; k < cells; ++k) {
+      if (cavity_.size() < cells + 4) cavity_.resize(2 * cavity_.size());
+      if (sides_.size() < sides + 4) sides_.resize(2 * sides_.size());
       const std::uint32_t cell = cavity_[k];
       for (std::uint32_t i = 0; i < 4; ++i) {
         const std::uint32_t other = cells_[cell].neighbours[i];
-        if (marks_[other] == inside) continue;
-        if (marks_[other] != outside) {
-          const bool joins = in_conflict(other, point);
-          marks_[other] = joins ? inside : outside;
-          if (joins) cavity_.push_back(other);
-          if (joins) continue;
+        if (marks_[other] < outside) {
+          const auto joins = static_cast<std::uint32_t>(in_conflict(other, point));
+          marks_[other] = outside + joins;
+          cavity_[cells] = other;
+          cells += joins;
         }
-        sides_.push_back({cell, i});
+        sides_[sides] = {cell, i};
+        sides += marks_[other] == outside ? 1 : 0;
       }
     }
+    cavity_size_ = cells;
+    sides_size_ = sides;
   }
 
-  // Each new cell is a cell of the cavity with the point in place of one corner, so its orientation is positive. Two of
-  // them are neighbours where their sides of the cavity share an edge.
+  // Each new cell is a cell of the cavity with the point in place of one corner, so its orientation is positive.
   void fill_cavity(std::uint32_t point) {
-    std::size_t room = 64;
-    while (room < 4 * sides_.size()) room *= 2;
-    if (open_edges_.size() < room) open_edges_.assign(room, {});
-    for (const auto& [old_cell, corner] : sides_) {
+    const std::span sides = std::span(sides_).first(sides_size_);
+    for (const Side& side : sides) {
       const std::uint32_t cell = new_cell();
+      Cell& old = cells_[side.cell];
+      Cell& outer = cells_[old.neighbours[side.corner]];
+      outer.neighbours[index_of(side.cell, outer.neighbours)] = cell;
       Cell& here = cells_[cell];
-      here = cells_[old_cell];
+      here = {old.corners, {none, none, none, none}};
+      here.corners[side.corner] = point;
+      here.neighbours[side.corner] = std::exchange(old.neighbours[side.corner], cell);
       marks_[cell] = 2 * mark_;
-      here.corners[corner] = point;
-      Cell& outer = cells_[here.neighbours[corner]];
-      *std::find(outer.neighbours.begin(), outer.neighbours.end(), old_cell) = cell;
-      for (std::uint32_t i = 0; i < 4; ++i)
-        if (i != corner) join_at_edge(cell, i, corner, room);
       if (corner_at_infinity(here) == 4) hint_ = cell;
     }
-    for (const std::uint32_t cell : cavity_) marks_[cell] = unused;
-    free_.insert(free_.end(), cavity_.begin(), cavity_.end());
+    static constexpr std::uint32_t others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    for (const Side& side : sides)
+      for (const std::uint32_t i : others[side.corner]) join_around_edge(side, i);
+    const std::span cavity = std::span(cavity_).first(cavity_size_);
+    for (const std::uint32_t cell : cavity) marks_[cell] = unused;
+    free_.insert(free_.end(), cavity.begin(), cavity.end());
   }
 
-  // The side opposite to corner i, which holds the new point and an edge of the cavity's surface.
-  void join_at_edge(std::uint32_t cell, std::uint32_t i, std::uint32_t point_corner, std::size_t room) {
-    std::uint64_t low = infinite, high = 0;
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      if (k == i || k == point_corner) continue;
-      low = std::min<std::uint64_t>(low, cells_[cell].corners[k]);
-      high = std::max<std::uint64_t>(high, cells_[cell].corners[k]);
-    }
-    const std::uint64_t key = low << 32 | high;
-    for (std::size_t at = (key * 0x9e3779b97f4a7c15u) >> 40;; ++at) {
-      OpenEdge& edge = open_edges_[at & (room - 1)];
-      if (edge.mark != mark_) {
-        edge = {key, mark_, cell * 4 + i};
+  // Two new cells are neighbours where their sides of the cavity share an edge. Turns around the edge of a side that
+  // lacks corner `opposite`, through the cells of the cavity, until it comes to the other side.
+  void join_around_edge(const Side& side, std::uint32_t opposite) {
+    std::uint32_t cell = side.cell, behind = side.corner, ahead = opposite;  // the corners off the edge
+    const std::uint32_t joined = cells_[cell].neighbours[behind];
+    if (cells_[joined].neighbours[opposite] != none) return;
+    for (;;) {
+      const std::uint32_t next = cells_[cell].neighbours[ahead];
+      if (marks_[next] != 2 * mark_ + 1) {  // new
+        cells_[joined].neighbours[opposite] = next;
+        cells_[next].neighbours[behind] = joined;
         return;
       }
-      if (edge.corners != key) continue;
-      const std::uint32_t other = edge.cell_and_corner / 4;
-      cells_[cell].neighbours[i] = other;
-      cells_[other].neighbours[edge.cell_and_corner % 4] = cell;
-      return;
+      ahead = index_of(cells_[cell].corners[behind], cells_[next].corners);
+      behind = index_of(cell, cells_[next].neighbours);
+      cell = next;
     }
   }
 
-  std::span<const Vec3> points_;
+  static std::uint32_t index_of(std::uint32_t value, const std::array<std::uint32_t, 4>& in) {
+    return static_cast<std::uint32_t>(in[1] == value) + 2 * static_cast<std::uint32_t>(in[2] == value) +
+           3 * static_cast<std::uint32_t>(in[3] == value);
+  }
+
+  std::vector<ExactPoint> points_;
+  RoundingErrors errors_{0, 0, 0};
   std::vector<Cell> cells_;
   std::vector<std::uint32_t>
       marks_;  // of cells: unused; 2 * number of the last insertion that looked at it, + 1 = cavity
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> cavity_;
-  std::vector<Side> sides_;  // of the cavity
-  std::vector<OpenEdge> open_edges_;
+  std::vector<std::uint32_t> cavity_;  // the first cavity_size_ elements
+  std::vector<Side> sides_;            // of the cavity; the first sides_size_ elements
+  std::size_t cavity_size_ = 0, sides_size_ = 0;
   std::vector<bool> inserted_;
   std::uint32_t mark_ = 0;  // number of the insertion
   std::uint32_t hint_ = 0;  // a finite cell near the last point
@@ -267,11 +282,9 @@ class Builder {
 
 Triangulation triangulate(std::span<const Vec3> points) {
   constexpr std::size_t kept_for = 4096;  // points
-  if (points.size() > kept_for) {
-    Builder builder;
-    return builder.build(points) ? builder.result() : Triangulation{};
-  }
-  static thread_local Builder builder;
+  static thread_local Builder kept;
+  Builder own;
+  Builder& builder = points.size() > kept_for ? own : kept;
   return builder.build(points) ? builder.result() : Triangulation{};
 }
 

@@ -15,7 +15,7 @@ struct Triangulation {
   std::vector<Neighbours> neighbours;  // neighbour i is opposite to point i; no_neighbour on the convex hull
 };
 
-// The Delaunay triangulation of points; empty if they all lie in one plane. Of equal points the first one counts.
+// The Delaunay triangulation of points; empty if they all lie in one plane. Of equal points one is used.
 // Decisions are exact, and ties between cospherical points are broken by their coordinates, so the set of tetrahedra
 // depends on the points alone, not on their order. Fast where points that are near in space are near in the span.
 Triangulation triangulate(std::span<const Vec3> points);
