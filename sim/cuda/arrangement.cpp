@@ -3,46 +3,64 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 namespace mercury::cuda {
 namespace {
 
-std::vector<FacePair> in_slots(std::span<const FacePair> pairs, const SlotOrder& order) {
-  const auto slot = [&](std::uint16_t mass) { return static_cast<std::uint16_t>(order.slot_of(mass)); };
-  std::vector<FacePair> moved;
-  for (const FacePair& p : pairs) moved.push_back({slot(p.a), slot(p.b), slot(p.c), slot(p.d)});
-  return moved;
+// Calls visit(mass, slot, count) for runs of masses in consecutive slots: at most two per tile, since tiles are
+// rotated.
+template <class Visit>
+void for_each_run(const SlotOrder& order, Visit visit) {
+  for (std::uint32_t first = 0; first < order.masses; first += lanes) {
+    const std::uint32_t size = std::min(order.masses - first, lanes), rotation = order.slot_of(first) - first;
+    visit(first, first + rotation, size - rotation);
+    visit(first + size - rotation, first, rotation);
+  }
 }
 
-std::vector<Spring> in_slots(std::span<const Spring> springs, const SlotOrder& order) {
-  std::vector<Spring> moved(springs.begin(), springs.end());
-  for (Spring& s : moved) {
-    s.a = static_cast<std::uint16_t>(order.slot_of(s.a));
-    s.b = static_cast<std::uint16_t>(order.slot_of(s.b));
+std::vector<std::uint16_t> slots_of_masses(const SlotOrder& order) {
+  std::vector<std::uint16_t> slots(order.masses);
+  for_each_run(order, [&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) slots[mass + i] = static_cast<std::uint16_t>(slot + i);
+  });
+  return slots;
+}
+
+// Tries a few shifts and returns the one that spreads the corners of the faces over the banks most evenly.
+std::uint32_t best_shift(std::uint32_t masses, std::span<const FacePair> pairs) {
+  std::vector<std::uint32_t> shared(masses), outer(masses);  // how often each mass is a or c, b or d
+  for (const FacePair& p : pairs) {
+    ++shared[p.a], ++shared[p.c];
+    ++outer[p.b], ++outer[p.d];
   }
-  return moved;
+  std::uint32_t best = 0, fewest_passes = ~0u;
+  for (const std::uint32_t shift : {0u, 1u, 2u, 3u, 5u, 6u, 7u, 13u, 16u, 25u, 27u, 29u}) {
+    CornerBanks banks;
+    for_each_run({masses, shift}, [&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+      for (std::uint32_t i = 0; i < count; ++i) banks.shared[slot % lanes + i] += shared[mass + i];
+      for (std::uint32_t i = 0; i < count; ++i) banks.outer[slot % lanes + i] += outer[mass + i];
+    });
+    const std::uint32_t passes = banks.fewest_passes(pairs.size());
+    if (passes < fewest_passes) best = shift, fewest_passes = passes;
+  }
+  return best;
 }
 
 }  // namespace
 
-// Tries a few shifts and takes the one that spreads the corners of the faces over the banks most evenly.
 Arrangement arrange(const Robot& robot) {
   const auto masses = static_cast<std::uint32_t>(robot.masses.size());
-  const std::vector<FacePair> pairs = pair_faces(robot);
-  SlotOrder best{masses, 0};
-  std::vector<FacePair> best_pairs;
-  std::uint32_t fewest_passes = ~0u;
-  for (const std::uint32_t shift : {0u, 5u, 13u}) {
-    const SlotOrder order{masses, shift};
-    std::vector<FacePair> moved = in_slots(pairs, order);
-    const std::uint32_t passes = busiest_bank(moved);
-    if (passes >= fewest_passes) continue;
-    fewest_passes = passes;
-    best = order;
-    best_pairs = std::move(moved);
-  }
-  return {best, schedule_springs(masses, in_slots(robot.springs, best)), make_face_tiles(best_pairs)};
+  std::vector<FacePair> pairs = pair_faces(robot);
+  const SlotOrder order{masses, best_shift(masses, pairs)};
+  const std::vector<std::uint16_t> slot = slots_of_masses(order);
+  for (FacePair& p : pairs) p = {slot[p.a], slot[p.b], slot[p.c], slot[p.d]};
+  std::vector<OwnedSpring> springs;
+  springs.reserve(robot.springs.size());
+  for (const Spring& s : robot.springs) springs.push_back({slot[s.a], slot[s.b]});
+  return {order, schedule_springs(masses, std::move(springs)), make_face_tiles(pairs)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {

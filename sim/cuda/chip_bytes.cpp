@@ -1,26 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/cuda_devices.h"
 
-#include <algorithm>
-
 #include "sim/cuda/block_layout.h"
+#include "sim/cuda/rest_lengths.h"
 
 namespace mercury {
 
-namespace cuda {
-
-std::vector<float> lengths_of(const Robot& robot) {
-  std::vector<float> lengths{0};
-  for (const Spring& spring : robot.springs) {
-    const auto at = std::ranges::lower_bound(lengths, spring.rest_length);
-    if (at != lengths.end() && *at == spring.rest_length) continue;
-    lengths.insert(at, spring.rest_length);
-    if (lengths.size() > max_lengths) break;
-  }
-  return lengths;
-}
-
-}  // namespace cuda
+std::vector<float> cuda::lengths_of(const Robot& robot) { return rest_lengths(robot).table; }
 
 std::size_t chip_bytes(const Robot& robot, const Configuration& configuration) {
   using namespace cuda;

@@ -2,62 +2,110 @@
 #include "sim/cuda/edge_colouring.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <utility>
 
 namespace mercury::cuda {
+namespace {
 
-EdgeColouring::EdgeColouring(std::span<const OwnedSpring> edges) : edges_(edges) {
-  std::array<std::uint32_t, lanes> lane_degree{}, bank_degree{};
-  for (const OwnedSpring& edge : edges) {
-    colours_ = std::max(colours_, ++lane_degree[lane(edge)]);
-    colours_ = std::max(colours_, ++bank_degree[bank(edge)]);
+// All tiles at once, because their graphs have no edge in common.
+class EdgeColouring {
+ public:
+  EdgeColouring(std::span<const OwnedSpring> springs, std::span<const std::uint32_t> row_start)
+      : springs_(springs), row_start_(row_start), entries_(std::size_t{row_start.back()} * lanes),
+        lane_at_bank_(entries_.size(), no_lane) {
+    const auto tiles = static_cast<std::uint32_t>(row_start.size() - 1);
+    for (std::uint32_t tile = 0; tile < tiles; ++tile) words_ = std::max(words_, (rows(tile) + 63) / 64);
+    free_.resize(std::size_t{tiles} * 2 * lanes * words_);
+    for (std::uint32_t tile = 0; tile < tiles; ++tile)
+      for (std::uint32_t vertex = 0; vertex < 2 * lanes; ++vertex) free_all(tile * 2 * lanes + vertex, rows(tile));
+    for (std::uint32_t i = 0; i < springs.size(); ++i) colour(i);
   }
-  at_lane_.assign(std::size_t{lanes} * colours_, none);
-  at_bank_.assign(std::size_t{lanes} * colours_, none);
-  for (std::uint32_t e = 0; e < edges.size(); ++e) colour(e);
-}
 
-std::uint32_t EdgeColouring::free_colour(const std::vector<std::uint32_t>& at, std::uint32_t vertex) const {
-  const auto first = at.begin() + static_cast<std::ptrdiff_t>(vertex * colours_);
-  return static_cast<std::uint32_t>(std::find(first, first + colours_, none) - first);
-}
+  std::vector<ScheduledSpring> take() { return std::move(entries_); }
 
-void EdgeColouring::colour(std::uint32_t e) {
-  const std::uint32_t u = lane(edges_[e]), v = bank(edges_[e]);
-  for (std::uint32_t c = 0; c < colours_; ++c)
-    if (at_lane(u, c) == none && at_bank(v, c) == none) return assign(e, c);
-  const std::uint32_t free_at_lane = free_colour(at_lane_, u), free_at_bank = free_colour(at_bank_, v);
-  swap_path(v, free_at_lane, free_at_bank);
-  assign(e, free_at_lane);
-}
+ private:
+  static constexpr std::uint8_t no_lane = 0xff;
+  static constexpr std::uint32_t no_colour = 0xffffffffu;
 
-void EdgeColouring::assign(std::uint32_t e, std::uint32_t colour) {
-  at_lane(lane(edges_[e]), colour) = e;
-  at_bank(bank(edges_[e]), colour) = e;
-}
+  std::uint32_t rows(std::uint32_t tile) const { return row_start_[tile + 1] - row_start_[tile]; }
+  std::uint64_t& free_word(std::uint32_t vertex, std::uint32_t word) { return free_[vertex * words_ + word]; }
 
-// Exchanges two colours along the path that leaves the bank by `wanted`, which frees `wanted` at the bank.
-void EdgeColouring::swap_path(std::uint32_t first_bank, std::uint32_t wanted, std::uint32_t other) {
-  path_.clear();
-  bool from_bank = true;
-  for (std::uint32_t vertex = first_bank, c = wanted;; c = c == wanted ? other : wanted, from_bank = !from_bank) {
-    const std::uint32_t e = from_bank ? at_bank(vertex, c) : at_lane(vertex, c);
-    if (e == none) break;
-    path_.push_back(e);
-    vertex = from_bank ? lane(edges_[e]) : bank(edges_[e]);
+  void free_all(std::uint32_t vertex, std::uint32_t colours) {
+    for (std::uint32_t word = 0; word < words_; ++word, colours -= std::min(colours, 64u))
+      free_word(vertex, word) = colours >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << colours) - 1;
   }
-  // Two passes: an entry that the path has already given to the next edge must not be cleared.
-  std::uint32_t c = wanted;
-  for (const std::uint32_t e : path_) {
-    if (at_lane(lane(edges_[e]), c) == e) at_lane(lane(edges_[e]), c) = none;
-    if (at_bank(bank(edges_[e]), c) == e) at_bank(bank(edges_[e]), c) = none;
-    c = c == wanted ? other : wanted;
+  void flip(std::uint32_t vertex, std::uint32_t colour) {
+    free_word(vertex, colour / 64) ^= std::uint64_t{1} << colour % 64;
   }
-  c = other;
-  for (const std::uint32_t e : path_) {
-    assign(e, c);
-    c = c == wanted ? other : wanted;
+  // The first colour that is free at both vertices.
+  std::uint32_t common_colour(std::uint32_t u, std::uint32_t v) {
+    for (std::uint32_t word = 0; word < words_; ++word)
+      if (const std::uint64_t both = free_word(u, word) & free_word(v, word); both != 0)
+        return word * 64 + static_cast<std::uint32_t>(std::countr_zero(both));
+    return no_colour;
   }
+
+  void colour(std::uint32_t i) {
+    const OwnedSpring s = springs_[i];
+    const std::uint32_t tile = s.owner / lanes, first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
+    const std::uint32_t lane = s.owner % lanes, bank = s.partner % lanes;
+    const std::uint32_t c = common_colour(first_lane + lane, first_bank + bank);
+    if (c == no_colour) return exchange_path(tile, lane, {i, s.partner});
+    flip(first_lane + lane, c);
+    flip(first_bank + bank, c);
+    const std::size_t row = (row_start_[tile] + c) * std::size_t{lanes};
+    entries_[row + lane] = {i, s.partner};
+    lane_at_bank_[row + bank] = static_cast<std::uint8_t>(lane);
+  }
+
+  // Gives an edge a colour p that is free at its lane. Along the path, each edge that has p gives way and takes q, and
+  // each edge that has q gives way in turn and takes p.
+  void exchange_path(std::uint32_t tile, std::uint32_t lane, ScheduledSpring edge) {
+    const std::uint32_t first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
+    std::uint32_t bank = edge.partner % lanes;
+    const std::uint32_t p = common_colour(first_lane + lane, first_lane + lane);
+    const std::uint32_t q = common_colour(first_bank + bank, first_bank + bank);
+    const std::size_t row_p = (row_start_[tile] + p) * std::size_t{lanes};
+    const std::size_t row_q = (row_start_[tile] + q) * std::size_t{lanes};
+    flip(first_lane + lane, p);
+    flip(first_bank + bank, q);
+    while (true) {  // `edge` takes p at its lane, where p is free
+      entries_[row_p + lane] = edge;
+      const std::uint8_t other = std::exchange(lane_at_bank_[row_p + bank], static_cast<std::uint8_t>(lane));
+      if (other == no_lane) {  // the bank had the edge by q, and has it by p now
+        flip(first_bank + bank, p);
+        flip(first_bank + bank, q);
+        lane_at_bank_[row_q + bank] = no_lane;
+        return;
+      }
+      // At the bank q is free now, at the lane of the other edge p.
+      lane_at_bank_[row_q + bank] = other;
+      lane = other;
+      edge = std::exchange(entries_[row_q + lane], entries_[row_p + lane]);
+      if (edge.spring == padding) {
+        entries_[row_p + lane] = {};
+        flip(first_lane + lane, p);
+        flip(first_lane + lane, q);
+        return;
+      }
+      bank = edge.partner % lanes;
+    }
+  }
+
+  const std::span<const OwnedSpring> springs_;
+  const std::span<const std::uint32_t> row_start_;
+  std::uint32_t words_ = 1;                 // of a set of colours
+  std::vector<std::uint64_t> free_;         // [tile][lane or bank][word], a bit per colour
+  std::vector<ScheduledSpring> entries_;    // [row][lane]
+  std::vector<std::uint8_t> lane_at_bank_;  // [row][bank]
+};
+
+}  // namespace
+
+std::vector<ScheduledSpring> colour_springs(std::span<const OwnedSpring> springs,
+                                            std::span<const std::uint32_t> row_start) {
+  return EdgeColouring(springs, row_start).take();
 }
 
 }  // namespace mercury::cuda

@@ -23,22 +23,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "mercury/robot.h"
-#include "sim/cuda/tile.h"
+#include "sim/cuda/edge_colouring.h"
 
 namespace mercury::cuda {
-
-// ScheduledSpring::spring of an unused entry.
-inline constexpr std::uint32_t padding = 0xffffffffu;
-
-// An entry of the schedule. Its owner is the slot of its lane.
-struct ScheduledSpring {
-  std::uint32_t spring = padding;  // its number
-  std::uint16_t partner = 0;       // slot
-};
 
 struct Schedule {
   // Rows of tile t are [row_start[t], row_start[t + 1]); row r has the entries [32 r, 32 r + 32).
@@ -48,7 +37,7 @@ struct Schedule {
   std::uint32_t rows() const { return row_start.back(); }
 };
 
-// The ends of `springs` are slots, below `masses`.
-Schedule schedule_springs(std::size_t masses, std::span<const Spring> springs);
+// `springs` by their number; which end is the owner may change. Slots are below `masses`.
+Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs);
 
 }  // namespace mercury::cuda

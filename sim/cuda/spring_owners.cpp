@@ -1,94 +1,216 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/spring_owners.h"
 
-#include <random>
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
 
 namespace mercury::cuda {
 namespace {
 
-// Local search for owners. Two loads count: the springs that a lane owns (lane_load_), and the springs of a tile whose
-// partners lie in one bank (bank_load_). The search lowers the sum of their squares, which evens them out.
-class Ownership {
+// The counters that a spring loads.
+std::uint32_t lane_counter(OwnedSpring s) { return cuda::lane_counter(s.owner); }
+std::uint32_t bank_counter(OwnedSpring s) { return s.owner / lanes * tile_counters + lanes + s.partner % lanes; }
+
+OwnedSpring exchanged(OwnedSpring s) { return {s.partner, s.owner}; }
+// Without a branch, which would often be mispredicted.
+OwnedSpring exchanged_if(bool condition, OwnedSpring s) {
+  const auto both = static_cast<std::uint16_t>((s.owner ^ s.partner) & -static_cast<int>(condition));
+  return {static_cast<std::uint16_t>(s.owner ^ both), static_cast<std::uint16_t>(s.partner ^ both)};
+}
+
+class OwnerSearch {
  public:
-  Ownership(std::size_t masses, std::span<const Spring> springs)
-      : springs_(springs), lane_load_(masses), bank_load_(tiles_for(masses) * std::size_t{lanes}),
-        owned_by_b_(springs.size()) {
-    for (std::size_t s = 0; s < springs_.size(); ++s) {
-      owned_by_b_[s] = load(springs_[s].b, springs_[s].a) < load(springs_[s].a, springs_[s].b);
-      change_loads(s, 1);
-    }
-    constexpr int even_sweeps = 12, peak_sweeps = 12;
-    for (int sweep = 0; sweep < even_sweeps; ++sweep) even_out(sweep);
-    for (int sweep = 0; sweep < peak_sweeps; ++sweep) lower_peaks();
+  OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs)
+      : springs_(std::move(springs)), tiles_(tiles_for(masses)), load_(tiles_ * tile_counters) {
+    choose_first();
+    for (int sweep = 0; sweep < 2; ++sweep) even_out(sweep);
+    list_candidates();
+    lower_peaks();
   }
 
-  std::uint16_t owner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].b : springs_[s].a; }
-  std::uint16_t partner(std::size_t s) const { return owned_by_b_[s] ? springs_[s].a : springs_[s].b; }
+  OwnedSprings take() {
+    return {std::move(springs_), std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
+  }
 
  private:
-  // By the owner's tile and the partner's bank.
-  std::uint32_t& bank_load(std::uint16_t owner, std::uint16_t partner) {
-    return bank_load_[owner / lanes * lanes + partner % lanes];
-  }
-  std::uint32_t load(std::uint16_t owner, std::uint16_t partner) {
-    return lane_load_[owner] + bank_load(owner, partner);
-  }
-  void change_loads(std::size_t s, std::uint32_t by) {
-    lane_load_[owner(s)] += by;
-    bank_load(owner(s), partner(s)) += by;
-  }
-  void swap_ends(std::size_t s) {
-    change_loads(s, static_cast<std::uint32_t>(-1));
-    owned_by_b_[s] = !owned_by_b_[s];
-    change_loads(s, 1);
+  static constexpr std::uint32_t max_visited = 12;
+
+  // A step of a chain: `spring` makes `counter` too full, and the counter before it less full.
+  struct Link {
+    std::uint32_t counter, spring, before;
+  };
+
+  void change_loads(OwnedSpring s, int by) {
+    load_[lane_counter(s)] += by;
+    load_[bank_counter(s)] += by;
   }
 
-  // Gives springs to their other end where that lowers the sum of squares. Odd sweeps also do so where the sum stays
-  // the same, which lets loads wander to where there is room.
+  // The first half of the springs in turn with the second half: neighbours often load the same counters, and the
+  // processor would wait for their new values.
+  template <class Visit>
+  void for_each_spring(Visit visit) {
+    const std::size_t half = springs_.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) visit(springs_[i]), visit(springs_[half + i]);
+    if (springs_.size() % 2 != 0) visit(springs_.back());
+  }
+
+  void choose_first() {
+    for_each_spring([&](OwnedSpring& s) {
+      const int moved = advantage(s) > 0;
+      change_loads(s, 1 - moved);
+      change_loads(exchanged(s), moved);
+      s = exchanged_if(moved, s);
+    });
+  }
+
+  // Odd sweeps also exchange ends where the sum of squares stays the same, which lets loads wander to where there is
+  // room.
   void even_out(int sweep) {
-    for (std::size_t s = 0; s < springs_.size(); ++s) {
-      const std::uint32_t here = load(owner(s), partner(s)), there = load(partner(s), owner(s)) + 2;
-      if (there < here || (there == here && sweep % 2 != 0)) swap_ends(s);
-    }
+    const int least = sweep % 2 == 0 ? 3 : 2;
+    for_each_spring([&](OwnedSpring& s) {
+      const int moved = advantage(s) >= least;
+      change_loads(s, -moved);
+      change_loads(exchanged(s), moved);
+      s = exchanged_if(moved, s);
+    });
   }
 
-  // Only loads above the average lengthen a tile. Gives springs to their other end where that lowers the sum of the
-  // squares above the average, and at random where that sum stays the same.
+  // How much more the two counters of a spring have than the two that its other mass would load.
+  int advantage(OwnedSpring s) const {
+    const OwnedSpring t = exchanged(s);
+    return load_[lane_counter(s)] + load_[bank_counter(s)] - load_[lane_counter(t)] - load_[bank_counter(t)];
+  }
+
+  // By counter the springs that load it, or would if their other mass owned them.
+  void list_candidates() {
+    first_candidate_.assign(load_.size() + 1, 0);
+    const auto for_each_counter = [](OwnedSpring s, auto visit) {
+      visit(lane_counter(s)), visit(bank_counter(s));
+      visit(lane_counter(exchanged(s))), visit(bank_counter(exchanged(s)));
+    };
+    for (const OwnedSpring s : springs_) for_each_counter(s, [&](std::uint32_t c) { ++first_candidate_[c]; });
+    std::uint32_t count = 0;
+    for (std::uint32_t& first : first_candidate_) first = count += first;
+    candidates_.resize(count);
+    for (std::uint32_t i = 0; i < springs_.size(); ++i)
+      for_each_counter(springs_[i], [&](std::uint32_t c) { candidates_[--first_candidate_[c]] = i; });
+  }
+
   void lower_peaks() {
-    const auto average = static_cast<std::uint32_t>((springs_.size() + lane_load_.size() - 1) / lane_load_.size());
-    const auto above = [&](std::uint32_t load) { return load > average ? (load - average) * (load - average) : 0; };
-    const auto cost_of_one_more = [&](std::uint32_t load) { return above(load + 1) - above(load); };
-    for (std::size_t s = 0; s < springs_.size(); ++s) {
-      const std::uint16_t from = owner(s), to = partner(s);
-      const std::uint32_t gain = cost_of_one_more(lane_load_[from] - 1) + cost_of_one_more(bank_load(from, to) - 1);
-      const std::uint32_t cost = cost_of_one_more(lane_load_[to]) + cost_of_one_more(bank_load(to, from));
-      const auto chance = static_cast<std::uint32_t>(random_());
-      const bool at_random = cost == gain && chance % (gain > 0 ? 2 : 32) == 0;
-      if (cost < gain || at_random) swap_ends(s);
+    limit_.resize(tiles_);
+    for (std::uint32_t tile = 0; tile < tiles_; ++tile) {
+      int* const load = &load_[tile * tile_counters];
+      const int limit = *std::max_element(load, load + tile_counters);
+      limit_[tile] = static_cast<std::uint32_t>(limit);
+      for (std::uint32_t i = 0; i < tile_counters; ++i) load[i] -= limit;
     }
+    visited_.assign(load_.size(), 0);
+    std::vector<std::uint32_t> open(tiles_);
+    std::iota(open.begin(), open.end(), 0u);
+    while (!open.empty()) std::erase_if(open, [&](std::uint32_t tile) { return !lower(tile); });
   }
 
-  const std::span<const Spring> springs_;
-  std::minstd_rand random_;
-  std::vector<std::uint32_t> lane_load_, bank_load_;
-  std::vector<std::uint8_t> owned_by_b_;
+  // From here on loads are relative to the limit of their tile.
+
+  // Lowers the limit of a tile by one and the loads with it. Returns false if that fails. Loads that were lowered by
+  // then stay so.
+  bool lower(std::uint32_t tile) {
+    if (limit_[tile] == 0) return false;
+    change_limit(tile, -1);
+    for (std::uint32_t counter = tile * tile_counters; counter < (tile + 1) * tile_counters; ++counter)
+      while (load_[counter] > 0)
+        if (!relieve(counter)) {
+          change_limit(tile, 1);
+          return false;
+        }
+    return true;
+  }
+
+  void change_limit(std::uint32_t tile, int by) {
+    limit_[tile] += static_cast<std::uint32_t>(by);
+    for (std::uint32_t i = 0; i < tile_counters; ++i) load_[tile * tile_counters + i] -= by;
+  }
+
+  // Finds a chain of springs that change owners so that this counter has one spring less and no other is above its
+  // limit. Looks at no more than max_visited counters.
+  bool relieve(std::uint32_t counter) {
+    ++visit_;
+    visited_[counter] = visit_;
+    links_[0] = {counter, 0, 0};
+    std::uint32_t found = 1;
+    for (std::uint32_t at = 0; at < std::min(found, max_visited); ++at) {
+      const std::uint32_t from = links_[at].counter;
+      const bool is_lane = from % tile_counters < lanes;
+      const auto load_lane = [](OwnedSpring s) { return lane_counter(s); };
+      const auto load_bank = [](OwnedSpring s) { return bank_counter(s); };
+      if (is_lane ? extend(at, found, load_lane) : extend(at, found, load_bank)) return true;
+    }
+    return false;
+  }
+
+  // Looks for the end of the chain among the springs that load a counter, and appends the counters that could continue
+  // it. Without branches on whether a spring loads the counter, which would often be mispredicted.
+  template <class CounterOf>
+  bool extend(std::uint32_t at, std::uint32_t& found, CounterOf counter_of) {
+    const std::uint32_t from = links_[at].counter;
+    for (std::uint32_t c = first_candidate_[from]; c < first_candidate_[from + 1]; ++c) {
+      const std::uint32_t spring = candidates_[c];
+      const OwnedSpring s = springs_[spring], t = exchanged(s);
+      const std::uint32_t lane = lane_counter(t), bank = bank_counter(t);
+      const bool loads = counter_of(s) == from;
+      const bool lane_free = load_[lane] < 0, bank_free = load_[bank] < 0;
+      if (loads & lane_free & bank_free) {
+        if (pass_on(at, spring)) return true;
+        continue;
+      }
+      const std::uint32_t full = lane_free ? bank : lane;
+      const bool continues = loads & (lane_free != bank_free) & (visited_[full] != visit_);
+      links_[found] = {full, spring, at};
+      visited_[full] = continues ? visit_ : visited_[full];
+      found = std::min(found + continues, max_visited);
+    }
+    return false;
+  }
+
+  // Exchanges the ends of the springs of a chain. A chain may meet a counter twice and overload it; then it is undone.
+  bool pass_on(std::uint32_t last, std::uint32_t spring) {
+    std::array<std::uint32_t, max_visited> chain;
+    std::uint32_t length = 0;
+    chain[length++] = spring;
+    for (std::uint32_t at = last; at > 0; at = links_[at].before) chain[length++] = links_[at].spring;
+    for (std::uint32_t i = 0; i < length; ++i) exchange(chain[i]);
+    bool fits = true;
+    for (std::uint32_t i = 0; i < length; ++i) {
+      const OwnedSpring s = springs_[chain[i]];
+      fits = fits && load_[lane_counter(s)] <= 0 && load_[bank_counter(s)] <= 0;
+    }
+    if (fits) return true;
+    for (std::uint32_t i = 0; i < length; ++i) exchange(chain[i]);
+    return false;
+  }
+
+  void exchange(std::uint32_t spring) {
+    change_loads(springs_[spring], -1);
+    springs_[spring] = exchanged(springs_[spring]);
+    change_loads(springs_[spring], 1);
+  }
+
+  std::vector<OwnedSpring> springs_;
+  std::uint32_t tiles_;
+  std::vector<int> load_;                                    // [counter]
+  std::vector<std::uint32_t> limit_;                         // [tile]
+  std::vector<std::uint32_t> first_candidate_, candidates_;  // OwnedSprings
+  std::vector<std::uint32_t> visited_;                       // [counter] the last search that met it
+  std::uint32_t visit_ = 0;
+  std::array<Link, max_visited + 1> links_;
 };
 
 }  // namespace
 
-OwnedSprings choose_owners(std::size_t masses, std::span<const Spring> springs) {
-  const Ownership ownership(masses, springs);
-  const std::uint32_t tiles = tiles_for(masses);
-  OwnedSprings owned;
-  owned.start.assign(tiles + 1, 0);
-  for (std::size_t s = 0; s < springs.size(); ++s) ++owned.start[ownership.owner(s) / lanes + 1];
-  for (std::uint32_t t = 0; t < tiles; ++t) owned.start[t + 1] += owned.start[t];
-  owned.springs.resize(springs.size());
-  std::vector<std::uint32_t> next(owned.start.begin(), owned.start.end() - 1);
-  for (std::size_t s = 0; s < springs.size(); ++s)
-    owned.springs[next[ownership.owner(s) / lanes]++] = {ownership.owner(s), ownership.partner(s),
-                                                         static_cast<std::uint32_t>(s)};
-  return owned;
+OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs) {
+  return OwnerSearch(masses, std::move(springs)).take();
 }
 
 }  // namespace mercury::cuda

@@ -1,33 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which of its two masses owns each spring. The owner's lane computes the spring.
+//
+// A tile needs as many rows as its busiest lane or bank has springs (edge_colouring.h). A spring loads two counters:
+// the lane of its owner, and in the owner's tile the bank of its partner. If the other mass owns it, it loads two
+// others:
+//
+//   spring 5 - 70   owned by 5:    lane 5 of tile 0,   bank 70 mod 32 = 6 of tile 0
+//                   owned by 70:   lane 6 of tile 2,   bank 5 of tile 2
+//
+// 1. A first choice takes springs in turn and gives each to the mass whose two counters have less. Two sweeps over all
+//    springs then give springs to their other mass where that evens out the loads.
+// 2. What remains are peaks. Tile after tile, the limit of the tile's counters is lowered by one. A counter above it
+//    gives away a spring. If that puts one of the spring's new counters above its limit, this one gives away a spring
+//    in turn, and so on: a breadth-first search finds the shortest such chain (an augmenting path). Where there is
+//    none, the tile keeps its limit, and is done.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "mercury/robot.h"
 #include "sim/cuda/tile.h"
 
 namespace mercury::cuda {
 
 struct OwnedSpring {
   std::uint16_t owner, partner;  // slots
-  std::uint32_t spring;          // its number
 };
 
-// Springs sorted by their owner's tile: those of tile t at [start[t], start[t + 1]).
-struct OwnedSprings {
-  std::vector<std::uint32_t> start;
-  std::vector<OwnedSpring> springs;
+// Counters of a tile: its 32 lanes, then its 32 banks.
+inline constexpr std::uint32_t tile_counters = 2 * lanes;
+constexpr std::uint32_t lane_counter(std::uint32_t owner) { return owner / lanes * tile_counters + owner % lanes; }
 
-  std::span<const OwnedSpring> of_tile(std::size_t tile) const {
-    return std::span(springs).subspan(start[tile], start[tile + 1] - start[tile]);
+struct OwnedSprings {
+  std::vector<OwnedSpring> springs;  // by their number
+  std::vector<std::uint32_t> rows;   // by tile: the springs of its busiest lane or bank
+  // The numbers of the springs that load counter c, or would if their other mass owned them:
+  // candidates[first_candidate[c] .. first_candidate[c + 1]).
+  std::vector<std::uint32_t> first_candidate, candidates;
+
+  // The numbers of the springs that join a slot to others.
+  std::span<const std::uint32_t> springs_at(std::uint32_t slot) const {
+    const std::uint32_t first = first_candidate[lane_counter(slot)], end = first_candidate[lane_counter(slot) + 1];
+    return std::span(candidates).subspan(first, end - first);
   }
 };
 
-// A tile needs as many rows as its busiest lane or bank has springs (edge_colouring.h), so owners are chosen to keep
-// these loads even. The ends of `springs` are slots.
-OwnedSprings choose_owners(std::size_t masses, std::span<const Spring> springs);
+// Exchanges the ends of springs, so that the tiles need few rows in all.
+OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs);
 
 }  // namespace mercury::cuda

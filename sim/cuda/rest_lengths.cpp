@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/rest_lengths.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+
+#include "sim/cuda/layout.h"
+
+namespace mercury::cuda {
+namespace {
+
+// Numbers the rest lengths of springs in the order in which they come. A hash table of open addressing finds them.
+class LengthNumbers {
+ public:
+  LengthNumbers() { number(0); }
+
+  std::uint16_t number(float length) {
+    const auto bits = std::bit_cast<std::uint32_t>(length);
+    std::uint32_t at = bits * 0x9e3779b1u >> (32 - table_bits);
+    while (entries_[at].used && entries_[at].bits != bits) at = (at + 1) % (1u << table_bits);
+    if (!entries_[at].used) {
+      entries_[at] = {bits, static_cast<std::uint16_t>(lengths_.size()), true};
+      lengths_.push_back(length);
+    }
+    return entries_[at].number;
+  }
+
+  const std::vector<float>& lengths() const { return lengths_; }
+
+ private:
+  static constexpr int table_bits = 10;
+  struct Entry {
+    std::uint32_t bits = 0;
+    std::uint16_t number = 0;
+    bool used = false;
+  };
+  std::array<Entry, 1 << table_bits> entries_{};
+  std::vector<float> lengths_;  // [number]
+};
+
+}  // namespace
+
+RestLengths rest_lengths(const Robot& robot) {
+  LengthNumbers numbers;
+  std::vector<std::uint16_t> number_of_spring;
+  number_of_spring.reserve(robot.springs.size());
+  for (const Spring& spring : robot.springs) {
+    number_of_spring.push_back(numbers.number(spring.rest_length));
+    if (numbers.lengths().size() > max_lengths) break;
+  }
+  RestLengths result{numbers.lengths(), {}};
+  std::ranges::sort(result.table);
+  if (result.table.size() > max_lengths) return result;
+  std::array<std::uint8_t, max_lengths> index{};  // [number]
+  for (std::size_t number = 0; number < result.table.size(); ++number)
+    index[number] = static_cast<std::uint8_t>(std::ranges::lower_bound(result.table, numbers.lengths()[number]) -
+                                              result.table.begin());
+  for (const std::uint16_t number : number_of_spring) result.index.push_back(index[number]);
+  return result;
+}
+
+}  // namespace mercury::cuda
