@@ -63,6 +63,15 @@ void Backend::keep(std::span<const Robot* const> robots, std::span<const std::si
   saved.restore(*this);
 }
 
+void Backend::put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts) {
+  for (std::size_t i = 0; i < lifts.size(); ++i) {
+    std::vector<Vec3> positions = robots[i]->masses;
+    for (Vec3& x : positions) x += Vec3{0, 0, lifts[i]};
+    write(first + i, positions, std::vector<Vec3>(positions.size()));
+    set_status(first + i, {});
+  }
+}
+
 void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
                               std::span<RobotStatus> statuses) {
   const std::size_t robots = samples.size() / static_cast<std::size_t>(steps / every);

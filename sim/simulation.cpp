@@ -83,19 +83,13 @@ void Simulation::Parts::truncate(std::size_t size) {
   explosions.resize(size);
 }
 
-void Simulation::Parts::set_down(std::size_t first) {
-  if (!is_land(configuration.environment)) return;
-  for (std::size_t i = first; i < size(); ++i) put_at_rest(i);
-}
-
-void Simulation::Parts::put_at_rest(std::size_t robot) {
-  std::vector<Vec3> positions = robots[robot]->masses;
-  const Vec3 up{0, 0, lift_to_floor(positions, configuration.environment)};
-  for (Vec3& x : positions) x += up;
-  const std::vector<Vec3> velocities(positions.size());
-  backend->write(robot, positions, velocities);
-  backend->set_status(robot, {});
-  explosions[robot] = {};
+void Simulation::Parts::put_at_rest(std::size_t first) {
+  std::vector<float> lifts(size() - first);
+  if (is_land(configuration.environment))
+    oneapi::tbb::parallel_for(std::size_t{0}, lifts.size(), [&](std::size_t i) {
+      lifts[i] = lift_to_floor(robots[first + i]->masses, configuration.environment);
+    });
+  backend->put_at_rest(std::span(pointers).subspan(first), first, lifts);
 }
 
 Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots)
@@ -115,7 +109,7 @@ Simulation::Parts::Parts(const Configuration& initial, std::unique_ptr<Backend> 
   validate(configuration);
   append(first_robots);
   backend->load(pointers, configuration);
-  set_down(0);
+  if (is_land(configuration.environment)) put_at_rest(0);
 }
 
 Simulation::~Simulation() = default;
@@ -134,7 +128,7 @@ std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots
     parts_->truncate(first);
     throw;
   }
-  parts_->set_down(first);
+  if (is_land(parts_->configuration.environment)) parts_->put_at_rest(first);
   return first;
 }
 
@@ -206,7 +200,8 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
 
 void Simulation::reset() {
   parts_->clock = Clock{.dt = parts_->configuration.dt};
-  for (std::size_t i = 0; i < size(); ++i) parts_->put_at_rest(i);
+  parts_->explosions.assign(size(), {});
+  parts_->put_at_rest(0);
 }
 
 const Configuration& Simulation::configuration() const { return parts_->configuration; }

@@ -52,9 +52,8 @@ struct Simulation::Parts {
   void append(std::span<const std::shared_ptr<const Robot>> added);
   // Forgets the robots from this index on, without the backend.
   void truncate(std::size_t size);
-  // Sets robots from this index on down on the floor, if there is one.
-  void set_down(std::size_t first);
-  void put_at_rest(std::size_t robot);
+  // Puts robots from this index on at rest, on the floor if there is one.
+  void put_at_rest(std::size_t first);
 
   // Without the explosion.
   State state(std::size_t robot) const;

@@ -29,6 +29,12 @@ class Shares {
   std::size_t masses(std::size_t part) const { return parts_[part].masses; }
   std::span<const Robot* const> robots(std::size_t part) const { return parts_[part].robots; }
   Place place(std::size_t robot) const { return places_[robot]; }
+  std::span<const std::size_t> in_batch(std::size_t part) const { return parts_[part].in_batch; }  // indices
+  // How many robots of a part stand before this one in the batch.
+  std::size_t count_before(std::size_t part, std::size_t robot) const {
+    const std::vector<std::size_t>& robots = parts_[part].in_batch;
+    return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
+  }
   std::span<const std::size_t> first_mass() const { return first_mass_; }  // by robot, then the number of all masses
 
   // Takes the next robot of the batch into a part.
@@ -149,6 +155,15 @@ class SplitBackend final : public Backend {
   }
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
     part_of(robot).write(index_in_part(robot), positions, velocities);
+  }
+  void put_at_rest(std::span<const Robot* const>, std::size_t first, std::span<const float> lifts) override {
+    for_each_part([&](std::size_t p) {
+      const std::size_t before = shares_.count_before(p, first),
+                        count = shares_.count_before(p, first + lifts.size()) - before;
+      std::vector<float> share;
+      for (const std::size_t robot : shares_.in_batch(p).subspan(before, count)) share.push_back(lifts[robot - first]);
+      if (count > 0) parts_[p]->put_at_rest(shares_.robots(p).subspan(before, count), before, share);
+    });
   }
   void read_positions(std::span<Vec3> out) const override {
     gather_masses(out, [](const Backend& part, std::span<Vec3> share) { part.read_positions(share); });

@@ -121,17 +121,22 @@ class CpuBackend final : public Backend {
     set_state(body, positions, velocities);
   }
 
-  void read_positions(std::span<Vec3> out) const override {
-    for (const auto& body : bodies_)
-      for (std::size_t i = 0; i < body->robot->masses.size(); ++i, out = out.subspan(1))
-        out.front() = body->position(i);
+  void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts) override {
+    for (std::size_t i = 0; i < lifts.size(); ++i) {
+      Body& body = *bodies_[first + i];
+      if (body.location.group) cpu::store(*body.location.group);
+      set_status(first + i, {});
+    }
+    const auto set_down = [&](std::size_t i) {
+      std::vector<Vec3> positions = robots[i]->masses;
+      for (Vec3& x : positions) x += Vec3{0, 0, lifts[i]};
+      set_state(*bodies_[first + i], positions, std::vector<Vec3>(positions.size()));
+    };
+    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, lifts.size(), set_down); });
   }
 
-  void read_velocities(std::span<Vec3> out) const override {
-    for (const auto& body : bodies_)
-      for (std::size_t i = 0; i < body->robot->masses.size(); ++i, out = out.subspan(1))
-        out.front() = body->velocity(i);
-  }
+  void read_positions(std::span<Vec3> out) const override { read_all(out, &Body::position); }
+  void read_velocities(std::span<Vec3> out) const override { read_all(out, &Body::velocity); }
 
   RobotStatus status(std::size_t robot) const override { return bodies_[robot]->status; }
   std::vector<RobotStatus> statuses() const override {
@@ -171,6 +176,16 @@ class CpuBackend final : public Backend {
   template <class Work>
   void for_each_body(const Work& work, std::size_t first = 0) const {
     arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), [&](std::size_t i) { work(i); }); });
+  }
+
+  void read_all(std::span<Vec3> out, Vec3 (Body::*value)(std::size_t) const) const {
+    std::vector<std::size_t> first_mass{0};
+    for (const auto& body : bodies_) first_mass.push_back(first_mass.back() + body->robot->masses.size());
+    for_each_body([&](std::size_t i) {
+      const Body& body = *bodies_[i];
+      for (std::size_t mass = 0; mass < body.robot->masses.size(); ++mass)
+        out[first_mass[i] + mass] = (body.*value)(mass);
+    });
   }
 
   void append(std::span<const Robot* const> robots) {

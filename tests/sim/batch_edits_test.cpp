@@ -176,6 +176,23 @@ TEST_P(BatchEdits, ManyGenerationsLeaveTheElderUntouched) {
   EXPECT_EQ(edited.hash(0), alone.hash(0));
 }
 
+TEST_P(BatchEdits, AfterAResetRobotsMoveAsFromTheStart) {
+  const std::vector<Robot> robots = herd();
+  Simulation simulation = start(std::span(robots).first(10));
+  State far = simulation.state(4);
+  far.positions[2].x = 2e6f;
+  simulation.set_state(4, far.positions, far.velocities);
+  simulation.step(10);
+  simulation.add(std::span(robots).subspan(10));
+  simulation.keep(std::array<std::size_t, 5>{20, 4, 7, 8, 11});
+  simulation.step(10);
+  simulation.reset();
+  simulation.step(30);
+  const std::vector<std::uint64_t> expected =
+      hashes_after(std::vector{robots[20], robots[4], robots[7], robots[8], robots[11]}, 30);
+  EXPECT_EQ(simulation.hashes(), expected);
+}
+
 TEST_P(BatchEdits, ExplosionsSurvive) {
   const std::vector<Robot> robots = herd();
   Simulation simulation = start(std::span(robots).first(20));

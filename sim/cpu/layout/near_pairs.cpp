@@ -96,12 +96,18 @@ std::span<const std::uint8_t> NearPairs::candidates() {
   const std::size_t bytes = bytes_per_tile(lanes_), row = (start_.size() - 1) / lanes_ * bytes;
   constexpr std::size_t read_beyond = 8;  // vector code reads whole words
   candidates_.resize((start_.size() - 1) * row + read_beyond);
-  for (const std::uint32_t i : masses_)
-    for (const std::uint32_t j : masses_) {
-      if (j <= i || joined(i, j)) continue;
-      const std::size_t lane = j % lanes_;
-      candidates_[i * row + j / lanes_ * bytes + lane / 8] |= static_cast<std::uint8_t>(1u << lane % 8);
-    }
+  const auto byte_of = [&](std::uint32_t j) { return j / lanes_ * bytes + j % lanes_ / 8; };
+  const auto bit_of = [&](std::uint32_t j) { return static_cast<std::uint8_t>(1u << j % lanes_ % 8); };
+  std::vector<std::uint8_t> later(row);  // bits of the masses after mass i
+  for (const std::uint32_t j : masses_) later[byte_of(j)] |= bit_of(j);
+  for (std::uint32_t i = 0; i + 1 < start_.size(); ++i) {
+    if ((later[byte_of(i)] & bit_of(i)) == 0) continue;  // padding
+    later[byte_of(i)] ^= bit_of(i);
+    std::uint8_t* const own = candidates_.data() + i * row;
+    std::ranges::copy(later, own);
+    for (std::uint32_t n = start_[i]; n < start_[i + 1]; ++n)
+      own[byte_of(joined_[n])] &= static_cast<std::uint8_t>(~bit_of(joined_[n]));
+  }
   return candidates_;
 }
 
