@@ -26,15 +26,15 @@ int columns_of(int descriptor) {
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string rate_and_time_left(const std::string& unit, std::int64_t done, std::int64_t total, double elapsed) {
+std::string rate_and_time_left(const std::string& unit, double done, std::int64_t total, double elapsed) {
   if (done <= 0 || elapsed <= 0) return {};
-  const double rate = static_cast<double>(done) / elapsed;
-  const double time_left = static_cast<double>(total - done) / rate;
+  const double rate = done / elapsed;
+  const double time_left = (static_cast<double>(total) - done) / rate;
   return fmt::format("  {} {}/s  {} left", with_magnitude(rate), unit, clock_text(time_left));
 }
 
-double fraction_of(std::int64_t done, std::int64_t total) {
-  return total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0;
+double fraction_of(double done, std::int64_t total) {
+  return total > 0 ? std::clamp(done / static_cast<double>(total), 0.0, 1.0) : 0;
 }
 
 }  // namespace
@@ -59,22 +59,22 @@ std::string clock_text(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string progress_bar(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+std::string progress_bar(const std::string& what, const std::string& unit, double done, std::int64_t total,
                          double elapsed, int columns) {
   constexpr int width = 24;
   const int filled = static_cast<int>(fraction_of(done, total) * width);
-  std::string text =
-      fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
-                  100 * fraction_of(done, total), done, total, unit, rate_and_time_left(unit, done, total, elapsed));
+  std::string text = fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f}/{} {}{}", what, "", filled, "", width - filled,
+                                 100 * fraction_of(done, total), std::floor(done), total, unit,
+                                 rate_and_time_left(unit, done, total, elapsed));
   // A line as wide as the terminal would wrap, and \r could not overwrite it.
   if (const auto room = static_cast<std::size_t>(std::max(1, columns - 1)); text.size() > room) text.resize(room);
   return text;
 }
 
-std::string progress_line(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+std::string progress_line(const std::string& what, const std::string& unit, double done, std::int64_t total,
                           double elapsed) {
-  return fmt::format("{}: {}/{} {} ({:.0f} %){}", what, done, total, unit, 100 * fraction_of(done, total),
-                     rate_and_time_left(unit, done, total, elapsed));
+  return fmt::format("{}: {:.0f}/{} {} ({:.0f} %){}", what, std::floor(done), total, unit,
+                     100 * fraction_of(done, total), rate_and_time_left(unit, done, total, elapsed));
 }
 
 Progress::Progress(std::string what, std::string unit, std::int64_t total, bool quiet)
@@ -85,7 +85,7 @@ Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::update(std::int64_t done) {
+void Progress::update_with_fraction(double done) {
   if (quiet_) return;
   const Clock::time_point now = Clock::now();
   // Lines in a log stay, so their intervals grow.

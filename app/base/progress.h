@@ -19,7 +19,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   // Reports that `done` of the total are done. Cheap: writes at most ten times per second.
-  void update(std::int64_t done);
+  void update(std::int64_t done) { update_with_fraction(static_cast<double>(done)); }
+  // The same; what is done in part counts for the bar and the time left.
+  void update_with_fraction(double done);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -32,10 +34,10 @@ class Progress {
 };
 
 // The bar: "rendering [#####     ]  50 %  150/300 frames  42.1 frames/s  0:04 left", cut to `columns`.
-std::string progress_bar(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+std::string progress_bar(const std::string& what, const std::string& unit, double done, std::int64_t total,
                          double elapsed, int columns);
 // The plain line: "rendering: 150/300 frames (50 %)  42.1 frames/s  0:04 left".
-std::string progress_line(const std::string& what, const std::string& unit, std::int64_t done, std::int64_t total,
+std::string progress_line(const std::string& what, const std::string& unit, double done, std::int64_t total,
                           double elapsed);
 
 // A number with three digits and k, M, G, T or P: "4", "1.50 k", "23.1 G".

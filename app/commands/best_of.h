@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,11 @@ struct Contest {
   std::uint64_t candidates = 0;  // number of robots to try
   Configuration configuration;   // of the trial
   std::int64_t steps = 0;        // length of the trial
-  std::int64_t settling = 0;     // steps at the start that do not count for the distance
+  std::int64_t settling = 0;     // of these, at the start; they do not count for the distance
 };
 
 struct Winner {
-  Robot robot;
+  std::shared_ptr<const Robot> robot;
   double distance;  // of the centre of mass from where it was after settling; on land along the ground [m]
 };
 

@@ -51,8 +51,8 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
     return 1;
   }
   for (const Winner& winner : winners) {
-    output.write(winner.robot);
-    fmt::print(stderr, "mercury: {} got {:.3g} m far\n", winner.robot.name, winner.distance);
+    output.write(*winner.robot);
+    fmt::print(stderr, "mercury: {} got {:.3g} m far\n", winner.robot->name, winner.distance);
   }
   if (winners.size() < output.count())
     fmt::print(stderr, "mercury: only {} robots could be made and did not explode\n", winners.size());

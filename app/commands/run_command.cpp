@@ -15,6 +15,7 @@
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/commands/commands.h"
+#include "app/commands/run_evaluation.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
@@ -27,8 +28,7 @@
 namespace mercury {
 namespace {
 
-constexpr double sample_period = 0.1;  // time between two samples of the telemetry [s]
-constexpr double recorded_rate = 30;   // frames per second of simulated time, without --every
+constexpr double recorded_rate = 30;  // frames per second of simulated time, without --every
 
 struct RunOptions {
   RobotOptions robots;
@@ -85,15 +85,15 @@ class Observer {
   std::vector<double> path_, strain_;
 };
 
-// Returns null if no recording was requested. Throws InputError.
-std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
+// Throws InputError for options that do not go together.
+void validate_recording(const RunOptions& options) {
   if (options.every && *options.every < 1)
     throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
-  if (options.record.empty()) {
-    if (options.every || options.compress)
-      throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
-    return nullptr;
-  }
+  if (options.record.empty() && (options.every || options.compress))
+    throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
+}
+
+std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
   const double dt = simulation.configuration().dt;
   const auto default_every = static_cast<std::int64_t>(std::clamp(1 / (recorded_rate * dt), 1.0, 1e15) + 0.5);
   return std::make_unique<Recorder>(simulation, options.record,
@@ -147,6 +147,8 @@ int report_results(const RunOptions& options, const RunReport& report) {
                report.robots.size());
   if (report.interrupted) {
     fmt::print(stderr, "mercury: stopped at {:.6g} s\n", report.seconds);
+    if (report.missing > 0)
+      fmt::print(stderr, "mercury: {} robots did not come so far and are not in the report\n", report.missing);
     return 1;
   }
   return options.strict && exploded > 0 ? 1 : 0;
@@ -170,20 +172,37 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   return report_results(options, simulate(simulation, last, options.quiet, nullptr, &changes));
 }
 
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "mercury: {}\n", note);
+}
+
+// A recording needs all robots in one simulation.
+int run_recorded(const RunOptions& options, std::int64_t steps) {
+  const std::vector<Robot> robots = options.robots.load();
+  std::vector<std::string> notes;
+  Simulation simulation(options.simulation.configuration(robots, notes), robots);
+  print_notes(notes);
+  print_notes(simulation.notes());
+  validate_recording(options);
+  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
+  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
+  recorder->finish();
+  return report_results(options, report);
+}
+
 int run(const RunOptions& options) {
   if (!options.csv.empty()) require_writable("--csv", options.csv);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
   options.simulation.configuration();  // errors in options come before those in files
   const std::int64_t steps = options.simulation.steps();
-  const std::vector<Robot> robots = options.robots.load();
+  if (!options.record.empty()) return run_recorded(options, steps);
+  const RobotSequence robots = options.robots.sequence();
   std::vector<std::string> notes;
-  Simulation simulation(options.simulation.configuration(robots, notes), robots);
-  for (const auto& several : {notes, simulation.notes()})
-    for (const std::string& note : several) fmt::print(stderr, "mercury: {}\n", note);
-
-  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
-  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
-  if (recorder) recorder->finish();
+  const Configuration configuration = options.simulation.configuration(robots.environments, notes);
+  print_notes(notes);
+  validate_recording(options);
+  const RunReport report = evaluate(robots, configuration, steps, options.quiet);
+  print_notes(report.notes);
   return report_results(options, report);
 }
 

@@ -33,7 +33,7 @@ bool LiveScene::Parts::change_materials(const std::vector<RobotId>& robots, cons
   return true;
 }
 
-RobotId LiveScene::Parts::append(Robot robot, RobotSource source) {
+RobotId LiveScene::Parts::append(Robot robot, RobotProvenance source) {
   const RobotId id = ++last_id;
   LiveRobot body{.id = id, .name = robot.name.empty() ? "robot" : robot.name};
   body.robot = std::make_shared<const Robot>(std::move(robot));

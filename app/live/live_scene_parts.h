@@ -71,7 +71,7 @@ struct LiveScene::Parts {
   // Applies `change` to robots as one edit. `change` returns whether it changed its robot.
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                         const std::function<bool(DocumentRobot&)>& change);
-  RobotId append(Robot robot, RobotSource source);
+  RobotId append(Robot robot, RobotProvenance source);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void place_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;

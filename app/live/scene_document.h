@@ -20,7 +20,7 @@ struct MaterialScale {
 };
 
 // Where a robot comes from; names the robot in a command.
-struct RobotSource {
+struct RobotProvenance {
   std::string file;                                // read from it; or empty
   std::shared_ptr<const RandomRobots> generation;  // one of these random robots; or null
   std::uint64_t index = 0;                         // of the generation
@@ -28,7 +28,7 @@ struct RobotSource {
 
 struct DocumentRobot {
   LiveRobot body;
-  RobotSource source;
+  RobotProvenance source;
 };
 
 struct SceneDocument {

@@ -10,6 +10,7 @@
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
+#include "mercury/origin.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -59,14 +60,45 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
   return alone(is_repro_name, "a repro has a time of its own; give it without other robots");
 }
 
-std::vector<Robot> RobotOptions::load() const {
+void RobotOptions::require_robots() const {
   if (empty()) throw InputError("no robots given; name files or folders, or use --random " + generator_kinds(":12"));
+}
+
+std::vector<Robot> RobotOptions::load() const {
+  require_robots();
   std::vector<Robot> robots = load_files();
   for (const RandomRobots& request : random()) {
     std::vector<Robot> more = random_robots(request);
     robots.insert(robots.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   return robots;
+}
+
+RobotSequence RobotOptions::sequence() const {
+  require_robots();
+  RobotSequence sequence{.random = random()};
+  std::vector<std::shared_ptr<const Robot>> files;
+  for (Robot& robot : load_files()) {
+    sequence.environments.push_back(environment_of(robot));
+    files.push_back(std::make_shared<const Robot>(std::move(robot)));
+  }
+  std::vector<std::size_t> first{files.size()};  // of each request, then the end
+  for (const RandomRobots& request : sequence.random) {
+    first.push_back(first.back() + request.count);
+    sequence.environments.push_back(generator_named(request.kind).environment);
+  }
+  sequence.count = first.back();
+  sequence.source = [files = std::move(files), requests = sequence.random,
+                     first = std::move(first)](std::size_t index) -> std::shared_ptr<const Robot> {
+    if (index < files.size()) return files[index];
+    if (index >= first.back()) return nullptr;
+    const auto i = static_cast<std::size_t>(std::ranges::upper_bound(first, index) - first.begin()) - 1;
+    const RandomRobots& request = requests[i];
+    return std::make_shared<const Robot>(
+        generator_named(request.kind)
+            .make(request.values, request.environment, request.seed, request.first + (index - first[i])));
+  };
+  return sequence;
 }
 
 std::vector<Robot> RobotOptions::load_files() const {

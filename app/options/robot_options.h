@@ -11,9 +11,19 @@
 #include <vector>
 
 #include "app/options/generator_options.h"
+#include "mercury/evaluator.h"
 #include "mercury/robot.h"
 
 namespace mercury {
+
+// Robots that are made when they are asked for, as an Evaluator does.
+struct RobotSequence {
+  RobotSource source;  // throws InputError for a random robot that cannot be made
+  std::size_t count = 0;
+  std::vector<RandomRobots> random;  // the last robots of the sequence, one request after the other
+  // The environments that the robots are made for, see environment_of().
+  std::vector<std::string> environments;
+};
 
 class RobotOptions {
  public:
@@ -23,6 +33,9 @@ class RobotOptions {
   // Reads the files and makes the random robots, files first. Throws InputError when there are none, or one cannot be
   // used.
   std::vector<Robot> load() const;
+  // The robots of load(), in the same order. Those of files are read at once, with the same errors; random robots are
+  // made by the source. A random robot that load() leaves out has its place in the sequence.
+  RobotSequence sequence() const;
 
   // The trajectory file, if one was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> recording() const;
@@ -41,6 +54,7 @@ class RobotOptions {
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
 
  private:
+  void require_robots() const;
   std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
   RandomRobots random_from(const std::string& request) const;
 

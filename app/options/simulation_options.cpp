@@ -167,13 +167,18 @@ Configuration SimulationOptions::configuration_in(std::string_view environment) 
 Configuration SimulationOptions::configuration() const { return configuration_in(environment_.value_or("ocean")); }
 
 Configuration SimulationOptions::configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const {
+  std::vector<std::string> environments;
+  for (const Robot& robot : robots) environments.push_back(environment_of(robot));
+  return configuration(environments, notes);
+}
+
+Configuration SimulationOptions::configuration(std::span<const std::string> environments,
+                                               std::vector<std::string>& notes) const {
   if (environment_) return configuration();
   const auto names = environment_names();
   std::set<std::string> wanted;
-  for (const Robot& robot : robots) {
-    const std::string environment = environment_of(robot);
+  for (const std::string& environment : environments)
     if (std::ranges::count(names, environment) > 0) wanted.insert(environment);
-  }
   if (wanted.size() == 1) return configuration_in(*wanted.begin());
   if (wanted.size() > 1)
     notes.push_back(fmt::format("the robots are made for {}; all are put into ocean, --environment chooses",

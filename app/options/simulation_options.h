@@ -30,6 +30,8 @@ class SimulationOptions {
   // The same, but without --environment the robots choose: the environment that they are made for, if they agree.
   // Appends to `notes` what the user should know about that.
   Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;
+  // The same with the environments that the robots are made for; a name that is none, or empty, has no effect.
+  Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
 
   // The value of --environment; empty = not given.
   std::string chosen_environment() const { return environment_.value_or(""); }

@@ -30,6 +30,7 @@ struct RunReport {
   double seconds = 0;        // simulated
   double wall_seconds = 0;   // spent on stepping
   bool interrupted = false;  // the user stopped it before the end
+  std::size_t missing = 0;   // robots that are not in an interrupted report, as they have not come so far
   std::vector<std::string> notes;
   std::vector<RobotResult> robots;
 

@@ -2,6 +2,8 @@
 // Network robots on the command line.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "mercury/nn_robot.h"
 #include "mercury/robot_file.h"
 #include "tests/app/program.h"
@@ -51,6 +53,26 @@ TEST_F(NnCommand, RandomRobotsAreSimulated) {
   EXPECT_EQ(report["robots"][1]["name"], "nn-1-1");
   EXPECT_EQ(report["robots"][1]["masses"], 64);
   EXPECT_GT(report["robots"][1]["largest_strain"], 0.);
+}
+
+TEST_F(NnCommand, RunLeavesOutRobotsThatCannotBeMade) {
+  const std::vector<std::string> shape{"--points", "64", "--alpha", "0.05"};
+  std::vector<std::string> make{"new", "nn", "-o", path("r"), "--count", "30"};
+  std::vector<std::string> run{"run", "--random", "nn:30", "--seconds", "0.01", "--json"};
+  for (auto* arguments : {&make, &run}) arguments->insert(arguments->end(), shape.begin(), shape.end());
+  mercury(make);
+  const Outcome outcome = mercury(run);
+  EXPECT_EQ(outcome.status, 0);
+  std::vector<std::string> names;
+  const auto report = nlohmann::json::parse(outcome.output);
+  for (const auto& robot : report["robots"]) names.push_back(robot["name"].get<std::string>() + ".json");
+  EXPECT_THAT(names, testing::UnorderedElementsAreArray(listing("r")));
+  const std::string reason = " was left out: alpha: no tetrahedron of the cloud is as small as the given radius\n";
+  for (int i = 0; i < 30; ++i) {
+    const std::string name = "nn-1-" + std::to_string(i);
+    EXPECT_EQ(outcome.messages.find("mercury: " + name + reason) != std::string::npos,
+              std::ranges::count(names, name + ".json") == 0);
+  }
 }
 
 TEST_F(NnCommand, InvalidInputIsReported) {

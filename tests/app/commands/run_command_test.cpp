@@ -70,6 +70,14 @@ TEST_F(RunCommand, RobotAloneEndsAsInTheGroup) {
   }
 }
 
+// A recording needs all robots in one simulation, and other runs do not.
+TEST_F(RunCommand, ARecordingChangesNoResult) {
+  const std::vector<std::string> robots{"--random", "voxel:5", "--seconds", "0.25", "--environment", "land"};
+  std::vector<std::string> recorded = robots;
+  recorded.insert(recorded.end(), {"--record", path("a.h5")});
+  EXPECT_EQ(run_json(recorded)["robots"], run_json(robots)["robots"]);
+}
+
 TEST_F(RunCommand, DifferentRunsHaveDifferentHashes) {
   const auto shorter = hashes(run_json({"--random", "voxel:1", "--seconds", "0.3"}));
   const auto longer = hashes(run_json({"--random", "voxel:1", "--seconds", "0.301"}));

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The robots that a command works on, loaded at once or made on demand.
+#include "app/options/robot_options.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "mercury/error.h"
+#include "mercury/robot_file.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+class RobotOptionsTest : public FolderTest {
+ protected:
+  RobotOptionsTest() { options_.add_to(app_); }
+  const RobotOptions& parsed(std::vector<std::string> arguments) {
+    std::ranges::reverse(arguments);
+    app_.parse(arguments);
+    return options_;
+  }
+
+ private:
+  CLI::App app_;
+  RobotOptions options_;
+};
+
+TEST_F(RobotOptionsTest, SequenceMakesTheRobotsThatLoadReturns) {
+  Robot robot{.name = "pair", .masses = {{0, 0, 0}, {1, 0, 0}}, .origin = R"({"environment":"land"})"};
+  robot.springs.push_back({.a = 0, .b = 1, .material = 1, .rest_length = 1});
+  save_robot(path("pair.json"), robot);
+  const RobotOptions& options =
+      parsed({path("pair.json"), "--random", "voxel:3:7:40", "--random", "shell:2", "--seed", "5"});
+  const std::vector<Robot> expected = options.load();
+  ASSERT_EQ(expected.size(), 6u);
+  const RobotSequence sequence = options.sequence();
+  ASSERT_EQ(sequence.count, expected.size());
+  for (std::size_t i = expected.size(); i-- > 0;) EXPECT_EQ(*sequence.source(i), expected[i]);
+  EXPECT_EQ(sequence.source(6), nullptr);
+  EXPECT_EQ(sequence.environments, (std::vector<std::string>{"land", "", "ocean"}));
+}
+
+TEST_F(RobotOptionsTest, NoRobotsAreBadInput) {
+  const RobotOptions& options = parsed({});
+  EXPECT_THROW(options.sequence(), InputError);
+}
+
+}  // namespace
+}  // namespace mercury::test
