@@ -101,16 +101,15 @@ class Batch {
     faces_ = DeviceArray<Face>(robots_ * buffers_.face_stride);
     counts_ = DeviceArray<uint3>(robots_);
     materials_ = DeviceArray<Material>(default_materials().size());
-    velocities_.clear();
     for (std::size_t i = 0; i < robots_; ++i) {
       std::vector<float3> masses;
       for (const Vec3 m : robots[i].masses) masses.push_back({m.x, m.y, m.z});
-      positions_.write(i * buffers_.mass_stride, masses);
-      springs_.write(i * buffers_.spring_stride, robots[i].springs);
-      faces_.write(i * buffers_.face_stride, robots[i].faces);
+      positions_.write(i * buffers_.mass_stride, masses, cudaStreamLegacy);
+      springs_.write(i * buffers_.spring_stride, robots[i].springs, cudaStreamLegacy);
+      faces_.write(i * buffers_.face_stride, robots[i].faces, cudaStreamLegacy);
     }
-    counts_.write(0, counts);
-    materials_.write(0, default_materials());
+    counts_.write(0, counts, cudaStreamLegacy);
+    materials_.write(0, default_materials(), cudaStreamLegacy);
     buffers_.positions = positions_.data();
     buffers_.velocities = velocities_.data();
     buffers_.springs = springs_.data();
@@ -130,7 +129,7 @@ class Batch {
 
   std::vector<Vec3> positions(std::size_t masses) const {
     std::vector<float3> raw(masses);
-    positions_.read(0, raw);
+    positions_.read(0, raw, cudaStreamLegacy);
     std::vector<Vec3> result;
     for (const float3 x : raw) result.push_back({x.x, x.y, x.z});
     return result;
@@ -157,9 +156,9 @@ Result measure(std::span<const Robot> robots, double min_seconds) {
   Result result;
   for (long long steps = 100; result.seconds < min_seconds; steps *= 2) {
     cuda::Event start, end;
-    start.record();
+    start.record(cudaStreamLegacy);
     batch.advance(steps);
-    end.record();
+    end.record(cudaStreamLegacy);
     result.seconds += end.seconds_since(start);
     result.steps += steps;
   }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the robots' chunks of the batch's buffers (layout.h) on the host.
+// Makes the robots' chunks of a size class's buffers (layout.h) on the host.
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <span>
-#include <vector>
 
+#include "mercury/robot.h"
 #include "sim/cuda/arrangement.h"
 #include "sim/cuda/layout.h"
 
 namespace mercury::cuda {
 
-// What one robot's chunks hold: enough for the largest robot of the batch.
+// What one robot's chunks hold: enough for the largest robot of the class.
 struct ChunkSizes {
   std::uint32_t tiles = 0, rows = 0, face_pairs = 0;
   std::uint32_t record_words = 1;
@@ -21,43 +21,27 @@ struct ChunkSizes {
   std::size_t springs() const { return std::size_t{rows} * lanes * record_words; }  // [words]
   std::size_t lengths() const { return record_words == 1 ? max_lengths : 0; }
   std::size_t row_starts() const { return std::size_t{tiles} + 1; }
+  std::size_t bytes() const {  // of all chunks of one robot
+    return 4 * (state() + 2 * slots() + lengths() + springs() + row_starts()) + sizeof(FacePair) * face_pairs;
+  }
 };
 
-// The arrangements and rest lengths of a batch's robots.
-class Arrangements {
- public:
-  // Uses all cores. `robots` must outlive this object.
-  explicit Arrangements(std::span<const Robot* const> robots);
-
-  const ChunkSizes& sizes() const { return sizes_; }
-  // Arrangements are kept if there are few topologies, otherwise made again by each call.
-  std::shared_ptr<const Arrangement> of(std::size_t robot) const;
-  // As from lengths_of().
-  std::span<const float> lengths(std::size_t robot) const { return lengths_[robot]; }
-
- private:
-  std::span<const Robot* const> robots_;
-  ChunkSizes sizes_;
-  std::vector<std::uint32_t> first_of_topology_;          // [robot]
-  std::vector<std::shared_ptr<const Arrangement>> kept_;  // [robot], at the first of each topology; or empty
-  std::vector<std::vector<float>> lengths_;               // [robot]
-};
-
-// Chunks of some consecutive robots. The members are as in BatchView.
+// Chunks of some consecutive robots, in memory that somebody else owns. The members are as in BatchView.
 class Chunks {
  public:
-  Chunks(const ChunkSizes& sizes, std::size_t robots);
+  // `memory` = robots * sizes.bytes() bytes, aligned for all members.
+  Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory);
 
   // Fills the chunks of robot k of these. Partners are slots. Safe to call for several robots at once.
-  void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement, std::span<const float> lengths);
+  void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement, std::span<const float> robot_lengths);
 
-  std::vector<float> state, valences, lengths;
-  std::vector<std::uint32_t> springs, row_start, incoming_counts;
-  std::vector<FacePair> face_pairs;
+  std::span<FacePair> face_pairs;
+  std::span<float> state, valences, lengths;
+  std::span<std::uint32_t> springs, row_start, incoming_counts;
 
  private:
   void fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order);
-  void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule, std::span<const float> lengths);
+  void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule, std::span<const float> robot_lengths);
 
   ChunkSizes sizes_;
 };

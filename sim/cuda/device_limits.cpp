@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/device_limits.h"
 
-#include "sim/cuda/memory.h"
+#include "sim/cuda/stream.h"
 #include "sim/cuda/tile.h"
 
 namespace mercury::cuda {

@@ -57,17 +57,18 @@ bool fit_one(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fie
 
 }  // namespace
 
-LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& batch,
-                                                bool same_materials) {
+LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
+                                                bool same_materials, std::size_t batch_size) {
   const DeviceLimits limits = device_limits();
-  const std::uint32_t tiles = batch.tile_stride, robots = batch.robot_count;
+  const std::uint32_t tiles = robots.tile_stride;
   LaunchConfiguration launch;
   launch.shared_table = same_materials;
-  launch.record_words = batch.record_words;
+  launch.record_words = robots.record_words;
   launch.contact_buckets = contact_buckets(environment, tiles);
   const std::uint32_t all_fields = working_fields(solver, true);
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
-  if (robots > limits.multiprocessors && fit_several(launch, tiles, all_fields, limits, robots)) return launch;
+  if (batch_size > limits.multiprocessors && fit_several(launch, tiles, all_fields, limits, robots.robot_count))
+    return launch;
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {
       launch.contacts_on_chip = contacts_on_chip;

@@ -24,8 +24,8 @@ struct LaunchConfiguration {
   std::size_t shared_bytes = 0;
 };
 
-// The configuration that keeps most robots in flight on the present device.
-LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& batch,
-                                                bool same_materials);
+// The configuration that keeps most robots in flight on the present device, beside the rest of `batch_size` robots.
+LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
+                                                bool same_materials, std::size_t batch_size);
 
 }  // namespace mercury::cuda

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owners of device memory and events, and the check of every CUDA call.
+// Owners of device memory and of host memory that the device reads and writes.
+//
+// Simulations come and go, several at once (mercury/evaluator.h). cudaMalloc and cudaFree would make each of them wait
+// for all others, and pinned memory takes 0.4 ms per MiB to make. So both kinds are kept for reuse: device memory in
+// CUDA's own pool, pinned memory in ours.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -9,52 +13,26 @@
 #include <string>
 #include <utility>
 
-#include "mercury/error.h"
+#include "sim/cuda/stream.h"
 
 namespace mercury::cuda {
 
-// Throws DeviceError if a call failed. `what` says what the call was for.
-inline void check(cudaError_t error, const char* what) {
-  if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
-}
+// Bytes of zeros on the present device, ready for use by all streams. Throws DeviceError if there is no room.
+void* allocate_on_device(std::size_t bytes);
+// No stream may still use them. The device that holds them must be the present one.
+void free_on_device(void* data) noexcept;
 
-// A moment in the stream of work of the device.
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_), "creating an event"); }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-
-  void record() { check(cudaEventRecord(event_), "recording an event"); }
-  // The time from `start` to this event [s]. Waits for this event.
-  double seconds_since(const Event& start) const {
-    float milliseconds = 0;
-    check(cudaEventSynchronize(event_), "stepping");
-    check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "reading events");
-    return static_cast<double>(milliseconds) * 1e-3;
-  }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
+// What can be allocated on the present device [bytes].
+std::size_t free_device_memory();
 
 // An array in device memory.
 template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  explicit DeviceArray(std::size_t size) : size_(size) {
-    if (size == 0) return;
-    const cudaError_t error = cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T));
-    if (error == cudaErrorMemoryAllocation) {
-      (void)cudaGetLastError();
-      throw DeviceError("the GPU has not enough memory left for " + std::to_string(size * sizeof(T) >> 20) +
-                        " MiB: give it fewer or smaller robots");
-    }
-    check(error, "allocating device memory");
-  }
-  ~DeviceArray() { cudaFree(data_); }
+  explicit DeviceArray(std::size_t size)
+      : data_(size > 0 ? static_cast<T*>(allocate_on_device(size * sizeof(T))) : nullptr), size_(size) {}
+  ~DeviceArray() { free_on_device(data_); }
   DeviceArray(DeviceArray&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
   DeviceArray& operator=(DeviceArray&& other) noexcept {
@@ -66,54 +44,65 @@ class DeviceArray {
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
 
-  void write(std::size_t first, std::span<const T> values) {
-    if (!values.empty())
-      check(cudaMemcpy(data_ + first, values.data(), values.size_bytes(), cudaMemcpyHostToDevice),
-            "writing to the device");
+  // Both return when the stream has done it.
+  void write(std::size_t first, std::span<const T> values, cudaStream_t stream) {
+    copy(data_ + first, values.data(), values.size_bytes(), stream, "writing to the device");
   }
-  void read(std::size_t first, std::span<T> values) const {
-    if (!values.empty())
-      check(cudaMemcpy(values.data(), data_ + first, values.size_bytes(), cudaMemcpyDeviceToHost),
-            "reading from the device");
-  }
-  void clear() {
-    if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "clearing device memory");
+  void read(std::size_t first, std::span<T> values, cudaStream_t stream) const {
+    copy(values.data(), data_ + first, values.size_bytes(), stream, "reading from the device");
   }
 
  private:
+  static void copy(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what) {
+    if (bytes == 0) return;
+    check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), what);
+    check(cudaStreamSynchronize(stream), what);
+  }
+
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };
 
-// An array in host memory that kernels write to directly. It returns a few numbers per robot without a copy.
+// Bytes of pinned host memory: copies from and to it run beside other work, and kernels can write to it. What it holds
+// at first is unspecified.
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  explicit PinnedBuffer(std::size_t bytes);
+  ~PinnedBuffer();
+  PinnedBuffer(PinnedBuffer&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+  PinnedBuffer& operator=(PinnedBuffer&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+
+  std::byte* data() const { return data_; }
+  std::size_t bytes() const { return bytes_; }  // at least as many as requested
+
+ private:
+  std::byte* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+// An array in pinned host memory. It returns a few numbers per robot without a copy.
 template <class T>
 class MappedArray {
  public:
   MappedArray() = default;
-  explicit MappedArray(std::size_t size) : size_(size) {
-    if (size > 0)
-      check(cudaHostAlloc(reinterpret_cast<void**>(&data_), size * sizeof(T), cudaHostAllocMapped),
-            "allocating mapped memory");
-  }
-  ~MappedArray() { cudaFreeHost(data_); }
-  MappedArray(MappedArray&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-  MappedArray& operator=(MappedArray&& other) noexcept {
-    std::swap(data_, other.data_);
-    std::swap(size_, other.size_);
-    return *this;
-  }
+  explicit MappedArray(std::size_t size) : buffer_(size * sizeof(T)), size_(size) {}
 
   T* on_device() const {
     void* pointer = nullptr;
-    check(cudaHostGetDevicePointer(&pointer, data_, 0), "mapping memory");
+    check(cudaHostGetDevicePointer(&pointer, buffer_.data(), 0), "mapping memory");
     return static_cast<T*>(pointer);
   }
-  const T& operator[](std::size_t i) const { return data_[i]; }
+  const T& operator[](std::size_t i) const { return reinterpret_cast<const T*>(buffer_.data())[i]; }
   std::size_t size() const { return size_; }
 
  private:
-  T* data_ = nullptr;
+  PinnedBuffer buffer_;
   std::size_t size_ = 0;
 };
 

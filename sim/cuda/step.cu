@@ -3,9 +3,9 @@
 
 #include "sim/cuda/device_limits.h"
 #include "sim/cuda/material_table.cuh"
-#include "sim/cuda/memory.h"
 #include "sim/cuda/report.cuh"
 #include "sim/cuda/step.cuh"
+#include "sim/cuda/stream.h"
 
 namespace mercury::cuda {
 namespace {
@@ -73,9 +73,10 @@ auto kernel_for(const LaunchConfiguration& launch) {
                                   : kernel_for<solver, EnvironmentModel, 2>(launch);
 }
 
+// Any thread may start this kernel with less shared memory, so it is allowed the most.
 template <class Kernel>
-void prepare(Kernel kernel, const LaunchConfiguration& launch) {
-  const auto bytes = static_cast<int>(launch.shared_bytes);
+void prepare(Kernel kernel) {
+  const auto bytes = static_cast<int>(device_limits().shared_per_block);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, cudaSharedmemCarveoutMaxShared),
         "preferring shared memory");
@@ -85,7 +86,7 @@ template <Solver solver, class EnvironmentModel>
 void start(const EnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream) {
   const LaunchConfiguration& launch = arguments.launch;
   const auto kernel = kernel_for<solver, EnvironmentModel>(launch);
-  prepare(kernel, launch);
+  prepare(kernel);
   const std::uint32_t blocks = (arguments.batch.robot_count + launch.robots_per_block - 1) / launch.robots_per_block;
   const std::uint32_t threads = launch.robots_per_block * launch.warps_per_robot * lanes;
   kernel<<<blocks, threads, launch.shared_bytes, stream>>>(arguments, model);
@@ -100,7 +101,7 @@ std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, 
         using EnvironmentModel = std::decay_t<decltype(kind)>;
         const auto kernel = solver == Solver::force ? kernel_for<Solver::force, EnvironmentModel>(launch)
                                                     : kernel_for<Solver::xpbd, EnvironmentModel>(launch);
-        prepare(kernel, launch);
+        prepare(kernel);
         int blocks = 0;
         const auto threads = static_cast<int>(launch.robots_per_block * launch.warps_per_robot * lanes);
         check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, launch.shared_bytes),

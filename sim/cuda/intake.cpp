@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/intake.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "sim/cuda/block_layout.h"
+
+namespace mercury::cuda {
+namespace {
+
+constexpr std::size_t portion_bytes = std::size_t{16} << 20, max_portion = 4096;
+
+// The largest number of tiles in the class of robots with this many: classes of 1, 2, ... 8, 10, ... 16, 20, ... tiles.
+std::uint32_t class_limit(std::uint32_t tiles) {
+  const std::uint32_t width = std::max(1u, std::bit_ceil(tiles) / 8);
+  return (tiles + width - 1) / width * width;
+}
+
+struct NewRobot {
+  const Robot* robot = nullptr;
+  RobotMeasures measures;
+  std::vector<float> lengths;  // as from lengths_of()
+  Place place{};
+  std::uint32_t first_of_topology = 0;
+};
+
+class Intake {
+ public:
+  Intake(SizeClasses& classes, std::span<const Robot* const> robots)
+      : classes_(classes), new_robots_(robots.size()), arrangements_(robots.size()), users_(robots.size()),
+        order_(robots.size()) {
+    const std::vector<std::uint32_t> first = first_of_topology(robots);
+    oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+      new_robots_[i] = {robots[i], measure(*robots[i]), lengths_of(*robots[i]), {}, first[i]};
+    });
+    for (const std::uint32_t f : first) ++users_[f];
+    assign_places();
+  }
+
+  void upload(const Configuration& configuration) {
+    try {
+      for (std::size_t first = 0; first < order_.size();) {
+        const std::size_t last = end_of_portion(first);
+        upload_portion(std::span(order_).subspan(first, last - first));
+        first = last;
+      }
+      for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].publish(first_new_[c], configuration);
+    } catch (...) {
+      for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].truncate(first_new_[c]);
+      throw;
+    }
+  }
+
+  std::vector<Place> places() const {
+    std::vector<Place> places;
+    places.reserve(new_robots_.size());
+    for (const NewRobot& entry : new_robots_) places.push_back(entry.place);
+    return places;
+  }
+
+ private:
+  // Sorts the new robots by class, then by descending springs, and gives them the next places of their classes.
+  void assign_places() {
+    for (NewRobot& entry : new_robots_)
+      entry.place.size_class =
+          classes_.class_for(tiles_for(entry.robot->masses.size()), entry.lengths.size() <= max_lengths ? 1 : 2);
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::ranges::stable_sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+      const NewRobot &one = new_robots_[a], &other = new_robots_[b];
+      return std::pair(one.place.size_class, other.robot->springs.size()) <
+             std::pair(other.place.size_class, one.robot->springs.size());
+    });
+    std::vector<std::uint32_t> counts(classes_.size());
+    for (const NewRobot& entry : new_robots_) ++counts[entry.place.size_class];
+    std::vector<std::uint32_t> next;
+    for (std::size_t c = 0; c < classes_.size(); ++c) next.push_back(classes_[c].append(counts[c]));
+    first_new_ = next;
+    for (const std::uint32_t i : order_) new_robots_[i].place.number = next[new_robots_[i].place.size_class]++;
+  }
+
+  // About as many robots as fit into a portion.
+  std::size_t end_of_portion(std::size_t first) const {
+    std::size_t bytes = 0, last = first;
+    while (last < order_.size() && last - first < max_portion && (last == first || bytes < portion_bytes)) {
+      const Robot& robot = *new_robots_[order_[last++]].robot;
+      bytes += 40 * robot.masses.size() + 6 * robot.springs.size() + 4 * robot.faces.size();
+    }
+    return last;
+  }
+
+  void upload_portion(std::span<const std::uint32_t> portion) {
+    arrange_topologies(portion);
+    for (std::size_t first = 0; first < portion.size();) {
+      const std::uint32_t size_class = new_robots_[portion[first]].place.size_class;
+      std::size_t last = first;
+      while (last < portion.size() && new_robots_[portion[last]].place.size_class == size_class) ++last;
+      upload_run(classes_[size_class], portion.subspan(first, last - first));
+      first = last;
+    }
+    for (const std::uint32_t i : portion) {
+      const std::uint32_t first = new_robots_[i].first_of_topology;
+      if (--users_[first] == 0) arrangements_[first].reset();
+    }
+  }
+
+  void arrange_topologies(std::span<const std::uint32_t> portion) {
+    std::vector<std::uint32_t> wanted;
+    for (const std::uint32_t i : portion)
+      if (!arrangements_[new_robots_[i].first_of_topology]) wanted.push_back(new_robots_[i].first_of_topology);
+    std::ranges::sort(wanted);
+    wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+    oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t k) {
+      arrangements_[wanted[k]] = std::make_unique<const Arrangement>(arrange(*new_robots_[wanted[k]].robot));
+    });
+  }
+
+  // Robots in consecutive places of a class.
+  void upload_run(SizeClass& to, std::span<const std::uint32_t> run) {
+    ChunkSizes sizes;
+    for (const std::uint32_t i : run) {
+      const Arrangement& arrangement = arrangement_of(i);
+      sizes.tiles = std::max(sizes.tiles, arrangement.schedule.tiles());
+      sizes.rows = std::max(sizes.rows, arrangement.schedule.rows());
+      sizes.face_pairs = std::max(sizes.face_pairs, static_cast<std::uint32_t>(arrangement.faces.size()));
+    }
+    to.make_room(sizes);
+    const PinnedBuffer memory(run.size() * to.sizes().bytes());
+    Chunks chunks(to.sizes(), run.size(), memory.data());
+    oneapi::tbb::parallel_for(std::size_t{0}, run.size(), [&](std::size_t k) {
+      const NewRobot& entry = new_robots_[run[k]];
+      const Arrangement& arrangement = arrangement_of(run[k]);
+      to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
+      chunks.fill(k, *entry.robot, arrangement, entry.lengths);
+    });
+    to.write_chunks(new_robots_[run.front()].place.number, chunks, to.stream().get());
+    to.stream().synchronize();  // `memory` is free again
+  }
+
+  const Arrangement& arrangement_of(std::uint32_t i) const {
+    return *arrangements_[new_robots_[new robot].first_of_topology];
+  }
+
+  SizeClasses& classes_;
+  std::vector<NewRobot> new_robots_;
+  std::vector<std::unique_ptr<const Arrangement>> arrangements_;  // [new robot], at the first of each topology
+  std::vector<std::uint32_t> users_;                              // [new robot], of its arrangement, still to be uploaded
+  std::vector<std::uint32_t> order_;                              // new robots by class and place
+  std::vector<std::uint32_t> first_new_;                          // [class], the place of its first new robot
+};
+
+}  // namespace
+
+std::uint32_t SizeClasses::class_for(std::uint32_t tiles, std::uint32_t record_words) {
+  const auto [at, is_new] =
+      index_.try_emplace({class_limit(tiles), record_words}, static_cast<std::uint32_t>(classes_.size()));
+  if (is_new) classes_.push_back(std::make_unique<SizeClass>(record_words));
+  return at->second;
+}
+
+void SizeClasses::free_empty() {
+  for (auto& robots : classes_)
+    if (robots->size() == 0) robots = std::make_unique<SizeClass>(robots->sizes().record_words);
+}
+
+std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
+                              const Configuration& configuration) {
+  Intake intake(classes, robots);
+  intake.upload(configuration);
+  return intake.places();
+}
+
+}  // namespace mercury::cuda

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/memory.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <mutex>
+
+namespace mercury::cuda {
+namespace {
+
+// Pinned buffers of no one. It lives as long as the process: the driver may be gone before static objects are
+// destroyed.
+class PinnedPool {
+ public:
+  static PinnedPool& instance() {
+    static PinnedPool* const pool = new PinnedPool;
+    return *pool;
+  }
+
+  std::byte* take(std::size_t bytes) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto found = free_.find(bytes); found != free_.end()) {
+        std::byte* const data = found->second;
+        free_.erase(found);
+        kept_ -= bytes;
+        return data;
+      }
+    }
+    void* data = nullptr;
+    check(cudaHostAlloc(&data, bytes, cudaHostAllocMapped | cudaHostAllocPortable), "allocating pinned memory");
+    return static_cast<std::byte*>(data);
+  }
+
+  void give_back(std::byte* data, std::size_t bytes) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (kept_ + bytes <= most_kept) {
+        free_.emplace(bytes, data);
+        kept_ += bytes;
+        return;
+      }
+    }
+    cudaFreeHost(data);
+  }
+
+ private:
+  static constexpr std::size_t most_kept = std::size_t{1} << 30;
+
+  std::mutex mutex_;
+  std::multimap<std::size_t, std::byte*> free_;
+  std::size_t kept_ = 0;
+};
+
+// Lets the pool keep what is freed, up to half of the device's memory.
+void let_pool_keep_memory(cudaMemPool_t pool) {
+  std::size_t free = 0, total = 0;
+  check(cudaMemGetInfo(&free, &total), "querying the device's memory");
+  std::uint64_t threshold = total / 2;
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &threshold), "setting up device memory");
+}
+
+cudaMemPool_t present_pool() {
+  int device = 0;
+  cudaMemPool_t pool = nullptr;
+  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "setting up device memory");
+  static std::mutex mutex;
+  static std::map<int, bool> set_up;
+  const std::lock_guard lock(mutex);
+  if (!std::exchange(set_up[device], true)) let_pool_keep_memory(pool);
+  return pool;
+}
+
+}  // namespace
+
+void* allocate_on_device(std::size_t bytes) {
+  const cudaMemPool_t pool = present_pool();
+  void* data = nullptr;
+  cudaError_t error = cudaMallocAsync(&data, bytes, cudaStreamPerThread);
+  if (error == cudaErrorMemoryAllocation) {
+    (void)cudaGetLastError();
+    check(cudaDeviceSynchronize(), "freeing device memory");
+    check(cudaMemPoolTrimTo(pool, 0), "freeing device memory");
+    error = cudaMallocAsync(&data, bytes, cudaStreamPerThread);
+  }
+  if (error == cudaErrorMemoryAllocation) {
+    (void)cudaGetLastError();
+    throw DeviceError("the GPU has not enough memory left for " + std::to_string(bytes >> 20) +
+                      " MiB: give it fewer or smaller robots");
+  }
+  check(error, "allocating device memory");
+  check(cudaMemsetAsync(data, 0, bytes, cudaStreamPerThread), "clearing device memory");
+  check(cudaStreamSynchronize(cudaStreamPerThread), "allocating device memory");
+  return data;
+}
+
+void free_on_device(void* data) noexcept {
+  if (data) cudaFreeAsync(data, cudaStreamPerThread);
+}
+
+std::size_t free_device_memory() {
+  std::size_t free = 0, total = 0;
+  check(cudaMemGetInfo(&free, &total), "querying the device's memory");
+  std::uint64_t reserved = 0, used = 0;  // of the pool
+  const cudaMemPool_t pool = present_pool();
+  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &reserved), "querying the device's memory");
+  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used), "querying the device's memory");
+  return free + (reserved - used);
+}
+
+PinnedBuffer::PinnedBuffer(std::size_t bytes) {
+  if (bytes == 0) return;
+  constexpr std::size_t smallest = std::size_t{1} << 16;
+  const std::size_t rounded = std::bit_ceil(std::max(bytes, smallest));
+  data_ = PinnedPool::instance().take(rounded);
+  bytes_ = rounded;
+}
+
+PinnedBuffer::~PinnedBuffer() {
+  if (data_) PinnedPool::instance().give_back(data_, bytes_);
+}
+
+}  // namespace mercury::cuda

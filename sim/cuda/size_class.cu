@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/size_class.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "sim/cuda/block_layout.h"
+
+namespace mercury::cuda {
+namespace {
+
+constexpr unsigned threads = 256;
+
+// Rewrites the partners of records for tiles of another number of fields.
+__global__ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
+                                   std::uint32_t old_fields, std::uint32_t new_fields) {
+  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
+       i += std::size_t{gridDim.x} * blockDim.x) {
+    std::uint32_t& key = records[i * record_words];
+    const std::uint32_t slot = slot_at_offset(key >> 16, old_fields);
+    key = offset_of_slot(slot, new_fields) << 16 | (key & 0xffff);
+  }
+}
+
+__global__ void compute_phases(const Material* materials, MusclePhase* phases, std::size_t count, Clock clock) {
+  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
+  if (i < count) phases[i] = muscle_phase(materials[i], clock);
+}
+
+// One block per robot.
+__global__ void gather_vectors(const float* state, const RobotHeader* headers, const std::uint64_t* first_masses,
+                               std::uint32_t tile_stride, std::uint32_t first_field, float* out) {
+  const std::uint32_t place = blockIdx.x;
+  const SlotOrder order = slot_order(headers[place]);
+  const std::uint64_t first = first_masses[place], masses = headers[place].masses;
+  const float* chunk = state + std::size_t{place} * tile_stride * state_fields * lanes + first_field * lanes;
+  for (std::uint64_t k = threadIdx.x; k < 3 * masses; k += blockDim.x) {
+    const auto axis = static_cast<std::uint32_t>(k % 3), slot = order.slot_of(static_cast<std::uint32_t>(k / 3));
+    out[3 * first + k] = chunk[offset_of_slot(slot, state_fields) + axis * lanes];
+  }
+}
+
+// One block per move.
+__global__ void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
+  const uint2 move = moves[blockIdx.x];
+  const std::uint32_t* from = words + move.x * words_per_chunk;
+  std::uint32_t* to = words + move.y * words_per_chunk;
+  for (std::size_t i = threadIdx.x; i < words_per_chunk; i += blockDim.x) to[i] = from[i];
+}
+
+unsigned blocks_for(std::size_t count) {
+  return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536));
+}
+
+std::size_t grown(std::size_t needed, std::size_t present) {
+  return needed <= present ? present : std::max(needed, present + present / 2);
+}
+
+// The robots that leave gaps are replaced by the last ones: (from, to).
+std::vector<uint2> moves_into_gaps(const std::vector<bool>& keep) {
+  const auto kept = static_cast<std::uint32_t>(std::ranges::count(keep, true));
+  std::vector<uint2> moves;
+  std::uint32_t gap = 0;
+  for (std::uint32_t place = kept; place < keep.size(); ++place) {
+    if (!keep[place]) continue;
+    while (keep[gap]) ++gap;
+    moves.push_back({place, gap++});
+  }
+  return moves;
+}
+
+}  // namespace
+
+// Visits the arrays that have a chunk per place, each with the length of that chunk.
+template <class Visit>
+void SizeClass::for_each_array(const Visit& visit) {
+  visit(device_headers_, 1);
+  visit(statuses_, 1);
+  visit(first_masses_, 1);
+  visit(device_materials_, max_materials);
+  visit(phases_, max_materials);
+  visit(state_, sizes_.state());
+  visit(valences_, sizes_.slots());
+  visit(incoming_counts_, sizes_.slots());
+  visit(lengths_, sizes_.lengths());
+  visit(row_start_, sizes_.row_starts());
+  visit(springs_, sizes_.springs());
+  visit(face_pairs_, sizes_.face_pairs);
+}
+
+std::uint32_t SizeClass::append(std::size_t count) {
+  const std::uint32_t first = size();
+  headers_.resize(first + count);
+  measures_.resize(first + count);
+  materials_.resize((first + count) * max_materials);
+  return first;
+}
+
+void SizeClass::make_room(const ChunkSizes& sizes) {
+  const auto fits = [](std::uint32_t needed, std::uint32_t present) { return needed <= present; };
+  if (size() <= capacity_ && fits(sizes.tiles, sizes_.tiles) && fits(sizes.rows, sizes_.rows) &&
+      fits(sizes.face_pairs, sizes_.face_pairs))
+    return;
+  const ChunkSizes old_sizes = sizes_;
+  const std::size_t old_capacity = capacity_, used = std::min<std::size_t>(capacity_, size());
+  const auto reshape = [&] {
+    for_each_array([&](auto& array, std::size_t stride) { array.reshape(capacity_, stride, used, stream_->get()); });
+  };
+  // Some room to spare, for robots that need a little more than those before.
+  const auto enlarge = [](std::uint32_t needed, std::uint32_t& present) {
+    if (needed > present) present = present == 0 ? needed : needed + needed / 16;
+  };
+  sizes_.tiles = std::max(sizes.tiles, sizes_.tiles);
+  enlarge(sizes.rows, sizes_.rows);
+  enlarge(sizes.face_pairs, sizes_.face_pairs);
+  capacity_ = grown(size(), capacity_);
+  try {
+    reshape();
+  } catch (const DeviceError&) {
+    sizes_ = old_sizes;
+    capacity_ = old_capacity;
+    reshape();
+    throw;
+  }
+}
+
+void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
+                          const Arrangement& arrangement) {
+  measures_[place] = measures;
+  headers_[place] = {.masses = static_cast<std::uint32_t>(robot.masses.size()),
+                     .tiles = arrangement.schedule.tiles(),
+                     .face_pairs = static_cast<std::uint32_t>(arrangement.faces.size()),
+                     .springs = static_cast<std::uint32_t>(robot.springs.size()),
+                     .lane_shift = arrangement.order.shift,
+                     .force_scale = 1,  // publish() sets the scales
+                     .correction_scale = 1,
+                     .squared_stretch_limit = measures.squared_stretch_limit(),
+                     .contact_distance = measures.contact_distance()};
+  const auto to = table(place);
+  const auto rest = std::ranges::copy(materials_of(robot), to.begin()).out;
+  std::fill(rest, to.end(), Material{});
+}
+
+void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks, cudaStream_t stream) {
+  const auto copy = [&]<class T>(const ChunkedArray<T>& to, std::span<const T> values) {
+    if (values.empty()) return;
+    check(cudaMemcpyAsync(to.chunk(first_place), values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream),
+          "uploading robots");
+  };
+  copy(state_, std::span<const float>(chunks.state));
+  copy(valences_, std::span<const float>(chunks.valences));
+  copy(lengths_, std::span<const float>(chunks.lengths));
+  copy(springs_, std::span<const std::uint32_t>(chunks.springs));
+  copy(row_start_, std::span<const std::uint32_t>(chunks.row_start));
+  copy(incoming_counts_, std::span<const std::uint32_t>(chunks.incoming_counts));
+  copy(face_pairs_, std::span<const FacePair>(chunks.face_pairs));
+}
+
+void SizeClass::publish(std::uint32_t first_place, const Configuration& configuration) {
+  const std::size_t count = size() - first_place;
+  if (count == 0) return;
+  same_materials_ = first_place == 0 || same_materials_;
+  for (std::uint32_t place = first_place; same_materials_ && place < size(); ++place)
+    same_materials_ = has_first_table(place);
+  oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
+  const cudaStream_t stream = stream_->get();
+  device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
+  statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
+  device_materials_.write(first_place, std::span(materials_).subspan(std::size_t{first_place} * max_materials), stream);
+  phases_stale_ = true;
+  address_partners(first_place, 0, partner_fields_);
+}
+
+void SizeClass::truncate(std::uint32_t first_place) {
+  headers_.resize(first_place);
+  measures_.resize(first_place);
+  materials_.resize(std::size_t{first_place} * max_materials);
+}
+
+std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
+  std::vector<std::uint32_t> new_place(keep.size());
+  for (std::uint32_t place = 0; place < keep.size(); ++place) new_place[place] = place;
+  const std::vector<uint2> moves = moves_into_gaps(keep);
+  for (const uint2 move : moves) {
+    new_place[move.x] = move.y;
+    headers_[move.y] = headers_[move.x];
+    measures_[move.y] = measures_[move.x];
+    std::ranges::copy(table(move.x), table(move.y).begin());
+  }
+  truncate(static_cast<std::uint32_t>(std::ranges::count(keep, true)));
+  if (moves.empty()) return new_place;
+  DeviceArray<uint2> device_moves(moves.size());
+  device_moves.write(0, moves, stream_->get());
+  for_each_array([&]<class T>(const ChunkedArray<T>& array, std::size_t stride) {
+    if (stride == 0) return;
+    move_chunks<<<static_cast<unsigned>(moves.size()), threads, 0, stream_->get()>>>(
+        reinterpret_cast<std::uint32_t*>(array.data()), stride * sizeof(T) / 4, device_moves.data());
+    check(cudaGetLastError(), "moving robots");
+  });
+  stream_->synchronize();
+  return new_place;
+}
+
+void SizeClass::set_first_masses(std::span<const std::uint64_t> first_masses) {
+  first_masses_.write(0, first_masses, stream_->get());
+}
+
+void SizeClass::configure(const Configuration& configuration) {
+  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
+  device_headers_.write(0, headers_, stream_->get());
+}
+
+void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
+  launch_ =
+      choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials_, batch_size);
+  const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
+  const std::uint32_t old_fields = std::exchange(partner_fields_, launch_.on_chip ? fields : 0);
+  address_partners(0, old_fields, partner_fields_);
+  std::size_t workspace = 0;
+  if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
+  if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
+  reserve_workspace(workspace);
+}
+
+void SizeClass::update_scales(std::uint32_t place, const Configuration& configuration) {
+  const FixedPointScale scale = fixed_point_scale(measures_[place], table(place), configuration);
+  headers_[place].force_scale = scale.force;
+  headers_[place].correction_scale = scale.correction;
+}
+
+bool SizeClass::has_first_table(std::uint32_t place) { return std::ranges::equal(table(place), table(0)); }
+
+void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
+  const std::size_t count = (size() - first_place) * sizes_.springs() / sizes_.record_words;
+  if (old_fields == new_fields || count == 0) return;
+  readdress_partners<<<blocks_for(count), threads, 0, stream_->get()>>>(springs_.chunk(first_place), count,
+                                                                        sizes_.record_words, old_fields, new_fields);
+  check(cudaGetLastError(), "addressing the partners of springs");
+}
+
+void SizeClass::reserve_workspace(std::size_t bytes_per_robot) {
+  const std::size_t bytes = bytes_per_robot * size();
+  if (bytes_per_robot == workspace_stride_ && bytes <= workspace_.size()) return;
+  workspace_ = DeviceArray<char>();  // frees the old one first
+  workspace_ = DeviceArray<char>(bytes_per_robot * capacity_);
+  workspace_stride_ = bytes_per_robot;
+}
+
+void SizeClass::publish_materials(std::uint32_t place, const Configuration& configuration) {
+  update_scales(place, configuration);
+  device_headers_.write(place, std::span(headers_).subspan(place, 1), stream_->get());
+  device_materials_.write(place, table(place), stream_->get());
+  same_materials_ = true;
+  for (std::uint32_t other = 0; same_materials_ && other < size(); ++other) same_materials_ = has_first_table(other);
+  phases_stale_ = true;
+}
+
+void SizeClass::publish_all_materials(const Configuration& configuration) {
+  configure(configuration);
+  device_materials_.write(0, materials_, stream_->get());
+  same_materials_ = true;
+  for (std::uint32_t place = 0; same_materials_ && place < size(); ++place) same_materials_ = has_first_table(place);
+  phases_stale_ = true;
+}
+
+void SizeClass::update_phases(const Clock& clock) {
+  const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
+  if (size() == 0 || (!phases_stale_ && same_base)) return;
+  const std::size_t count = std::size_t{size()} * max_materials;
+  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream_->get()>>>(
+      device_materials_.data(), phases_.data(), count, clock);
+  check(cudaGetLastError(), "computing muscle phases");
+  phase_clock_ = clock;
+  phases_stale_ = false;
+}
+
+void SizeClass::set_perturbations(std::span<const DevicePerturbation> perturbations) {
+  if (perturbations.size() > perturbations_.size())
+    perturbations_ = DeviceArray<DevicePerturbation>(perturbations.size());
+  perturbations_.write(0, perturbations, stream_->get());
+  perturbation_count_ = perturbations.size();
+}
+
+BatchView SizeClass::view() const {
+  return {.robots = device_headers_.data(),
+          .statuses = statuses_.data(),
+          .state = state_.data(),
+          .springs = springs_.data(),
+          .lengths = lengths_.data(),
+          .row_start = row_start_.data(),
+          .face_pairs = face_pairs_.data(),
+          .valences = valences_.data(),
+          .incoming_counts = incoming_counts_.data(),
+          .materials = device_materials_.data(),
+          .phases = phases_.data(),
+          .perturbations = perturbations_.data(),
+          .workspace = workspace_.data(),
+          .robot_count = size(),
+          .tile_stride = sizes_.tiles,
+          .row_stride = sizes_.rows,
+          .face_stride = sizes_.face_pairs,
+          .perturbation_count = static_cast<std::uint32_t>(perturbation_count_),
+          .workspace_stride = static_cast<std::uint32_t>(workspace_stride_),
+          .record_words = sizes_.record_words};
+}
+
+void SizeClass::read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const {
+  const SlotOrder order = order_of(place);
+  std::vector<float> state(sizes_.state());
+  state_.read(place, state, stream_->get());
+  for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(state, order.slot_of(i), field_x);
+  for (std::uint32_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(state, order.slot_of(i), field_v);
+}
+
+void SizeClass::write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+  const SlotOrder order = order_of(place);
+  std::vector<float> state(sizes_.state());
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    put_vector(state, order.slot_of(i), field_x, positions[i]);
+    put_vector(state, order.slot_of(i), field_v, velocities[i]);
+  }
+  state_.write(place, state, stream_->get());
+}
+
+DeviceStatus SizeClass::status(std::uint32_t place) const {
+  DeviceStatus status{};
+  statuses_.read(place, std::span(&status, 1), stream_->get());
+  return status;
+}
+std::vector<DeviceStatus> SizeClass::statuses() const {
+  std::vector<DeviceStatus> all(size());
+  statuses_.read(0, all, stream_->get());
+  return all;
+}
+void SizeClass::set_status(std::uint32_t place, DeviceStatus status) {
+  statuses_.write(place, std::span(&status, 1), stream_->get());
+}
+
+void SizeClass::gather(float* device_out, Field first_field, cudaStream_t stream) const {
+  gather_vectors<<<size(), threads, 0, stream>>>(state_.data(), device_headers_.data(), first_masses_.data(),
+                                                 sizes_.tiles, first_field, device_out);
+  check(cudaGetLastError(), "gathering masses");
+}
+
+}  // namespace mercury::cuda

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots of about the same size in device memory (layout.h), stepped by one launch.
+//
+// Chunks and blocks are cut for the largest robot (paper, II.D). If one size served the whole batch, small robots would
+// waste memory, and their blocks would wait with idle warps. So the batch is split into size classes:
+//
+//   class of 2 tiles   | place 0: robot 7 | place 1: robot 0 | place 2: robot 4 | room for more |
+//   class of 5 tiles   | place 0: robot 5 | place 1: robot 2 |
+//   class of 42 tiles  | place 0: robot 1 | place 1: robot 6 | place 2: robot 3 | place 3: robot 8 |
+//
+// 1. Each class has a launch configuration and a stream of its own. The launches of all classes run at the same time,
+//    the largest robots first, and small robots fill what these leave idle.
+// 2. A class stands its robots in places. New robots take the next places, in descending order of their springs, so
+//    that the robots of a block end their steps at about the same time. If robots go, the last ones move into the gaps.
+//    No robot is read back or uploaded twice.
+// 3. A trajectory does not depend on the class or the place of its robot (block_layout.h).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mercury/backend.h"
+#include "sim/cuda/chunked_array.h"
+#include "sim/cuda/chunks.h"
+#include "sim/cuda/launch_configuration.h"
+#include "sim/cuda/layout.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/measures.h"
+
+namespace mercury::cuda {
+
+class SizeClass {
+ public:
+  explicit SizeClass(std::uint32_t record_words) { sizes_.record_words = record_words; }
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(headers_.size()); }  // robots
+  const ChunkSizes& sizes() const { return sizes_; }
+  BatchView view() const;
+
+  // New robots take the next `count` places. Returns the first of them. Each is then to be filled: make room for all
+  // chunks, set_robot(), write_chunks(), and publish() for all at the end.
+  std::uint32_t append(std::size_t count);
+  // Makes room for the chunks of all places, of at least these sizes. Throws DeviceError if there is none.
+  void make_room(const ChunkSizes& sizes);
+  // Safe to call for several places at once.
+  void set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
+                 const Arrangement& arrangement);
+  // Queues the copies to the chunks of consecutive places.
+  void write_chunks(std::uint32_t first_place, const Chunks& chunks, cudaStream_t stream);
+  // Uploads what set_robot() took, from `first_place` on. The robots have not exploded.
+  void publish(std::uint32_t first_place, const Configuration& configuration);
+  // Gives up all places from `first_place` on.
+  void truncate(std::uint32_t first_place);
+  // Gives up the places for which `keep` is false. Returns the new place of each of the others, by its old one.
+  std::vector<std::uint32_t> compact(const std::vector<bool>& keep);
+  // For each place, the index of the robot's first mass among those of the batch.
+  void set_first_masses(std::span<const std::uint64_t> first_masses);
+
+  // Updates the scales of the fixed-point sums.
+  void configure(const Configuration& configuration);
+  // Chooses how to launch it beside the other classes; `batch_size` = robots of all classes.
+  void choose_launch(const Configuration& configuration, std::size_t batch_size);
+  const LaunchConfiguration& launch() const { return launch_; }
+
+  // The table of a place; publish_materials() or publish_all_materials() uploads it.
+  std::span<Material> table(std::uint32_t place) {
+    return std::span(materials_).subspan(std::size_t{place} * max_materials, max_materials);
+  }
+  void publish_materials(std::uint32_t place, const Configuration& configuration);
+  void publish_all_materials(const Configuration& configuration);
+  // Computes the phases for a clock whose base or dt changed.
+  void update_phases(const Clock& clock);
+  void set_perturbations(std::span<const DevicePerturbation> perturbations);
+
+  SlotOrder order_of(std::uint32_t place) const { return slot_order(headers_[place]); }
+  void read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const;
+  void write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities);
+  DeviceStatus status(std::uint32_t place) const;
+  std::vector<DeviceStatus> statuses() const;
+  void set_status(std::uint32_t place, DeviceStatus status);
+  // Writes three floats per mass to its robot's part of `device_out`. `first_field` = field_x or field_v.
+  void gather(float* device_out, Field first_field, cudaStream_t stream) const;
+
+  // Orders the launches of this class among those of other streams.
+  const Stream& stream() const { return *stream_; }
+  Event& done() const { return *done_; }
+
+ private:
+  void update_scales(std::uint32_t place, const Configuration& configuration);
+  bool has_first_table(std::uint32_t place);
+  // Rewrites the partners of the spring records from `first_place` on: offsets in working memory with this many fields
+  // per tile, or slots (0).
+  void address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
+  void reserve_workspace(std::size_t bytes_per_robot);
+  template <class Visit>
+  void for_each_array(const Visit& visit);
+
+  ChunkSizes sizes_;
+  std::size_t capacity_ = 0;
+  // [place]
+  std::vector<RobotHeader> headers_;
+  std::vector<RobotMeasures> measures_;
+  std::vector<Material> materials_;  // [place][max_materials]
+  LaunchConfiguration launch_;
+  std::uint32_t partner_fields_ = 0;  // by which the partners of all spring records are addressed; 0 = slots
+  std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
+  bool same_materials_ = false;  // all robots have the same table
+  bool phases_stale_ = true;
+  Clock phase_clock_;
+
+  ChunkedArray<RobotHeader> device_headers_;
+  ChunkedArray<DeviceStatus> statuses_;
+  ChunkedArray<float> state_, valences_, lengths_;
+  ChunkedArray<std::uint32_t> springs_{rows_at_once * lanes * 2}, row_start_, incoming_counts_;
+  ChunkedArray<FacePair> face_pairs_;
+  ChunkedArray<Material> device_materials_;
+  ChunkedArray<MusclePhase> phases_;
+  ChunkedArray<std::uint64_t> first_masses_;
+  DeviceArray<DevicePerturbation> perturbations_;
+  DeviceArray<char> workspace_;
+  std::unique_ptr<Stream> stream_ = std::make_unique<Stream>();
+  std::unique_ptr<Event> done_ = std::make_unique<Event>();
+};
+
+}  // namespace mercury::cuda

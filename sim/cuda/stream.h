@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams of work on a device, events in them, and the check of every CUDA call.
+//
+// Each backend has streams of its own that do not wait for the legacy default stream. So several simulations can use
+// one device at the same time from several threads.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <string>
+
+#include "mercury/error.h"
+
+namespace mercury::cuda {
+
+// Throws DeviceError if a call failed. `what` says what the call was for.
+inline void check(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+}
+
+// A moment in a stream.
+class Event {
+ public:
+  // A thread that waits for a `sleepy` event lets others use its core, but notices the event some 50 us later.
+  explicit Event(bool sleepy = false) {
+    check(cudaEventCreateWithFlags(&event_, sleepy ? cudaEventBlockingSync : cudaEventDefault), "creating an event");
+  }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "recording an event"); }
+  void synchronize() const { check(cudaEventSynchronize(event_), "stepping"); }
+  // The time from `start` to this event [s]. Waits for this event.
+  double seconds_since(const Event& start) const {
+    synchronize();
+    float milliseconds = 0;
+    check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "reading events");
+    return static_cast<double>(milliseconds) * 1e-3;
+  }
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+class Stream {
+ public:
+  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "creating a stream"); }
+  ~Stream() { cudaStreamDestroy(stream_); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+
+  cudaStream_t get() const { return stream_; }
+  void synchronize() const { check(cudaStreamSynchronize(stream_), "waiting for the device"); }
+  // What follows in this stream begins after the event.
+  void wait_for(const Event& event) const { check(cudaStreamWaitEvent(stream_, event.get(), 0), "ordering streams"); }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+}  // namespace mercury::cuda
