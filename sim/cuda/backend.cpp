@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "mercury/cuda_devices.h"
-#include "sim/cuda/intake.h"
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/device_limits.h"
+#include "sim/cuda/intake.h"
 #include "sim/cuda/step.h"
 
 namespace mercury {

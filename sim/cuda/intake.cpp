@@ -141,15 +141,15 @@ class Intake {
   }
 
   const Arrangement& arrangement_of(std::uint32_t i) const {
-    return *arrangements_[new_robots_[new robot].first_of_topology];
+    return *arrangements_[new_robots_[i].first_of_topology];
   }
 
   SizeClasses& classes_;
   std::vector<NewRobot> new_robots_;
   std::vector<std::unique_ptr<const Arrangement>> arrangements_;  // [new robot], at the first of each topology
-  std::vector<std::uint32_t> users_;                              // [new robot], of its arrangement, still to be uploaded
-  std::vector<std::uint32_t> order_;                              // new robots by class and place
-  std::vector<std::uint32_t> first_new_;                          // [class], the place of its first new robot
+  std::vector<std::uint32_t> users_;      // [new robot], of its arrangement, still to be uploaded
+  std::vector<std::uint32_t> order_;      // new robots by class and place
+  std::vector<std::uint32_t> first_new_;  // [class], the place of its first new robot
 };
 
 }  // namespace
