@@ -44,14 +44,22 @@ class Filtration {
   // Number of tetrahedra in the smallest alpha shape of which a body holds all points. Such a body only grows with
   // alpha, so a search that halves finds it. It is mostly near the first alpha shape that has all points in it.
   std::uint32_t count_for_all_points() {
-    std::size_t first = class_of(last_point()), last = classes_.size() - 1;
-    const auto search = [&] {
+    const auto [last_point, its_first] = last_to_come();
+    std::size_t first = class_of(its_first), last = classes_.size() - 1;
+    const std::uint32_t begin = begin_of(first);
+    UnionFind before;  // the bodies of the classes before `first`
+    before.parent.reserve(tetrahedra_.size());
+    const auto search = [&, last_point = last_point] {
       for (std::size_t stride = 1; first < last; stride *= 2) {
         const std::size_t probe = std::min(first + stride - 1, first + (last - first) / 2);
-        if (mercury::largest_body(tetrahedra_, neighbours_, classes_[probe].end).points == points_.size())
+        UnionFind bodies = before;
+        join(bodies, classes_[probe].end);
+        if (has_body_of_all(bodies, last_point, begin)) {
           last = probe;
-        else
+        } else {
           first = probe + 1;
+          before = std::move(bodies);
+        }
       }
     };
     search();
@@ -108,25 +116,29 @@ class Filtration {
 
   void sort() {
     struct Entry {
-      Bounds bounds;
+      double low;
       std::uint32_t index;
     };
+    std::vector<Bounds> bounds;
     std::vector<Entry> entries;
+    bounds.reserve(tetrahedra_.size());
     entries.reserve(tetrahedra_.size());
     for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i) {
-      const Tetrahedron& t = tetrahedra_[i];
-      Bounds bounds = squared_circumradius(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
-      if (!std::isfinite(bounds.high)) bounds = exact(i).bounds();
-      entries.push_back({bounds, i});
+      const auto& [a, b, c, d] = tetrahedra_[i];
+      Bounds squared = squared_circumradius(points_[a], points_[b], points_[c], points_[d]);
+      if (!std::isfinite(squared.high)) squared = exact(i).bounds();
+      bounds.push_back(squared);
+      entries.push_back({squared.low, i});
     }
-    std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.bounds.low, e.index); });
+    std::ranges::sort(entries, {}, &Entry::low);
     std::vector<std::uint32_t> order;
     order.reserve(entries.size());
     for (const Entry& e : entries) {
-      if (classes_.empty() || e.bounds.low > classes_.back().bounds.high)
-        classes_.push_back({.bounds = e.bounds});
+      const Bounds& next = bounds[e.index];
+      if (classes_.empty() || next.low > classes_.back().bounds.high)
+        classes_.push_back({.bounds = next});
       else
-        classes_.back().bounds.high = std::max(classes_.back().bounds.high, e.bounds.high);
+        classes_.back().bounds.high = std::max(classes_.back().bounds.high, next.high);
       order.push_back(e.index);
       classes_.back().end = static_cast<std::uint32_t>(order.size());
     }
@@ -181,16 +193,56 @@ class Filtration {
     return parts.size();
   }
 
-  // The points come in one after the other, each with its first tetrahedron: the tetrahedron of the last point.
-  std::uint32_t last_point() const {
+  // The points come in one after the other, each with its first tetrahedron: the last point, and a tetrahedron of the
+  // class that has its first one.
+  std::pair<std::uint32_t, std::uint32_t> last_to_come() const {
     std::vector<bool> seen(points_.size(), false);
-    std::uint32_t last = 0;
+    std::pair<std::uint32_t, std::uint32_t> last;
     for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i)
       for (const std::uint32_t point : tetrahedra_[i]) {
-        if (!seen[point]) last = i;
+        if (!seen[point]) last = {point, i};
         seen[point] = true;
       }
     return last;
+  }
+
+  // The bodies of the first tetrahedra, joined side to side.
+  struct UnionFind {
+    std::vector<std::uint32_t> parent;
+    std::uint32_t root(std::uint32_t i) {
+      while (parent[i] != i) i = parent[i] = parent[parent[i]];
+      return i;
+    }
+  };
+
+  void join(UnionFind& bodies, std::uint32_t end) const {
+    for (auto i = static_cast<std::uint32_t>(bodies.parent.size()); i < end; ++i) {
+      bodies.parent.push_back(i);
+      for (const std::uint32_t other : neighbours_[i]) {
+        if (other >= i) continue;
+        const auto [low, high] = std::minmax({bodies.root(other), bodies.root(i)});
+        bodies.parent[high] = low;
+      }
+    }
+  }
+
+  // A body of all points has the last point in it, so only the bodies around that point can be one. Its tetrahedra do
+  // not come before `begin`.
+  bool has_body_of_all(UnionFind& bodies, std::uint32_t last_point, std::uint32_t begin) const {
+    const auto count = static_cast<std::uint32_t>(bodies.parent.size());
+    std::vector<std::uint32_t> tried;
+    for (std::uint32_t i = begin; i < count; ++i) {
+      if (std::ranges::find(tetrahedra_[i], last_point) == tetrahedra_[i].end()) continue;
+      const std::uint32_t body = bodies.root(i);
+      if (std::ranges::find(tried, body) != tried.end()) continue;
+      tried.push_back(body);
+      std::vector<char> held(points_.size(), 0);
+      for (std::uint32_t k = 0; k < count; ++k)
+        if (bodies.root(k) == body)
+          for (const std::uint32_t point : tetrahedra_[k]) held[point] = 1;
+      if (std::ranges::find(held, 0) == held.end()) return true;
+    }
+    return false;
   }
 
   std::span<const Vec3> points_;

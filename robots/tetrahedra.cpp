@@ -77,15 +77,18 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra) {
   for_each([&](std::uint32_t low, std::uint32_t) { ++ends_of[low]; });
   std::exclusive_scan(ends_of.begin(), ends_of.end(), ends_of.begin(), 0u);
   for_each([&](std::uint32_t low, std::uint32_t high) { ends[ends_of[low]++] = high; });
-  std::vector<Edge> edges;
-  edges.reserve(2 * tetrahedra.size());
+  std::vector<Edge> edges(ends.size());
   std::vector<std::uint32_t> last_seen_by(points, no_neighbour);
+  std::size_t next = 0;
   for (std::uint32_t low = 0, i = 0; low < points; ++low) {
-    const auto first = static_cast<std::ptrdiff_t>(edges.size());
-    for (; i < ends_of[low]; ++i)
-      if (std::exchange(last_seen_by[ends[i]], low) != low) edges.emplace_back(low, ends[i]);
-    std::sort(edges.begin() + first, edges.end());
+    const std::size_t first = next;
+    for (; i < ends_of[low]; ++i) {
+      edges[next] = {low, ends[i]};
+      next += std::exchange(last_seen_by[ends[i]], low) != low ? 1 : 0;
+    }
+    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.begin() + static_cast<std::ptrdiff_t>(next));
   }
+  edges.resize(next);
   return edges;
 }
 
