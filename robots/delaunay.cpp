@@ -259,9 +259,10 @@ class Builder {
     }
   }
 
+  // Without a branch.
   static std::uint32_t index_of(std::uint32_t value, const std::array<std::uint32_t, 4>& in) {
-    return static_cast<std::uint32_t>(in[1] == value) + 2 * static_cast<std::uint32_t>(in[2] == value) +
-           3 * static_cast<std::uint32_t>(in[3] == value);
+    const std::uint32_t is_1 = in[1] == value, is_2 = in[2] == value, is_3 = in[3] == value;
+    return (is_1 | is_3) + 2 * (is_2 | is_3);
   }
 
   std::vector<ExactPoint> points_;

@@ -97,10 +97,13 @@ struct Activity {
 
 Activity activity_of(const Trunk& trunk) {
   constexpr std::size_t points = 256;
-  std::vector<float> sample(3 * points);
-  Random random(1);
-  for (float& x : sample) x = static_cast<float>(random.normal());
-  if (!trunk.layers.empty()) sample = evaluate(std::span(trunk.layers), sample);
+  static const std::vector<float> cloud = [] {
+    std::vector<float> normal(3 * points);
+    Random random(1);
+    for (float& x : normal) x = static_cast<float>(random.normal());
+    return normal;
+  }();
+  const std::vector<float> sample = trunk.layers.empty() ? cloud : evaluate(std::span(trunk.layers), cloud);
   const std::size_t width = sample.size() / points;
   Activity activity{std::vector<double>(width, 0.), 0};
   for (std::size_t i = 0; i < sample.size(); ++i) {

@@ -115,6 +115,10 @@ std::string to_origin(const NnGenome& genome) {
                     ",\"points\":" + std::to_string(genome.points) +
                     ",\"mirrored\":" + (genome.mirrored ? "true" : "false") + ",\"alpha\":";
   write(out, genome.alpha);
+  constexpr std::size_t usual_length = 13;  // of a number and its comma
+  std::size_t numbers = 0;
+  for (const Layer& layer : genome.network.layers) numbers += layer.weights.size() + layer.biases.size();
+  out.reserve(out.size() + 256 + usual_length * numbers);
   if (!genome.environment.empty()) out += ",\"environment\":" + json_text(genome.environment);
   out += ",\"sizes\":";
   write_list(out, sizes_of(genome.network), [&](int size) { out += std::to_string(size); });

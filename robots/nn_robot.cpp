@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string_view>
 #include <tuple>
 
 #include "mercury/error.h"
@@ -19,8 +20,8 @@ struct CloudPoint {
   std::uint64_t z_order = 0;
 };
 
-void require(bool holds, const char* where, const std::string& what) {
-  if (!holds) throw InputError(where, what);
+void require(bool holds, const char* where, std::string_view what) {
+  if (!holds) throw InputError(where, std::string(what));
 }
 
 // Standard normal points, point after point.
@@ -83,9 +84,10 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
   std::vector<CloudPoint> cloud(genome.points);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float* output = &outputs[i * network_outputs];
-    for (int k = 0; k < network_outputs; ++k)
-      require(std::isfinite(output[k]), "cloud",
-              k < 3 ? "the network gives places that are not finite" : "the network gives scores that are not finite");
+    const auto is_finite = [](float x) { return std::isfinite(x); };
+    require(std::all_of(output, output + 3, is_finite), "cloud", "the network gives places that are not finite");
+    require(std::all_of(output + 3, output + network_outputs, is_finite), "cloud",
+            "the network gives scores that are not finite");
     cloud[i].place = {output[0], output[1], output[2]};
     cloud[i].material = static_cast<MaterialId>(1 + most_probable({output + 3, base_material_count}));
   }
@@ -142,8 +144,8 @@ void validate(const NnGenome& genome) {
     for (const auto& values : {std::cref(layer.weights), std::cref(layer.biases)})
       require(std::all_of(values.get().begin(), values.get().end(), [](float x) { return std::isfinite(x); }),
               "network", "a weight is not a finite number");
-  require(genome.points >= min_cloud_points && genome.points <= max_masses, "points",
-          std::to_string(genome.points) + " is not accepted; give 64 to 65535");
+  if (genome.points < min_cloud_points || genome.points > max_masses)
+    throw InputError("points", std::to_string(genome.points) + " is not accepted; give 64 to 65535");
   require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha",
           "give a radius > 0 m, or 0 for the smallest that holds all points");
 }
@@ -158,6 +160,9 @@ Robot grow(const NnGenome& genome, const std::string& name) {
 
   Robot robot;
   robot.name = name;
+  robot.masses.reserve(cloud.size());
+  robot.springs.reserve(springs.size());
+  robot.faces.reserve(skin.size());
   std::vector<std::uint16_t> mass_of(cloud.size(), 0);
   std::vector<bool> used(cloud.size(), false);
   for (const Tetrahedron& t : tetrahedra)
