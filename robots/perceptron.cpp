@@ -19,7 +19,11 @@ namespace mercury {
 namespace {
 
 constexpr std::size_t lanes = 16, group = 64;  // outputs side by side; points that go through the layers together
-using Lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;  // the compiler splits it where registers are shorter
+
+template <std::size_t floats>
+struct Register {
+  using Type [[gnu::vector_size(floats * sizeof(float))]] = float;
+};
 
 std::size_t rounded_up(std::size_t n) { return (n + lanes - 1) / lanes * lanes; }
 
@@ -46,35 +50,45 @@ struct GroupProduct {
   float* outputs;
 };
 
-// `points` points are summed side by side.
-template <std::size_t points>
+template <class Vector>
+[[gnu::always_inline]] inline void load(Vector& vector, const float* from) {
+  std::memcpy(&vector, from, sizeof vector);
+}
+
+// `points` points are summed side by side, in registers of so many floats.
+template <std::size_t floats, std::size_t points>
 [[gnu::always_inline]] inline void multiply(const GroupProduct& p) {
+  using Vector = typename Register<floats>::Type;
+  constexpr std::size_t registers = lanes / floats;
   const std::size_t width = p.layer.outputs, count = p.layer.inputs;
   for (std::size_t first = 0; first < group; first += points)
     for (std::size_t j = 0; j < width; j += lanes) {
-      Lanes sums[points], weights;
-      for (Lanes& sum : sums) std::memcpy(&sum, &p.layer.biases[j], sizeof sum);
+      Vector sums[points][registers], weights;
+      for (std::size_t i = 0; i < points; ++i)
+        for (std::size_t r = 0; r < registers; ++r) load(sums[i][r], &p.layer.biases[j + r * floats]);
       const float* input = p.inputs + first * p.stride;
       const float* row = p.layer.weights.data() + j;
-      for (std::size_t k = 0; k < count; ++k, row += width) {
-        std::memcpy(&weights, row, sizeof weights);
-        for (std::size_t i = 0; i < points; ++i) sums[i] += input[i * p.stride + k] * weights;
-      }
-      for (std::size_t i = 0; i < points; ++i) {
-        // A value that is not a number stays one, so that it is found in the result.
-        const Lanes output = p.layer.has_relu ? (sums[i] < 0 ? Lanes{} : sums[i]) : sums[i];
-        std::memcpy(p.outputs + (first + i) * width + j, &output, sizeof output);
-      }
+      for (std::size_t k = 0; k < count; ++k, row += width)
+        for (std::size_t r = 0; r < registers; ++r) {
+          load(weights, row + r * floats);
+          for (std::size_t i = 0; i < points; ++i) sums[i][r] += input[i * p.stride + k] * weights;
+        }
+      for (std::size_t i = 0; i < points; ++i)
+        for (std::size_t r = 0; r < registers; ++r) {
+          // A value that is not a number stays one, so that it is found in the result.
+          const Vector output = p.layer.has_relu ? (sums[i][r] < 0 ? Vector{} : sums[i][r]) : sums[i][r];
+          std::memcpy(p.outputs + (first + i) * width + j + r * floats, &output, sizeof output);
+        }
     }
 }
 
 using Multiply = void (*)(const GroupProduct&);
 
 // As many points as fill eight registers.
-void multiply_with_any(const GroupProduct& product) { multiply<2>(product); }
+void multiply_with_any(const GroupProduct& product) { multiply<4, 2>(product); }
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void multiply_with_avx2(const GroupProduct& product) { multiply<4>(product); }
-[[gnu::target("avx512f")]] void multiply_with_avx512(const GroupProduct& product) { multiply<8>(product); }
+[[gnu::target("avx2")]] void multiply_with_avx2(const GroupProduct& product) { multiply<8, 4>(product); }
+[[gnu::target("avx512f")]] void multiply_with_avx512(const GroupProduct& product) { multiply<16, 8>(product); }
 
 Multiply best_multiply() {
   if (__builtin_cpu_supports("avx512f")) return multiply_with_avx512;
