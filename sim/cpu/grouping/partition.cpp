@@ -4,13 +4,13 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "sim/cpu/grouping/common_items.h"
 #include "sim/cpu/grouping/cost_model.h"
 
 namespace mercury::cpu {
@@ -38,56 +38,6 @@ std::uint64_t count_new_bits(const Word* to, const Word* robot) {
   return ((bytes & even) + (bytes >> 8 & even)) * 0x0001000100010001u >> 48;
 }
 
-// One robot's cell, spring or face pair.
-struct Item {
-  std::uint64_t key;
-  std::uint32_t robot;
-};
-
-// Numbers the keys that several items have, in ascending order, up to the limit. Calls visit(item, number) for each of
-// these items. A hash table counts the items of each key.
-class CommonItems {
- public:
-  explicit CommonItems(std::span<const Item> items) : items_(items) {
-    entries_.resize(std::bit_ceil(2 * items.size() + 1));
-    for (const Item& item : items) {
-      Entry& entry = find(item.key);
-      entry.key = item.key;
-      if (++entry.count == 2) common_.push_back(item.key);
-    }
-    std::ranges::sort(common_);
-    common_.resize(std::min(common_.size(), limits.items_distinguished));
-    for (std::uint32_t number = 0; number < common_.size(); ++number) find(common_[number]).number = number;
-  }
-
-  std::size_t size() const { return common_.size(); }
-
-  template <class Visit>
-  void for_each(const Visit& visit) {
-    for (const Item& item : items_)
-      if (const std::uint32_t number = find(item.key).number; number != none) visit(item, number);
-  }
-
- private:
-  static constexpr std::uint32_t none = 0xffffffffu;
-  struct Entry {
-    std::uint64_t key = 0;
-    std::uint32_t count = 0, number = none;
-  };
-
-  // The entry of the key, or the free one where it belongs.
-  Entry& find(std::uint64_t key) {
-    const std::size_t mask = entries_.size() - 1;
-    std::size_t i = (key * 0x9e3779b97f4a7c15u) >> 32 & mask;
-    while (entries_[i].count != 0 && entries_[i].key != key) i = (i + 1) & mask;
-    return entries_[i];
-  }
-
-  std::span<const Item> items_;
-  std::vector<Entry> entries_;
-  std::vector<std::uint64_t> common_;
-};
-
 // The robots' sets: bits of cells, then of springs, then of face pairs, each in whole blocks.
 class ItemSets {
  public:
@@ -107,7 +57,8 @@ class ItemSets {
     std::vector<Item> cells, springs, pairs;
     for (std::uint32_t m = 0; m < members.size(); ++m)
       append_items(robots[members[m]], m, few_springs, cells, springs, pairs);
-    CommonItems common_cells(cells), common_springs(springs), common_pairs(pairs);
+    CommonItems common_cells(cells, limits.items_distinguished), common_springs(springs, limits.items_distinguished),
+        common_pairs(pairs, limits.items_distinguished);
     const auto words_of = [](const CommonItems& items) {
       return (items.size() + 64 * block - 1) / (64 * block) * block;
     };
