@@ -123,31 +123,41 @@ std::array<Direction, 13> directions_of(const Lattice& lattice, float edge) {
   return directions;
 }
 
-// The two most common of up to four materials, combined; ties go to the lower id.
-MaterialId combine_most_common(const std::array<MaterialId, 4>& materials, std::size_t count) {
-  struct Share {
-    MaterialId material = 0;
-    int voxels = 0;
-  };
-  std::array<Share, 4> shares;
-  std::size_t different = 0;
+// combine(i, j) of all base materials.
+using Combinations = std::array<std::array<MaterialId, base_material_count + 1>, base_material_count + 1>;
+
+const Combinations& combinations() {
+  static const Combinations all = [] {
+    Combinations table{};
+    for (MaterialId i = 1; i <= base_material_count; ++i)
+      for (MaterialId j = 1; j <= base_material_count; ++j) table[i][j] = combine(i, j);
+    return table;
+  }();
+  return all;
+}
+
+// The two most common of three or four materials, combined; ties go to the lower id.
+MaterialId combine_most_common(const std::array<MaterialId, 4>& materials, std::size_t count,
+                               const Combinations& combined) {
+  // Voxels of each material, where it comes first; the rest is 0.
+  std::array<int, 4> voxels{};
   for (std::size_t i = 0; i < count; ++i) {
-    std::size_t j = 0;
-    while (j < different && shares[j].material != materials[i]) ++j;
-    if (j == different) shares[different++].material = materials[i];
-    ++shares[j].voxels;
+    std::size_t first = 0;
+    while (materials[first] != materials[i]) ++first;
+    ++voxels[first];
   }
-  if (different == 1) return shares[0].material;
-  const auto take_most_common = [&] {
-    Share* most = &shares[0];
-    for (std::size_t i = 1; i < different; ++i)
-      if (shares[i].voxels > most->voxels || (shares[i].voxels == most->voxels && shares[i].material < most->material))
-        most = &shares[i];
-    most->voxels = 0;
-    return most->material;
+  const auto take_most_common = [&](MaterialId otherwise) {
+    std::size_t most = 4;
+    for (std::size_t i = 0; i < count; ++i)
+      if (voxels[i] > 0 &&
+          (most == 4 || voxels[i] > voxels[most] || (voxels[i] == voxels[most] && materials[i] < materials[most])))
+        most = i;
+    if (most == 4) return otherwise;
+    voxels[most] = 0;
+    return materials[most];
   };
-  const MaterialId first = take_most_common();
-  return combine(first, take_most_common());
+  const MaterialId first = take_most_common(air);
+  return combined[first][take_most_common(first)];
 }
 
 void add_masses(const Lattice& lattice, const VoxelGrid& grid, Robot& robot) {
@@ -161,20 +171,25 @@ void add_masses(const Lattice& lattice, const VoxelGrid& grid, Robot& robot) {
 
 void add_springs(const Lattice& lattice, float edge, Robot& robot) {
   const auto directions = directions_of(lattice, edge);
-  robot.springs.reserve(robot.masses.size() * directions.size());
+  const Combinations& combined = combinations();
+  std::vector<Spring> springs(robot.masses.size() * directions.size());
+  std::size_t next = 0;
   lattice.for_each_corner([&](int, int, int, std::size_t corner) {
     for (const Direction& direction : directions) {
-      std::array<MaterialId, 4> materials;
+      std::array<MaterialId, 4> materials{};
       std::size_t count = 0;
-      for (std::size_t i = 0; i < direction.voxel_count; ++i)
-        if (const MaterialId material = lattice.voxel(corner + direction.voxels[i]); material != air)
-          materials[count++] = material;
-      if (count > 0)
-        robot.springs.push_back({lattice.mass(corner), lattice.mass(corner + direction.step),
-                                 combine_most_common(materials, count), direction.length});
+      for (std::size_t i = 0; i < direction.voxel_count; ++i) {
+        const MaterialId material = materials[count] = lattice.voxel(corner + direction.voxels[i]);
+        count += material != air ? 1 : 0;
+      }
+      if (count == 0) continue;
+      const MaterialId material = count == 1   ? materials[0]
+                                  : count == 2 ? combined[materials[0]][materials[1]]
+                                               : combine_most_common(materials, count, combined);
+      springs[next++] = {lattice.mass(corner), lattice.mass(corner + direction.step), material, direction.length};
     }
   });
-  robot.springs.shrink_to_fit();
+  robot.springs.assign(springs.begin(), springs.begin() + static_cast<std::ptrdiff_t>(next));
 }
 
 void add_faces(const Lattice& lattice, Robot& robot) {
@@ -285,6 +300,7 @@ Robot make_voxel_robot(const VoxelGrid& grid, const VoxelRobotOptions& options) 
   add_masses(lattice, grid, robot);
   add_springs(lattice, grid.edge, robot);
   add_faces(lattice, robot);
+  robot.faces.shrink_to_fit();
   return robot;
 }
 
