@@ -59,7 +59,8 @@ cpu::Muscles all_muscles() {
   std::array<bool, max_materials> wanted;
   wanted.fill(true);
   cpu::Muscles muscles;
-  muscles.add(materials, wanted);
+  std::array<cpu::FactorId, max_materials> factors{};
+  muscles.add(materials, wanted, factors);
   return muscles;
 }
 

@@ -10,20 +10,9 @@
 namespace mercury::cuda {
 namespace {
 
-// Calls visit(mass, slot, count) for runs of masses in consecutive slots: at most two per tile, since tiles are
-// rotated.
-template <class Visit>
-void for_each_run(const SlotOrder& order, Visit visit) {
-  for (std::uint32_t first = 0; first < order.masses; first += lanes) {
-    const std::uint32_t size = std::min(order.masses - first, lanes), rotation = order.slot_of(first) - first;
-    visit(first, first + rotation, size - rotation);
-    visit(first + size - rotation, first, rotation);
-  }
-}
-
 std::vector<std::uint16_t> slots_of_masses(const SlotOrder& order) {
   std::vector<std::uint16_t> slots(order.masses);
-  for_each_run(order, [&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+  order.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) slots[mass + i] = static_cast<std::uint16_t>(slot + i);
   });
   return slots;
@@ -39,7 +28,7 @@ std::uint32_t best_shift(std::uint32_t masses, std::span<const FacePair> pairs) 
   std::uint32_t best = 0, fewest_passes = ~0u;
   for (const std::uint32_t shift : {0u, 1u, 2u, 3u, 5u, 6u, 7u, 13u, 16u, 25u, 27u, 29u}) {
     CornerBanks banks;
-    for_each_run({masses, shift}, [&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+    SlotOrder{masses, shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
       for (std::uint32_t i = 0; i < count; ++i) banks.shared[slot % lanes + i] += shared[mass + i];
       for (std::uint32_t i = 0; i < count; ++i) banks.outer[slot % lanes + i] += outer[mass + i];
     });

@@ -11,7 +11,7 @@
 namespace mercury::cuda {
 namespace {
 
-// Numbers the rest lengths of springs in the order in which they come. A hash table of open addressing finds them.
+// Numbers rest lengths in the order in which they come. A hash table of open addressing finds them again.
 class LengthNumbers {
  public:
   LengthNumbers() { number(0); }
@@ -19,10 +19,13 @@ class LengthNumbers {
   std::uint16_t number(float length) {
     const auto bits = std::bit_cast<std::uint32_t>(length);
     std::uint32_t at = bits * 0x9e3779b1u >> (32 - table_bits);
-    while (entries_[at].used && entries_[at].bits != bits) at = (at + 1) % (1u << table_bits);
-    if (!entries_[at].used) {
-      entries_[at] = {bits, static_cast<std::uint16_t>(lengths_.size()), true};
-      lengths_.push_back(length);
+    while (entries_[at].bits != bits) {
+      if (entries_[at].bits == Entry().bits) {
+        entries_[at] = {bits, static_cast<std::uint16_t>(lengths_.size())};
+        lengths_.push_back(length);
+      } else {
+        at = (at + 1) % (1u << table_bits);
+      }
     }
     return entries_[at].number;
   }
@@ -32,11 +35,11 @@ class LengthNumbers {
  private:
   static constexpr int table_bits = 10;
   struct Entry {
-    std::uint32_t bits = 0;
+    std::uint32_t bits = 0xffffffffu;  // not those of a length
     std::uint16_t number = 0;
-    bool used = false;
   };
-  std::array<Entry, 1 << table_bits> entries_{};
+
+  std::array<Entry, 1 << table_bits> entries_;
   std::vector<float> lengths_;  // [number]
 };
 
@@ -44,12 +47,9 @@ class LengthNumbers {
 
 RestLengths rest_lengths(const Robot& robot) {
   LengthNumbers numbers;
-  std::vector<std::uint16_t> number_of_spring;
-  number_of_spring.reserve(robot.springs.size());
-  for (const Spring& spring : robot.springs) {
-    number_of_spring.push_back(numbers.number(spring.rest_length));
-    if (numbers.lengths().size() > max_lengths) break;
-  }
+  std::vector<std::uint16_t> number_of_spring(robot.springs.size());
+  for (std::size_t i = 0; i < robot.springs.size() && numbers.lengths().size() <= max_lengths; ++i)
+    number_of_spring[i] = numbers.number(robot.springs[i].rest_length);
   RestLengths result{numbers.lengths(), {}};
   std::ranges::sort(result.table);
   if (result.table.size() > max_lengths) return result;
@@ -57,7 +57,8 @@ RestLengths rest_lengths(const Robot& robot) {
   for (std::size_t number = 0; number < result.table.size(); ++number)
     index[number] = static_cast<std::uint8_t>(std::ranges::lower_bound(result.table, numbers.lengths()[number]) -
                                               result.table.begin());
-  for (const std::uint16_t number : number_of_spring) result.index.push_back(index[number]);
+  result.index.resize(robot.springs.size());
+  for (std::size_t i = 0; i < robot.springs.size(); ++i) result.index[i] = index[number_of_spring[i]];
   return result;
 }
 

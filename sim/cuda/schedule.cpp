@@ -89,6 +89,12 @@ Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs) 
     for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row)
       partners.fill(&schedule.entries[std::size_t{row} * lanes]);
   }
+  const std::uint32_t slots = schedule.tiles() * lanes;
+  schedule.valences.resize(slots);
+  for (std::uint32_t slot = 0; slot < slots; ++slot)
+    schedule.valences[slot] = static_cast<std::uint32_t>(owned.springs_at(slot).size());
+  schedule.incoming_counts.resize(slots);
+  for (const ScheduledSpring& entry : schedule.entries) ++schedule.incoming_counts[entry.partner];
   return schedule;
 }
 

@@ -33,6 +33,8 @@ struct Schedule {
   // Rows of tile t are [row_start[t], row_start[t + 1]); row r has the entries [32 r, 32 r + 32).
   std::vector<std::uint32_t> row_start;
   std::vector<ScheduledSpring> entries;
+  // [slot] the springs that join it to others, and the entries whose partner it is, padding included.
+  std::vector<std::uint32_t> valences, incoming_counts;
   std::uint32_t tiles() const { return static_cast<std::uint32_t>(row_start.size() - 1); }
   std::uint32_t rows() const { return row_start.back(); }
 };

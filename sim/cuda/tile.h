@@ -75,6 +75,15 @@ struct SlotOrder {
     const std::uint32_t tile = slot / lanes, size = masses_in(tile);
     return tile * lanes + (slot % lanes + size - tile * shift % size) % size;
   }
+  // Calls visit(mass, slot, count) for runs of masses in consecutive slots: one or two per tile, since it is rotated.
+  template <class Visit>
+  void for_each_run(Visit visit) const {
+    for (std::uint32_t first = 0; first < masses; first += lanes) {
+      const std::uint32_t size = masses_in(first / lanes), rotation = slot_of(first) - first;
+      visit(first, first + rotation, size - rotation);
+      if (rotation > 0) visit(first + size - rotation, first, rotation);
+    }
+  }
 
  private:
   MERCURY_HOST_DEVICE std::uint32_t masses_in(std::uint32_t tile) const {

@@ -124,6 +124,17 @@ TEST(Schedule, PartnersOfMassesAreMassesAndLanesWithoutAMassReadOneAnother) {
   }
 }
 
+TEST(Schedule, CountsTheSpringsOfASlotAndWhatItReceives) {
+  for (const Robot& robot : robots()) {
+    const Schedule schedule = schedule_of(robot);
+    std::vector<std::uint32_t> valences(schedule.tiles() * lanes), incoming(valences.size());
+    for (const Spring& spring : robot.springs) ++valences[spring.a], ++valences[spring.b];
+    for (const ScheduledSpring& entry : schedule.entries) ++incoming[entry.partner];
+    EXPECT_EQ(schedule.valences, valences);
+    EXPECT_EQ(schedule.incoming_counts, incoming);
+  }
+}
+
 // Koenig's theorem: a bipartite graph has as many colours as its busiest vertex has edges.
 TEST(Schedule, TilesHaveAsManyRowsAsTheirBusiestLaneOrBankHasSprings) {
   for (const Robot& robot : robots()) {
@@ -166,6 +177,20 @@ TEST(SlotOrder, GivesEachMassItsOwnSlotInItsTile) {
       }
       EXPECT_EQ(slots.size(), masses);
       EXPECT_EQ(*slots.rbegin(), masses - 1);
+    }
+}
+
+TEST(SlotOrder, RunsCoverEveryMassInOrder) {
+  for (const std::uint32_t masses : {1u, 31u, 33u, 70u, 1331u})
+    for (const std::uint32_t shift : {0u, 5u, 31u}) {
+      const SlotOrder order{masses, shift};
+      std::uint32_t next = 0;
+      order.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+        EXPECT_EQ(mass, next);
+        for (std::uint32_t i = 0; i < count; ++i) EXPECT_EQ(slot + i, order.slot_of(mass + i));
+        next += count;
+      });
+      EXPECT_EQ(next, masses);
     }
 }
 
