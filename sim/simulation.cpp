@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/stopwatch.h"
 #include "sim/simulation_parts.h"
 
 namespace mercury {
@@ -65,7 +66,10 @@ void Simulation::Parts::require(std::size_t robot) const {
 }
 
 void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> added) {
-  validate_all(added, size());
+  {
+    const Stopwatch stopwatch(check_seconds);
+    validate_all(added, size());
+  }
   for (const std::shared_ptr<const Robot>& robot : added) {
     robots.push_back(robot);
     pointers.push_back(robot.get());
@@ -171,6 +175,11 @@ std::vector<std::string> Simulation::notes() const { return parts_->backend->not
 std::size_t Simulation::robots_at_once() const { return parts_->backend->robots_at_once(); }
 double Simulation::spring_limit() const { return parts_->backend->spring_limit(); }
 double Simulation::busy_seconds() const { return parts_->backend->busy_seconds(); }
+LoadTimes Simulation::load_times() const {
+  LoadTimes times = parts_->backend->load_times();
+  times.check = parts_->check_seconds;
+  return times;
+}
 
 double Simulation::time() const { return time_of(parts_->clock); }
 std::int64_t Simulation::steps() const { return parts_->clock.step; }

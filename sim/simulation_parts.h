@@ -35,6 +35,7 @@ struct Simulation::Parts {
   std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
+  double check_seconds = 0;                                    // LoadTimes::check
   std::unique_ptr<Backend> backend;                            // last: released before the robots
 
   // Throws as Simulation's constructors do.

@@ -110,6 +110,15 @@ class SplitBackend final : public Backend {
     for (const auto& part : parts_) longest = std::max(longest, part->busy_seconds());
     return longest;
   }
+  LoadTimes load_times() const override {
+    LoadTimes longest;
+    for (const auto& part : parts_) {
+      const LoadTimes times = part->load_times();
+      longest.schedule = std::max(longest.schedule, times.schedule);
+      longest.upload = std::max(longest.upload, times.upload);
+    }
+    return longest;
+  }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     shares_ = Shares(parts_.size());

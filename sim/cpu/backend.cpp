@@ -15,6 +15,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "mercury/stopwatch.h"
 #include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/grouping/cost_model.h"
@@ -47,6 +48,7 @@ class CpuBackend final : public Backend {
   }
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return busy_seconds_; }
+  LoadTimes load_times() const override { return load_times_; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     batches_.clear();
@@ -189,6 +191,7 @@ class CpuBackend final : public Backend {
   }
 
   void append(std::span<const Robot* const> robots) {
+    const Stopwatch stopwatch(load_times_.schedule);
     const std::size_t first = bodies_.size();
     bodies_.resize(first + robots.size());
     for_each_body(
@@ -207,6 +210,7 @@ class CpuBackend final : public Backend {
   // Puts all bodies into work batches. Bodies that come later get batches of their own. When they have become a quarter
   // of all since the last time, everything is grouped again: with the new bodies there may be better groups.
   void group_bodies() {
+    const Stopwatch stopwatch(load_times_.schedule);
     loosened_since_grouping_ += loose_.size();
     if (4 * loosened_since_grouping_ > bodies_.size()) ungroup();
     const auto threads = static_cast<std::size_t>(arena_.max_concurrency());
@@ -244,6 +248,7 @@ class CpuBackend final : public Backend {
   Configuration configuration_;
   StepSetting setting_;
   double busy_seconds_ = 0;
+  LoadTimes load_times_;
 };
 
 }  // namespace

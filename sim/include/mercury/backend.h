@@ -46,6 +46,13 @@ struct BatchSettings {
   std::vector<Perturbation> perturbations;
 };
 
+// Wall time of the parts of loading and adding robots [s].
+struct LoadTimes {
+  double check = 0;     // robots are validated
+  double schedule = 0;  // springs and faces are arranged for the device, robots are grouped
+  double upload = 0;    // data go to the device
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -58,6 +65,8 @@ class Backend {
   virtual std::size_t robots_at_once() const = 0;
   virtual double spring_limit() const = 0;  // [1/s], 0 = unknown
   virtual double busy_seconds() const = 0;  // [s]
+  // Of all robots so far, as far as the backend measures it; `check` is Simulation's.
+  virtual LoadTimes load_times() const { return {}; }
 
   // Replaces all robots. Each begins with the positions of its `masses`, at rest, not exploded, with its own materials,
   // and without perturbations. The robots outlive the backend or the next load(). Throws DeviceError if they do not

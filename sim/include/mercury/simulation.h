@@ -82,6 +82,9 @@ class Simulation {
   double spring_limit() const;
   // How long all calls of step() have taken so far, by the device's own clock [s].
   double busy_seconds() const;
+  // How long the constructor and all calls of add() have taken so far, part by part. A part that the backend does not
+  // measure is 0.
+  LoadTimes load_times() const;
 
   // Advances every robot that has not exploded by `steps` >= 0 time steps. Returns when done.
   void step(std::int64_t steps = 1);
