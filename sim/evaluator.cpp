@@ -96,7 +96,8 @@ EvaluationProgress Evaluator::progress() const {
                               .making = parts.making.seconds(),
                               .loading = parts.loading.seconds(),
                               .stepping = parts.stepping.seconds(),
-                              .reading = parts.reading.seconds()};
+                              .reading = parts.reading.seconds(),
+                              .load = parts.load_times};
   for (const auto& device : parts.devices)
     progress.devices.push_back({device.name, device.stepping.seconds(), device.robots});
   return progress;

@@ -80,6 +80,7 @@ struct Evaluator::Parts {
   void evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace);
   void loaded(DeviceParts& device, const Simulation& simulation);
   void finish(DeviceParts& device, const Portion& portion, FinishedPortion result);
+  void add_load_times(const LoadTimes& before, const LoadTimes& after);
 
   // Of all.
   void fail(std::size_t first, std::exception_ptr exception);  // in the portion that begins there
@@ -105,6 +106,7 @@ struct Evaluator::Parts {
   std::size_t error_index = unknown_count;
   std::vector<std::string> notes;
   std::size_t made = 0, done = 0;
+  LoadTimes load_times;
 
   std::atomic<std::size_t> end;
   std::atomic<bool> stopping = false;

@@ -217,6 +217,7 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
                              .stepping = &stepping};
   FinishedPortion result;
   if (!stopping) {
+    const LoadTimes before = simulation.load_times();
     std::optional<UnionClock::Interval> interval(std::in_place, loading);
     load(simulation, portion);
     interval.reset();
@@ -226,6 +227,7 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
       interval.emplace(reading);
       result.results = trial.results(portion);
     }
+    add_load_times(before, simulation.load_times());
     simulation.keep({});
   }
   // From here on, only the results hold the robots.
@@ -240,6 +242,13 @@ void Evaluator::Parts::loaded(DeviceParts& device, const Simulation& simulation)
   for (const std::string& note : simulation.notes())
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   update_demand();
+}
+
+void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& after) {
+  const std::lock_guard lock(mutex);
+  load_times.check += after.check - before.check;
+  load_times.schedule += after.schedule - before.schedule;
+  load_times.upload += after.upload - before.upload;
 }
 
 // Without results if the portion was given up.

@@ -79,9 +79,9 @@ struct EvaluationProgress {
   std::vector<Device> devices;
   std::size_t made = 0, done = 0;  // robots: made, or without success; ready to be yielded
   std::int64_t robot_steps = 0;    // of all robots together; a robot that failed counts with all its steps
-  // How long at least one portion was being started, made, ... [s]
-  double starting = 0;  // of the devices
-  double making = 0, loading = 0, stepping = 0, reading = 0;
+  // How long at least one device was being started, or one portion was being made, loaded, ... [s]
+  double starting = 0, making = 0, loading = 0, stepping = 0, reading = 0;
+  LoadTimes load;  // of all portions that are done; several may be loaded at the same time
 };
 
 class Evaluator {
