@@ -24,10 +24,13 @@ namespace {
 // The tetrahedra of a triangulation, from the smallest circumscribed sphere to the largest.
 class Filtration {
  public:
-  Filtration(std::span<const Vec3> points, Triangulation triangulation)
-      : points_(points), tetrahedra_(std::move(triangulation.tetrahedra)),
-        neighbours_(std::move(triangulation.neighbours)) {
+  // Returns false if all points lie in one plane.
+  bool start(std::span<const Vec3> points) {
+    points_ = points;
+    triangulate(points, all_);
+    if (all_.tetrahedra.empty()) return false;
     sort();
+    return true;
   }
 
   // Number of tetrahedra with a squared radius of at most that.
@@ -48,7 +51,7 @@ class Filtration {
     std::size_t first = class_of(its_first), last = classes_.size() - 1;
     const std::uint32_t begin = begin_of(first);
     UnionFind before;  // the bodies of the classes before `first`
-    before.parent.reserve(tetrahedra_.size());
+    before.parent.reserve(all_.tetrahedra.size());
     const auto search = [&, last_point = last_point] {
       for (std::size_t stride = 1; first < last; stride *= 2) {
         const std::size_t probe = std::min(first + stride - 1, first + (last - first) / 2);
@@ -71,7 +74,7 @@ class Filtration {
   // The body with most points that the first `count` tetrahedra form; of equal ones the one with the smallest sphere.
   SolidBody largest_body(std::uint32_t count) {
     for (;;) {
-      SolidBody body = mercury::largest_body(tetrahedra_, neighbours_, count);
+      SolidBody body = mercury::largest_body(all_.tetrahedra, all_.neighbours, count);
       if (body.rival == no_neighbour) return body;
       const std::size_t k = class_of(body.tetrahedra.front());
       if (classes_[k].is_exact || class_of(body.rival) != k) return body;
@@ -87,13 +90,13 @@ class Filtration {
 
   // The tetrahedra of a body, and their neighbours in it.
   void copy(const SolidBody& body, std::vector<Tetrahedron>& tetrahedra, std::vector<Neighbours>& neighbours) const {
-    std::vector<std::uint32_t> index_of(tetrahedra_.size(), no_neighbour);
+    std::vector<std::uint32_t> index_of(all_.tetrahedra.size(), no_neighbour);
     for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i) index_of[body.tetrahedra[i]] = i;
     tetrahedra.reserve(body.tetrahedra.size());
     neighbours.reserve(body.tetrahedra.size());
     for (const std::uint32_t i : body.tetrahedra) {
-      tetrahedra.push_back(tetrahedra_[i]);
-      Neighbours n = neighbours_[i];
+      tetrahedra.push_back(all_.tetrahedra[i]);
+      Neighbours n = all_.neighbours[i];
       for (std::uint32_t& other : n)
         if (other != no_neighbour) other = index_of[other];
       neighbours.push_back(n);
@@ -112,56 +115,52 @@ class Filtration {
     return static_cast<std::size_t>(
         std::ranges::upper_bound(classes_, tetrahedron, {}, [](const Class& c) { return c.end; }) - classes_.begin());
   }
-  ExactSquaredRadius exact(std::uint32_t i) const { return {points_, tetrahedra_[i]}; }
+  ExactSquaredRadius exact(std::uint32_t i) const { return {points_, all_.tetrahedra[i]}; }
 
   void sort() {
-    struct Entry {
-      double low;
-      std::uint32_t index;
-    };
-    std::vector<Bounds> bounds;
-    std::vector<Entry> entries;
-    bounds.reserve(tetrahedra_.size());
-    entries.reserve(tetrahedra_.size());
-    for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i) {
-      const auto& [a, b, c, d] = tetrahedra_[i];
+    bounds_.clear();
+    by_low_bound_.clear();
+    for (std::uint32_t i = 0; i < all_.tetrahedra.size(); ++i) {
+      const auto& [a, b, c, d] = all_.tetrahedra[i];
       Bounds squared = squared_circumradius(points_[a], points_[b], points_[c], points_[d]);
       if (!std::isfinite(squared.high)) squared = exact(i).bounds();
-      bounds.push_back(squared);
-      entries.push_back({squared.low, i});
+      bounds_.push_back(squared);
+      by_low_bound_.emplace_back(squared.low, i);
     }
-    std::ranges::sort(entries, {}, &Entry::low);
-    std::vector<std::uint32_t> order;
-    order.reserve(entries.size());
-    for (const Entry& e : entries) {
-      const Bounds& next = bounds[e.index];
+    std::ranges::sort(by_low_bound_, {}, &std::pair<double, std::uint32_t>::first);
+    classes_.clear();
+    order_.clear();
+    for (const auto& [low, index] : by_low_bound_) {
+      const Bounds& next = bounds_[index];
       if (classes_.empty() || next.low > classes_.back().bounds.high)
         classes_.push_back({.bounds = next});
       else
         classes_.back().bounds.high = std::max(classes_.back().bounds.high, next.high);
-      order.push_back(e.index);
-      classes_.back().end = static_cast<std::uint32_t>(order.size());
+      order_.push_back(index);
+      classes_.back().end = static_cast<std::uint32_t>(order_.size());
     }
-    reorder(order, 0);
+    reorder(order_, 0);
   }
 
   // Puts tetrahedron order[i] at first + i.
   void reorder(std::span<const std::uint32_t> order, std::uint32_t first) {
-    std::vector<std::uint32_t> moved_to(order.size());
-    std::vector<Tetrahedron> tetrahedra;
-    std::vector<Neighbours> neighbours;
-    tetrahedra.reserve(order.size());
-    neighbours.reserve(order.size());
+    moved_to_.resize(order.size());
+    reordered_.tetrahedra.clear();
+    reordered_.neighbours.clear();
     for (std::uint32_t i = 0; i < order.size(); ++i) {
-      moved_to[order[i] - first] = first + i;
-      tetrahedra.push_back(tetrahedra_[order[i]]);
-      neighbours.push_back(neighbours_[order[i]]);
+      moved_to_[order[i] - first] = first + i;
+      reordered_.tetrahedra.push_back(all_.tetrahedra[order[i]]);
+      reordered_.neighbours.push_back(all_.neighbours[order[i]]);
     }
-    std::ranges::copy(tetrahedra, tetrahedra_.begin() + first);
-    std::ranges::copy(neighbours, neighbours_.begin() + first);
-    for (Neighbours& n : neighbours_)
+    if (order.size() == all_.tetrahedra.size()) {
+      std::swap(all_, reordered_);
+    } else {
+      std::ranges::copy(reordered_.tetrahedra, all_.tetrahedra.begin() + first);
+      std::ranges::copy(reordered_.neighbours, all_.neighbours.begin() + first);
+    }
+    for (Neighbours& n : all_.neighbours)
       for (std::uint32_t& other : n)
-        if (other - first < order.size()) other = moved_to[other - first];
+        if (other - first < order.size()) other = moved_to_[other - first];
   }
 
   // Splits a class into classes of equal radii. Returns their number.
@@ -174,7 +173,7 @@ class Filtration {
       std::uint32_t index;
     };
     std::vector<Entry> entries;
-    for (std::uint32_t i = begin; i < end; ++i) entries.push_back({exact(i), lowest_first(tetrahedra_[i]), i});
+    for (std::uint32_t i = begin; i < end; ++i) entries.push_back({exact(i), lowest_first(all_.tetrahedra[i]), i});
     std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
       const auto order = a.radius.compare(b.radius);
       return order != 0 ? order < 0 : a.points < b.points;
@@ -198,8 +197,8 @@ class Filtration {
   std::pair<std::uint32_t, std::uint32_t> last_to_come() const {
     std::vector<bool> seen(points_.size(), false);
     std::pair<std::uint32_t, std::uint32_t> last;
-    for (std::uint32_t i = 0; i < tetrahedra_.size(); ++i)
-      for (const std::uint32_t point : tetrahedra_[i]) {
+    for (std::uint32_t i = 0; i < all_.tetrahedra.size(); ++i)
+      for (const std::uint32_t point : all_.tetrahedra[i]) {
         if (!seen[point]) last = {point, i};
         seen[point] = true;
       }
@@ -218,7 +217,7 @@ class Filtration {
   void join(UnionFind& bodies, std::uint32_t end) const {
     for (auto i = static_cast<std::uint32_t>(bodies.parent.size()); i < end; ++i) {
       bodies.parent.push_back(i);
-      for (const std::uint32_t other : neighbours_[i]) {
+      for (const std::uint32_t other : all_.neighbours[i]) {
         if (other >= i) continue;
         const auto [low, high] = std::minmax({bodies.root(other), bodies.root(i)});
         bodies.parent[high] = low;
@@ -232,31 +231,34 @@ class Filtration {
     const auto count = static_cast<std::uint32_t>(bodies.parent.size());
     std::vector<std::uint32_t> tried;
     for (std::uint32_t i = begin; i < count; ++i) {
-      if (std::ranges::find(tetrahedra_[i], last_point) == tetrahedra_[i].end()) continue;
+      if (std::ranges::find(all_.tetrahedra[i], last_point) == all_.tetrahedra[i].end()) continue;
       const std::uint32_t body = bodies.root(i);
       if (std::ranges::find(tried, body) != tried.end()) continue;
       tried.push_back(body);
       std::vector<char> held(points_.size(), 0);
       for (std::uint32_t k = 0; k < count; ++k)
         if (bodies.root(k) == body)
-          for (const std::uint32_t point : tetrahedra_[k]) held[point] = 1;
+          for (const std::uint32_t point : all_.tetrahedra[k]) held[point] = 1;
       if (std::ranges::find(held, 0) == held.end()) return true;
     }
     return false;
   }
 
   std::span<const Vec3> points_;
-  std::vector<Tetrahedron> tetrahedra_;
-  std::vector<Neighbours> neighbours_;
+  Triangulation all_, reordered_;
   std::vector<Class> classes_;
+  std::vector<Bounds> bounds_;  // while sorting
+  std::vector<std::pair<double, std::uint32_t>> by_low_bound_;
+  std::vector<std::uint32_t> order_, moved_to_;
 };
 
 }  // namespace
 
 AlphaBody alpha_body(std::span<const Vec3> points, double alpha) {
-  Triangulation triangulation = triangulate(points);
-  if (triangulation.tetrahedra.empty()) throw InputError("cloud", "its points lie in one plane, they span no body");
-  Filtration filtration(points, std::move(triangulation));
+  static thread_local Filtration kept;  // its memory
+  Filtration own;
+  Filtration& filtration = points.size() > small_cloud ? own : kept;
+  if (!filtration.start(points)) throw InputError("cloud", "its points lie in one plane, they span no body");
   const std::uint32_t count = alpha > 0 ? filtration.count_within(alpha * alpha) : filtration.count_for_all_points();
   if (count == 0) throw InputError("alpha", "no tetrahedron of the cloud is as small as the given radius");
   AlphaBody result{alpha > 0 ? alpha : filtration.radius(count), {}, {}};

@@ -54,21 +54,17 @@ class Builder {
     }
   }
 
-  Triangulation result() const {
-    std::vector<std::uint32_t> index_of(cells_.size(), no_neighbour);
+  void copy_to(Triangulation& result) {
+    index_of_.assign(cells_.size(), no_neighbour);
     std::uint32_t count = 0;
     for (std::uint32_t c = 0; c < cells_.size(); ++c)
-      if (marks_[c] != unused && corner_at_infinity(cells_[c]) == 4) index_of[c] = count++;
-    Triangulation result;
-    result.tetrahedra.reserve(count);
-    result.neighbours.reserve(count);
+      if (marks_[c] != unused && corner_at_infinity(cells_[c]) == 4) index_of_[c] = count++;
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      if (index_of[c] == no_neighbour) continue;
+      if (index_of_[c] == no_neighbour) continue;
       result.tetrahedra.push_back(cells_[c].corners);
       Neighbours& neighbours = result.neighbours.emplace_back();
-      for (std::size_t i = 0; i < 4; ++i) neighbours[i] = index_of[cells_[c].neighbours[i]];
+      for (std::size_t i = 0; i < 4; ++i) neighbours[i] = index_of_[cells_[c].neighbours[i]];
     }
-    return result;
   }
 
  private:
@@ -224,7 +220,7 @@ class Builder {
       const std::uint32_t cell = new_cell();
       Cell& old = cells_[side.cell];
       Cell& outer = cells_[old.neighbours[side.corner]];
-      outer.neighbours[index_of(side.cell, outer.neighbours)] = cell;
+      outer.neighbours[position_of(side.cell, outer.neighbours)] = cell;
       Cell& here = cells_[cell];
       here = {old.corners, {none, none, none, none}};
       here.corners[side.corner] = point;
@@ -253,14 +249,14 @@ class Builder {
         cells_[next].neighbours[behind] = joined;
         return;
       }
-      ahead = index_of(cells_[cell].corners[behind], cells_[next].corners);
-      behind = index_of(cell, cells_[next].neighbours);
+      ahead = position_of(cells_[cell].corners[behind], cells_[next].corners);
+      behind = position_of(cell, cells_[next].neighbours);
       cell = next;
     }
   }
 
   // Without a branch.
-  static std::uint32_t index_of(std::uint32_t value, const std::array<std::uint32_t, 4>& in) {
+  static std::uint32_t position_of(std::uint32_t value, const std::array<std::uint32_t, 4>& in) {
     const std::uint32_t is_1 = in[1] == value, is_2 = in[2] == value, is_3 = in[3] == value;
     return (is_1 | is_3) + 2 * (is_2 | is_3);
   }
@@ -275,18 +271,26 @@ class Builder {
   std::vector<Side> sides_;            // of the cavity; the first sides_size_ elements
   std::size_t cavity_size_ = 0, sides_size_ = 0;
   std::vector<bool> inserted_;
-  std::uint32_t mark_ = 0;  // number of the insertion
-  std::uint32_t hint_ = 0;  // a finite cell near the last point
+  std::vector<std::uint32_t> index_of_;  // of a cell in the result
+  std::uint32_t mark_ = 0;               // number of the insertion
+  std::uint32_t hint_ = 0;               // a finite cell near the last point
 };
 
 }  // namespace
 
-Triangulation triangulate(std::span<const Vec3> points) {
-  constexpr std::size_t kept_for = 4096;  // points
+void triangulate(std::span<const Vec3> points, Triangulation& result) {
   static thread_local Builder kept;
   Builder own;
-  Builder& builder = points.size() > kept_for ? own : kept;
-  return builder.build(points) ? builder.result() : Triangulation{};
+  Builder& builder = points.size() > small_cloud ? own : kept;
+  result.tetrahedra.clear();
+  result.neighbours.clear();
+  if (builder.build(points)) builder.copy_to(result);
+}
+
+Triangulation triangulate(std::span<const Vec3> points) {
+  Triangulation result;
+  triangulate(points, result);
+  return result;
 }
 
 }  // namespace mercury

@@ -2,6 +2,7 @@
 // The Delaunay triangulation of a cloud of points.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -19,5 +20,10 @@ struct Triangulation {
 // Decisions are exact, and ties between cospherical points are broken by their coordinates, so the set of tetrahedra
 // depends on the points alone, not on their order. Fast where points that are near in space are near in the span.
 Triangulation triangulate(std::span<const Vec3> points);
+// The same into the memory of an earlier one.
+void triangulate(std::span<const Vec3> points, Triangulation& result);
+
+// Threads keep the memory of clouds of at most so many points for the next one.
+inline constexpr std::size_t small_cloud = 4096;
 
 }  // namespace mercury

@@ -77,18 +77,20 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra) {
   for_each([&](std::uint32_t low, std::uint32_t) { ++ends_of[low]; });
   std::exclusive_scan(ends_of.begin(), ends_of.end(), ends_of.begin(), 0u);
   for_each([&](std::uint32_t low, std::uint32_t high) { ends[ends_of[low]++] = high; });
-  std::vector<Edge> edges(ends.size());
+  std::vector<Edge> edges;
+  edges.reserve(tetrahedra.size() + 2 * points);  // Euler's formula, for a body that does not touch itself
   std::vector<std::uint32_t> last_seen_by(points, no_neighbour);
-  std::size_t next = 0;
-  for (std::uint32_t low = 0, i = 0; low < points; ++low) {
-    const std::size_t first = next;
-    for (; i < ends_of[low]; ++i) {
-      edges[next] = {low, ends[i]};
-      next += std::exchange(last_seen_by[ends[i]], low) != low ? 1 : 0;
+  auto next = ends.begin();
+  for (std::uint32_t low = 0; low < points; ++low) {
+    const auto begin = next, end = ends.begin() + ends_of[low];
+    auto last = begin;
+    for (; next != end; ++next) {
+      *last = *next;
+      last += std::exchange(last_seen_by[*next], low) != low ? 1 : 0;
     }
-    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.begin() + static_cast<std::ptrdiff_t>(next));
+    std::sort(begin, last);
+    for (auto high = begin; high != last; ++high) edges.emplace_back(low, *high);
   }
-  edges.resize(next);
   return edges;
 }
 
