@@ -67,6 +67,7 @@ class CudaBackend final : public Backend {
     return cuda::spring_limit(configuration_.solver);
   }
   double busy_seconds() const override { return busy_seconds_; }
+  LoadTimes load_times() const override { return load_times_; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     begin_change();
@@ -78,7 +79,8 @@ class CudaBackend final : public Backend {
 
   void add(std::span<const Robot* const> robots, std::size_t first_new) override {
     begin_change();
-    const std::vector<Place> places = add_robots(owned_->classes, robots.subspan(first_new), configuration_);
+    const std::vector<Place> places =
+        add_robots(owned_->classes, robots.subspan(first_new), configuration_, load_times_);
     places_.insert(places_.end(), places.begin(), places.end());
     number_masses(robots);
     choose_launches();
@@ -357,6 +359,7 @@ class CudaBackend final : public Backend {
   AnyEnvironmentModel model_ = OceanModel(Ocean{});
   StepConstants constants_;
   double busy_seconds_ = 0;
+  LoadTimes load_times_;
 };
 
 }  // namespace

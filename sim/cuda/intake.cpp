@@ -7,6 +7,7 @@
 #include <bit>
 #include <numeric>
 
+#include "mercury/stopwatch.h"
 #include "sim/cuda/block_layout.h"
 
 namespace mercury::cuda {
@@ -30,9 +31,10 @@ struct NewRobot {
 
 class Intake {
  public:
-  Intake(SizeClasses& classes, std::span<const Robot* const> robots)
-      : classes_(classes), new_robots_(robots.size()), arrangements_(robots.size()), users_(robots.size()),
-        order_(robots.size()) {
+  Intake(SizeClasses& classes, std::span<const Robot* const> robots, LoadTimes& times)
+      : classes_(classes), times_(times), new_robots_(robots.size()), arrangements_(robots.size()),
+        users_(robots.size()), order_(robots.size()) {
+    const Stopwatch stopwatch(times_.schedule);
     const std::vector<std::uint32_t> first = first_of_topology(robots);
     oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
       new_robots_[i] = {robots[i], measure(*robots[i]), lengths_of(*robots[i]), {}, first[i]};
@@ -108,6 +110,7 @@ class Intake {
   }
 
   void arrange_topologies(std::span<const std::uint32_t> portion) {
+    const Stopwatch stopwatch(times_.schedule);
     std::vector<std::uint32_t> wanted;
     for (const std::uint32_t i : portion)
       if (!arrangements_[new_robots_[i].first_of_topology]) wanted.push_back(new_robots_[i].first_of_topology);
@@ -120,6 +123,7 @@ class Intake {
 
   // Robots in consecutive places of a class.
   void upload_run(SizeClass& to, std::span<const std::uint32_t> run) {
+    const Stopwatch stopwatch(times_.upload);
     ChunkSizes sizes;
     for (const std::uint32_t i : run) {
       const Arrangement& arrangement = arrangement_of(i);
@@ -140,11 +144,10 @@ class Intake {
     to.stream().synchronize();  // `memory` is free again
   }
 
-  const Arrangement& arrangement_of(std::uint32_t i) const {
-    return *arrangements_[new_robots_[i].first_of_topology];
-  }
+  const Arrangement& arrangement_of(std::uint32_t i) const { return *arrangements_[new_robots_[i].first_of_topology]; }
 
   SizeClasses& classes_;
+  LoadTimes& times_;
   std::vector<NewRobot> new_robots_;
   std::vector<std::unique_ptr<const Arrangement>> arrangements_;  // [new robot], at the first of each topology
   std::vector<std::uint32_t> users_;      // [new robot], of its arrangement, still to be uploaded
@@ -167,8 +170,8 @@ void SizeClasses::free_empty() {
 }
 
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration) {
-  Intake intake(classes, robots);
+                              const Configuration& configuration, LoadTimes& times) {
+  Intake intake(classes, robots, times);
   intake.upload(configuration);
   return intake.places();
 }

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "mercury/backend.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
@@ -45,8 +46,9 @@ class SizeClasses {
 };
 
 // Brings robots into places of `classes`, at rest in the positions of their files, with their own materials. Returns
-// the place of each. Throws DeviceError if the device has no room for them; the classes then are as before.
+// the place of each, and adds to `times`. Throws DeviceError if the device has no room for them; the classes then are
+// as before.
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration);
+                              const Configuration& configuration, LoadTimes& times);
 
 }  // namespace mercury::cuda
