@@ -23,7 +23,7 @@ Triangulation triangulate(std::span<const Vec3> points);
 // The same into the memory of an earlier one.
 void triangulate(std::span<const Vec3> points, Triangulation& result);
 
-// Threads keep the memory of clouds of at most so many points for the next one.
+// Threads keep the memory of clouds of at most that many points for the next one.
 inline constexpr std::size_t small_cloud = 4096;
 
 }  // namespace mercury

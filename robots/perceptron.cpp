@@ -55,7 +55,7 @@ template <class Vector>
   std::memcpy(&vector, from, sizeof vector);
 }
 
-// `points` points are summed side by side, in registers of so many floats.
+// `points` points are summed side by side, in registers of `floats` floats.
 template <std::size_t floats, std::size_t points>
 [[gnu::always_inline]] inline void multiply(const GroupProduct& p) {
   using Vector = typename Register<floats>::Type;
