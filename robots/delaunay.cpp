@@ -17,13 +17,13 @@
 #include <cstdint>
 #include <utility>
 
+#include "robots/delaunay_cells.h"
 #include "robots/predicates.h"
 
 namespace mercury {
 namespace {
 
-constexpr std::uint32_t infinite = 0xffffffff;  // the vertex at infinity
-constexpr std::uint32_t none = 0xffffffff;      // no cell
+using namespace delaunay;
 
 class Builder {
  public:
@@ -34,6 +34,7 @@ class Builder {
     cells_.clear();
     marks_.clear();
     free_.clear();
+    number_of_.assign(points.size() + 1, 0);
     const std::array<std::uint32_t, 4> first = spanning_points();
     if (first[3] == none) return false;
     begin(first);
@@ -68,10 +69,6 @@ class Builder {
   }
 
  private:
-  struct Cell {
-    Tetrahedron corners;  // of positive orientation; one may be infinite
-    std::array<std::uint32_t, 4> neighbours;
-  };
   struct Side {
     std::uint32_t cell;  // in the cavity; its neighbour there is the outer cell, then the new cell
     std::uint32_t corner;
@@ -134,13 +131,6 @@ class Builder {
     cells_.emplace_back();
     marks_.push_back(unused);
     return static_cast<std::uint32_t>(cells_.size() - 1);
-  }
-
-  // 4 = none of them
-  static std::size_t corner_at_infinity(const Cell& cell) {
-    std::size_t i = 0;
-    while (i < 4 && cell.corners[i] != infinite) ++i;
-    return i;
   }
 
   int orientation_with(const Cell& cell, std::size_t corner, const ExactPoint& point) const {
@@ -228,15 +218,46 @@ class Builder {
       marks_[cell] = 2 * mark_;
       if (corner_at_infinity(here) == 4) hint_ = cell;
     }
-    static constexpr std::uint32_t others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
-    for (const Side& side : sides)
-      for (const std::uint32_t i : others[side.corner]) join_around_edge(side, i);
+    if (sides_size_ / 2 + 2 <= max_local)
+      join_by_table(sides);
+    else
+      for (const Side& side : sides)
+        for (const auto& [opposite, from, to] : edges_of_side[side.corner]) join_around_edge(side, opposite);
     const std::span cavity = std::span(cavity_).first(cavity_size_);
     for (const std::uint32_t cell : cavity) marks_[cell] = unused;
     free_.insert(free_.end(), cavity.begin(), cavity.end());
   }
 
-  // Two new cells are neighbours where their sides of the cavity share an edge. Turns around the edge of a side that
+  // Two new cells are neighbours where their sides of the cavity share an edge, which they run through in opposite
+  // directions. The corners of a small cavity have numbers below max_local, which find the edges in a table.
+  void join_by_table(std::span<const Side> sides) {
+    std::uint32_t next = 0;
+    numbers_.resize(sides.size());
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const auto& [old_cell, corner] = sides[k];
+      const Cell& old = cells_[old_cell];
+      const std::uint32_t cell = old.neighbours[corner];
+      auto& numbers = numbers_[k];
+      for (const auto& [opposite, from, to] : edges_of_side[corner]) {
+        const std::uint32_t point = old.corners[opposite];
+        std::uint32_t& known = number_of_[point == infinite ? points_.size() : point];
+        const bool is_new = known / max_local != mark_;
+        known = is_new ? mark_ * max_local + next : known;
+        next += is_new ? 1 : 0;
+        numbers[opposite] = known % max_local;
+      }
+      for (const auto& [opposite, from, to] : edges_of_side[corner])
+        cell_at_edge_[numbers[from] * max_local + numbers[to]] = cell;
+    }
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const auto& [old_cell, corner] = sides[k];
+      Cell& here = cells_[cells_[old_cell].neighbours[corner]];
+      for (const auto& [opposite, from, to] : edges_of_side[corner])
+        here.neighbours[opposite] = cell_at_edge_[numbers_[k][to] * max_local + numbers_[k][from]];
+    }
+  }
+
+  // The same for any cavity. Turns around the edge of a side that
   // lacks corner `opposite`, through the cells of the cavity, until it comes to the other side.
   void join_around_edge(const Side& side, std::uint32_t opposite) {
     std::uint32_t cell = side.cell, behind = side.corner, ahead = opposite;  // the corners off the edge
@@ -255,12 +276,6 @@ class Builder {
     }
   }
 
-  // Without a branch.
-  static std::uint32_t position_of(std::uint32_t value, const std::array<std::uint32_t, 4>& in) {
-    const std::uint32_t is_1 = in[1] == value, is_2 = in[2] == value, is_3 = in[3] == value;
-    return (is_1 | is_3) + 2 * (is_2 | is_3);
-  }
-
   std::vector<ExactPoint> points_;
   RoundingErrors errors_{0, 0, 0};
   std::vector<Cell> cells_;
@@ -272,8 +287,12 @@ class Builder {
   std::size_t cavity_size_ = 0, sides_size_ = 0;
   std::vector<bool> inserted_;
   std::vector<std::uint32_t> index_of_;  // of a cell in the result
-  std::uint32_t mark_ = 0;               // number of the insertion
-  std::uint32_t hint_ = 0;               // a finite cell near the last point
+  static constexpr std::uint32_t max_local = 64;
+  std::vector<std::array<std::uint32_t, 4>> numbers_;                // of the corners of the sides
+  std::vector<std::uint32_t> number_of_;                             // of a point: mark_ * max_local + number
+  std::array<std::uint32_t, max_local * max_local> cell_at_edge_{};  // by the numbers of its ends
+  std::uint32_t mark_ = 0;                                           // number of the insertion
+  std::uint32_t hint_ = 0;                                           // a finite cell near the last point
 };
 
 }  // namespace

@@ -84,6 +84,8 @@ std::vector<Points> clouds() {
   all.push_back(changed(cloud, [](Vec3& p) { p.x *= 1e-20f, p.y *= 1e-20f; }));
   all.push_back(changed(cloud, [](Vec3& p) { p = 1e-30f * p; }));
   all.push_back(changed(cloud, [](Vec3& p) { p.x = p.x > 0 ? 1.f : 0.f; }));  // in two planes
+  all.push_back(changed(normal_cloud(300, random), [](Vec3& p) { p = (1 / length(p)) * p; }));
+  all.back().push_back({0.01f, 0, 0});  // its cavity is nearly the whole sphere
   all.push_back({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4.5f}, {1, 1, 0}, {2, 2, 0}, {0, 1, 0}});
   return all;
 }
