@@ -147,19 +147,26 @@ void Simulation::keep(std::span<const std::size_t> robots) {
     parts_->backend->set_perturbations({});
     return;
   }
-  // The backend refers to the robots that go until it has let go of them.
-  const std::vector<std::shared_ptr<const Robot>> before = parts_->robots;
-  std::vector<std::unique_ptr<MaterialTable>> changed = std::move(parts_->changed_tables);
-  const std::vector<KnownExplosion> explosions = std::move(parts_->explosions);
-  parts_->truncate(0);
+  std::vector<std::shared_ptr<const Robot>> remaining;
+  std::vector<const Robot*> pointers;
+  std::vector<KnownExplosion> explosions;
   for (const std::size_t i : robots) {
-    parts_->robots.push_back(before[i]);
-    parts_->pointers.push_back(before[i].get());
-    parts_->offsets.push_back(parts_->offsets.back() + before[i]->masses.size());
-    parts_->changed_tables.push_back(std::move(changed[i]));
-    parts_->explosions.push_back(explosions[i]);
+    remaining.push_back(parts_->robots[i]);
+    pointers.push_back(parts_->pointers[i]);
+    explosions.push_back(parts_->explosions[i]);
   }
-  parts_->backend->keep(parts_->pointers, robots);
+  parts_->backend->keep(pointers, robots);  // refers to the robots that go until it returns
+  std::vector<std::size_t> offsets{0};
+  std::vector<std::unique_ptr<MaterialTable>> tables;
+  for (const std::size_t i : robots) {
+    offsets.push_back(offsets.back() + parts_->masses(i));
+    tables.push_back(std::move(parts_->changed_tables[i]));
+  }
+  parts_->robots = std::move(remaining);
+  parts_->pointers = std::move(pointers);
+  parts_->explosions = std::move(explosions);
+  parts_->offsets = std::move(offsets);
+  parts_->changed_tables = std::move(tables);
 }
 
 std::size_t Simulation::size() const { return parts_->size(); }

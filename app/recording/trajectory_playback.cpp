@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "mercury/backend.h"
 #include "mercury/error.h"
@@ -27,7 +28,8 @@ class Playback final : public Backend {
     configuration_ = configuration;
     go_to(0);
   }
-  BatchSettings settings() const override { return robots_->settings(); }
+  void add(std::span<const Robot* const>, std::size_t) override { refuse_edit(); }
+  void keep(std::span<const Robot* const>, std::span<const std::size_t>) override { refuse_edit(); }
   void configure(const Configuration& configuration) override { robots_->configure(configuration); }
   void step(const Clock& clock, std::int64_t steps) override { go_to(clock.step + steps); }
 
@@ -51,6 +53,10 @@ class Playback final : public Backend {
   }
 
  private:
+  [[noreturn]] static void refuse_edit() {
+    throw std::logic_error("the robots of a recording are those that it was made with");
+  }
+
   void go_to(std::int64_t step) {
     step_ = step;
     shown_ = false;

@@ -12,7 +12,7 @@ namespace mercury {
 // A simulation that reads its states instead of computing them. It starts at the first frame, and its time counts from
 // there. Between two frames it interpolates linearly; after the last frame it stays. Robots that exploded are marked
 // from that step on. Materials, energies and strains are available as usual; perturbations and changed parameters have
-// no effect.
+// no effect. add() and keep() throw std::logic_error.
 Simulation playback(std::shared_ptr<TrajectoryReader> trajectory);
 
 }  // namespace mercury

@@ -160,15 +160,19 @@ std::vector<Group> greedy_groups(const ItemSets& sets, std::size_t robots, std::
 class Exchange {
  public:
   Exchange(const ItemSets& sets, std::vector<Group>& groups)
-      : sets_(sets), groups_(groups), others_(groups.size()), own_(groups.size()) {
+      : sets_(sets), groups_(groups), others_(groups.size()), own_(groups.size()), changed_(groups.size()),
+        searched_(groups.size()) {
     for (std::size_t g = 0; g < groups.size(); ++g) update(g);
   }
 
   void run() {
     for (int round = 0; round < limits.exchange_rounds; ++round) {
       bool any = false;
-      for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const std::size_t now = changes_;
         for (std::size_t i = 0; i < groups_[g].size(); ++i) any |= exchange(g, i);
+        searched_[g] = now;
+      }
       if (!any) return;
     }
   }
@@ -179,7 +183,8 @@ class Exchange {
     double most = costs.min_gain;
     std::size_t best_group = 0, best = 0;
     const Word* const mine = sets_.of(groups_[g][i]);
-    for (std::size_t h = g + 1; h < std::min(groups_.size(), g + 1 + limits.groups_in_reach); ++h)
+    for (std::size_t h = g + 1; h < std::min(groups_.size(), g + 1 + limits.groups_in_reach); ++h) {
+      if (std::max(changed_[g], changed_[h]) <= searched_[g]) continue;  // nothing gained then
       for (std::size_t j = 0; j < groups_[h].size(); ++j) {
         double gain = own_[g][i] + own_[h][j];
         if (gain <= most) continue;
@@ -191,6 +196,7 @@ class Exchange {
         best_group = h;
         best = j;
       }
+    }
     if (most == costs.min_gain) return false;
     std::swap(groups_[g][i], groups_[best_group][best]);
     update(g);
@@ -199,6 +205,7 @@ class Exchange {
   }
 
   void update(std::size_t g) {
+    changed_[g] = ++changes_;
     const Group& group = groups_[g];
     others_[g].assign(group.size() * sets_.words(), 0);
     own_[g].resize(group.size());
@@ -214,6 +221,9 @@ class Exchange {
   std::vector<Group>& groups_;
   std::vector<std::vector<Word>> others_;  // by group and member: the union of the other members
   std::vector<std::vector<double>> own_;   // by group and member: what it adds to that union
+  // Exchanges are numbered: by group, the last one that changed it, and the last one before it was searched.
+  std::size_t changes_ = 0;
+  std::vector<std::size_t> changed_, searched_;
 };
 
 std::vector<Group> groups_of(std::span<const RobotItems> robots, std::span<const std::size_t> members,

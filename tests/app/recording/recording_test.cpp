@@ -2,6 +2,7 @@
 // A recording has the simulation bit for bit, and enough to simulate it again.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstring>
 
 #include "app/recording/trajectory_playback.h"
@@ -248,6 +249,14 @@ TEST_F(Recording, PlaybackRepeatsTheSimulation) {
   EXPECT_TRUE(same_bits(all_positions(played), all_positions(simulation)));
   played.reset();
   EXPECT_TRUE(same_bits(all_positions(played), all_positions(Simulation(configuration, robots))));
+}
+
+TEST_F(Recording, PlaybackHasTheRobotsOfTheRecording) {
+  Simulation simulation(on_cpu(), std::vector{pair("pair"), pair("other")});
+  record(simulation, file(), 10, 10);
+  Simulation played = playback(std::make_shared<TrajectoryReader>(file()));
+  EXPECT_THROW(played.add(pair("third")), std::logic_error);
+  EXPECT_THROW(played.keep(std::array<std::size_t, 1>{1}), std::logic_error);
 }
 
 TEST_F(Recording, PlaybackInterpolatesBetweenFrames) {
