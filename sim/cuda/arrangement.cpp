@@ -4,8 +4,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
-#include <utility>
 
 namespace mercury::cuda {
 namespace {
@@ -18,22 +18,53 @@ std::vector<std::uint16_t> slots_of_masses(const SlotOrder& order) {
   return slots;
 }
 
-// Tries a few shifts and returns the one that spreads the corners of the faces over the banks most evenly.
-std::uint32_t best_shift(std::uint32_t masses, std::span<const FacePair> pairs) {
+std::vector<OwnedSpring> in_slots(std::span<const Spring> springs, const SlotOrder& order) {
+  const std::vector<std::uint16_t> slot = slots_of_masses(order);
+  std::vector<OwnedSpring> moved;
+  moved.reserve(springs.size());
+  for (const Spring& s : springs) moved.push_back({slot[s.a], slot[s.b]});
+  return moved;
+}
+
+struct Shift {
+  std::uint32_t shift, passes;  // CornerBanks::fewest_passes() with this shift
+};
+
+// Some shifts, first those that spread the corners of the faces over the banks most evenly.
+std::array<Shift, 12> shifts_by_passes(std::uint32_t masses, std::span<const FacePair> pairs) {
   std::vector<std::uint32_t> shared(masses), outer(masses);  // how often each mass is a or c, b or d
   for (const FacePair& p : pairs) {
     ++shared[p.a], ++shared[p.c];
     ++outer[p.b], ++outer[p.d];
   }
-  std::uint32_t best = 0, fewest_passes = ~0u;
-  for (const std::uint32_t shift : {0u, 1u, 2u, 3u, 5u, 6u, 7u, 13u, 16u, 25u, 27u, 29u}) {
+  std::array<Shift, 12> shifts{{{0}, {1}, {2}, {3}, {5}, {6}, {7}, {13}, {16}, {25}, {27}, {29}}};
+  for (Shift& shift : shifts) {
     CornerBanks banks;
-    SlotOrder{masses, shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+    SlotOrder{masses, shift.shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
       for (std::uint32_t i = 0; i < count; ++i) banks.shared[slot % lanes + i] += shared[mass + i];
       for (std::uint32_t i = 0; i < count; ++i) banks.outer[slot % lanes + i] += outer[mass + i];
     });
-    const std::uint32_t passes = banks.fewest_passes(pairs.size());
-    if (passes < fewest_passes) best = shift, fewest_passes = passes;
+    shift.passes = banks.fewest_passes(pairs.size());
+  }
+  std::ranges::stable_sort(shifts, {}, &Shift::passes);
+  return shifts;
+}
+
+// The shift with the fewest passes through shared memory. Rows of springs are estimated for small robots only: in
+// these, shifts differ by more, and an estimate takes less time.
+SlotOrder choose_order(const Robot& robot, std::span<const FacePair> pairs) {
+  const auto masses = static_cast<std::uint32_t>(robot.masses.size());
+  const std::array<Shift, 12> shifts = shifts_by_passes(masses, pairs);
+  constexpr std::size_t max_estimated = 4000;  // springs, of all estimates together
+  const std::size_t estimates = std::clamp<std::size_t>(max_estimated / (robot.springs.size() + 1), 1, 4);
+  SlotOrder best{masses, shifts.front().shift};
+  std::uint32_t fewest = ~0u;
+  for (std::size_t i = 0; i < estimates && estimates > 1; ++i) {
+    const SlotOrder order{masses, shifts[i].shift};
+    constexpr std::uint32_t per_row = 10, per_column = 9;  // docs/performance.md; x, v and sum of a corner
+    const std::uint32_t passes =
+        per_row * estimate_rows(masses, in_slots(robot.springs, order)) + per_column * shifts[i].passes;
+    if (passes < fewest) best = order, fewest = passes;
   }
   return best;
 }
@@ -41,15 +72,11 @@ std::uint32_t best_shift(std::uint32_t masses, std::span<const FacePair> pairs) 
 }  // namespace
 
 Arrangement arrange(const Robot& robot) {
-  const auto masses = static_cast<std::uint32_t>(robot.masses.size());
   std::vector<FacePair> pairs = pair_faces(robot);
-  const SlotOrder order{masses, best_shift(masses, pairs)};
+  const SlotOrder order = choose_order(robot, pairs);
   const std::vector<std::uint16_t> slot = slots_of_masses(order);
   for (FacePair& p : pairs) p = {slot[p.a], slot[p.b], slot[p.c], slot[p.d]};
-  std::vector<OwnedSpring> springs;
-  springs.reserve(robot.springs.size());
-  for (const Spring& s : robot.springs) springs.push_back({slot[s.a], slot[s.b]});
-  return {order, schedule_springs(masses, std::move(springs)), make_face_tiles(pairs)};
+  return {order, schedule_springs(order.masses, in_slots(robot.springs, order)), make_face_tiles(pairs)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {
@@ -60,7 +87,8 @@ std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robot
   std::vector<std::uint32_t> first(robots.size());
   oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
     const std::uint32_t candidate = first_of_key.at(keys[i]);
-    first[i] = same_topology(*robots[candidate], *robots[i]) ? candidate : static_cast<std::uint32_t>(i);
+    const bool same = candidate == i || same_topology(*robots[candidate], *robots[i]);
+    first[i] = same ? candidate : static_cast<std::uint32_t>(i);
   });
   return first;
 }

@@ -25,12 +25,19 @@ class OwnerSearch {
   OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs)
       : springs_(std::move(springs)), tiles_(tiles_for(masses)), load_(tiles_ * tile_counters) {
     choose_first();
-    for (int sweep = 0; sweep < 2; ++sweep) even_out(sweep);
-    list_candidates();
-    lower_peaks();
+    even_out(3);
   }
 
-  OwnedSprings take() {
+  std::uint32_t rows() const {
+    std::uint32_t rows = 0;
+    for (std::uint32_t tile = 0; tile < tiles_; ++tile) rows += static_cast<std::uint32_t>(busiest(tile));
+    return rows;
+  }
+
+  OwnedSprings finish() {
+    even_out(2);
+    list_candidates();
+    lower_peaks();
     return {std::move(springs_), std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
   }
 
@@ -65,10 +72,9 @@ class OwnerSearch {
     });
   }
 
-  // Odd sweeps also exchange ends where the sum of squares stays the same, which lets loads wander to where there is
-  // room.
-  void even_out(int sweep) {
-    const int least = sweep % 2 == 0 ? 3 : 2;
+  // Exchanges ends where the advantage is at least this much. With 3, the sum of the squares of the loads falls. With 2
+  // it may stay the same, which lets loads wander to where there is room.
+  void even_out(int least) {
     for_each_spring([&](OwnedSpring& s) {
       const int moved = advantage(s) >= least;
       change_loads(s, -moved);
@@ -81,6 +87,11 @@ class OwnerSearch {
   int advantage(OwnedSpring s) const {
     const OwnedSpring t = exchanged(s);
     return load_[lane_counter(s)] + load_[bank_counter(s)] - load_[lane_counter(t)] - load_[bank_counter(t)];
+  }
+
+  int busiest(std::uint32_t tile) const {
+    const int* const load = &load_[tile * tile_counters];
+    return *std::max_element(load, load + tile_counters);
   }
 
   // By counter the springs that load it, or would if their other mass owned them.
@@ -101,10 +112,9 @@ class OwnerSearch {
   void lower_peaks() {
     limit_.resize(tiles_);
     for (std::uint32_t tile = 0; tile < tiles_; ++tile) {
-      int* const load = &load_[tile * tile_counters];
-      const int limit = *std::max_element(load, load + tile_counters);
+      const int limit = busiest(tile);
       limit_[tile] = static_cast<std::uint32_t>(limit);
-      for (std::uint32_t i = 0; i < tile_counters; ++i) load[i] -= limit;
+      for (std::uint32_t i = 0; i < tile_counters; ++i) load_[tile * tile_counters + i] -= limit;
     }
     visited_.assign(load_.size(), 0);
     std::vector<std::uint32_t> open(tiles_);
@@ -210,7 +220,11 @@ class OwnerSearch {
 }  // namespace
 
 OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs) {
-  return OwnerSearch(masses, std::move(springs)).take();
+  return OwnerSearch(masses, std::move(springs)).finish();
+}
+
+std::uint32_t estimate_rows(std::size_t masses, std::vector<OwnedSpring> springs) {
+  return OwnerSearch(masses, std::move(springs)).rows();
 }
 
 }  // namespace mercury::cuda
