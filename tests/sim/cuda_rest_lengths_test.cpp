@@ -32,7 +32,7 @@ TEST(RestLengths, TableIsAscendingAndIndicesLeadToTheLengths) {
   EXPECT_EQ(rest_lengths(chain(100)).table.size(), 101u);
 }
 
-// 0 and 255 others are the most that 8 bits can tell apart.
+// 8 bits number 0 and 255 others.
 TEST(RestLengths, NoIndicesWithMoreThan256Lengths) {
   EXPECT_EQ(rest_lengths(chain(255)).table.size(), 256u);
   for (const int count : {256, 700}) {
