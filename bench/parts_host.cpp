@@ -4,12 +4,14 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "bench/cpu_lattice.h"
-#include "mercury/error.h"
 #include "mercury/nn_robot.h"
+#include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
+#include "robots/alpha_body.h"
 #include "sim/cpu/kernels/kernel.h"
 #include "sim/physics/face_pairs.h"
 
@@ -105,22 +107,61 @@ void write(State& state) {
 BENCHMARK(write<RobotFormat::json>)->Name("write JSON")->Arg(10)->Unit(benchmark::kMicrosecond);
 BENCHMARK(write<RobotFormat::cbor>)->Name("write CBOR")->Arg(10)->Unit(benchmark::kMicrosecond);
 
-void draw_voxels(State& state) {
+void draw_voxels(State& state, const RandomVoxelOptions& options) {
   std::uint64_t index = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(random_voxel_robot({}, 1, index++));
+  for (auto _ : state) benchmark::DoNotOptimize(random_voxel_robot(options, 1, index++));
+  state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK(draw_voxels)->Name("draw a voxel robot")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(draw_voxels, default, {})->Name("draw a voxel robot")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(draw_voxels, ten, {.smallest = {10, 10, 10}, .largest = {10, 10, 10}})
+    ->Name("draw a voxel robot of 10x10x10")
+    ->Unit(benchmark::kMicrosecond);
 
-// Network, alpha shape, springs and skin. The argument is the number of points in the cloud.
-void grow_robot(State& state) {
-  const NnGenome genome = random_nn_genome({.points = static_cast<std::size_t>(state.range(0))}, 1);
-  try {
-    for (auto _ : state) benchmark::DoNotOptimize(grow(genome));
-  } catch (const InputError& error) {
-    state.SkipWithError(error.what());
-  }
+// The argument is the number of points in the cloud, here and below.
+std::size_t points_of(const State& state) { return static_cast<std::size_t>(state.range(0)); }
+
+void draw_genome(State& state) {
+  std::uint64_t index = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(random_nn_genome({}, 1, index++));
 }
-BENCHMARK(grow_robot)->Name("grow a network robot")->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
+BENCHMARK(draw_genome)->Name("draw a network")->Unit(benchmark::kMicrosecond);
+
+void evaluate_network(State& state) {
+  const Network network = random_nn_genome({}, 1).network;
+  Random random(1);
+  std::vector<float> points(3 * points_of(state));
+  for (float& x : points) x = static_cast<float>(random.normal());
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate(network, points));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(evaluate_network)->Name("evaluate a network")->Arg(512)->Unit(benchmark::kMicrosecond);
+
+#if MERCURY_NN
+// Bodies of many shapes, half of them mirrored.
+void find_alpha_body(State& state) {
+  std::vector<std::vector<Vec3>> clouds;
+  for (const Robot& robot : random_nn_robots({.points = points_of(state)}, 1, 16)) clouds.push_back(robot.masses);
+  std::size_t next = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(alpha_body(clouds[next++ % clouds.size()]));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(find_alpha_body)->Name("alpha shape of a cloud")->Arg(512)->Arg(4096)->Unit(benchmark::kMicrosecond);
+
+// Network, alpha shape, springs and skin, of another robot each time.
+void grow_robot(State& state) {
+  std::uint64_t index = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(random_nn_robot({.points = points_of(state)}, 1, index++));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(grow_robot)->Name("grow a network robot")->Arg(512)->Arg(2048)->Unit(benchmark::kMicrosecond);
+
+// The argument is the number of robots. On all cores; the time is that of the clock.
+void grow_population(State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(random_nn_robots({}, 1, static_cast<std::size_t>(state.range(0))));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(grow_population)->Name("grow network robots")->Arg(1000)->UseRealTime()->Unit(benchmark::kMillisecond);
+#endif
 
 }  // namespace
 }  // namespace mercury::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that includes CGAL: it compiles slowly, and is under the GPL.
+// The only file that includes CGAL, which compiles slowly: its kernel and number types, which are under the LGPL.
 #include "robots/exact_geometry.h"
 
 #include <CGAL/Exact_rational.h>
