@@ -14,7 +14,7 @@ void for_each_bit(std::uint32_t bits, Visit visit) {
 }
 
 // Finds partners for the padding of a row, in the banks that the row leaves free. There are as many of these banks as
-// there are padding entries.
+// there are padding entries. The owner itself comes first, then its neighbours, then masses near it in the file.
 class PaddingPartners {
  public:
   PaddingPartners(const OwnedSprings& owned, std::size_t masses, std::uint32_t tile)
@@ -22,16 +22,18 @@ class PaddingPartners {
         lanes_with_mass_(masses - first_ >= lanes ? ~0u : (1u << masses % lanes) - 1) {}
 
   void fill(ScheduledSpring* row) {
-    free_banks_ = ~0u;
-    std::uint32_t unused_lanes = 0;
+    std::uint32_t unused_lanes = 0, used_banks = 0;
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-      if (row[lane].spring == padding)
-        unused_lanes |= 1u << lane;
-      else
-        free_banks_ &= ~(1u << row[lane].partner % lanes);
+      const bool unused = row[lane].spring == padding;
+      unused_lanes |= std::uint32_t{unused} << lane;
+      used_banks |= std::uint32_t{!unused} << row[lane].partner % lanes;
     }
+    free_banks_ = ~used_banks;
+    const std::uint32_t own = unused_lanes & free_banks_ & lanes_with_mass_;
+    free_banks_ &= ~own;
+    for_each_bit(own, [&](std::uint32_t lane) { row[lane].partner = static_cast<std::uint16_t>(first_ + lane); });
     std::uint32_t left = 0;
-    for_each_bit(unused_lanes & lanes_with_mass_, [&](std::uint32_t lane) {
+    for_each_bit(unused_lanes & ~own & lanes_with_mass_, [&](std::uint32_t lane) {
       row[lane].partner = neighbour_of(lane);
       if (row[lane].partner == first_ + lane) left |= 1u << lane;
     });
@@ -54,9 +56,8 @@ class PaddingPartners {
     return static_cast<std::uint16_t>(owner);
   }
 
-  // The owner itself if its bank is free, otherwise any mass of its tile or the previous one.
+  // Any mass of the lane's tile or the previous one.
   std::uint16_t any(std::uint32_t lane) {
-    if (free_banks_ >> lane & 1) return take_slot(first_, 1u << lane, lane);
     if (const std::uint32_t banks = free_banks_ & lanes_with_mass_; banks != 0 || first_ == 0)
       return take_slot(first_, banks, lane);
     return take_slot(first_ - lanes, free_banks_, lane);

@@ -18,8 +18,8 @@
 // 3. A lane's own mass stays in registers for all its rows. Only the partner's position and sum go through shared
 //    memory.
 // 4. Padding fills the unused entries. It is computed like a spring (of air, so it adds nothing) and reads a partner
-//    too. That partner lies in a bank that the row leaves free, and near the owner, so that its distance is an
-//    ordinary one.
+//    too. That partner lies in a bank that the row leaves free: the owner itself or a mass near it, so that its
+//    distance is an ordinary one.
 #pragma once
 
 #include <cstdint>
