@@ -89,19 +89,27 @@ void multiply_with_any(const GroupProduct& product) { multiply<4, 2>(product); }
 #ifdef __x86_64__
 [[gnu::target("avx2")]] void multiply_with_avx2(const GroupProduct& product) { multiply<8, 4>(product); }
 [[gnu::target("avx512f")]] void multiply_with_avx512(const GroupProduct& product) { multiply<16, 8>(product); }
-
-Multiply best_multiply() {
-  if (__builtin_cpu_supports("avx512f")) return multiply_with_avx512;
-  return __builtin_cpu_supports("avx2") ? multiply_with_avx2 : multiply_with_any;
-}
-#else
-Multiply best_multiply() { return multiply_with_any; }
 #endif
+
+const std::vector<Multiply>& kernels() {
+  static const std::vector<Multiply> usable = [] {
+    std::vector<Multiply> found;
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f")) found.push_back(multiply_with_avx512);
+    if (__builtin_cpu_supports("avx2")) found.push_back(multiply_with_avx2);
+#endif
+    found.push_back(multiply_with_any);
+    return found;
+  }();
+  return usable;
+}
 
 }  // namespace
 
-std::vector<float> evaluate_layers(std::span<const Layer> layers, std::span<const float> points) {
-  static const Multiply multiply_group = best_multiply();
+std::size_t perceptron_kernels() { return kernels().size(); }
+
+std::vector<float> evaluate_layers(std::span<const Layer> layers, std::span<const float> points, std::size_t kernel) {
+  const Multiply multiply_group = kernels()[kernel];
   std::vector<PreparedLayer> prepared;
   prepared.reserve(layers.size());
   std::size_t widest = 0;

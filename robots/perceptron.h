@@ -3,6 +3,7 @@
 // is the same bit for bit with any of them.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,11 @@
 
 namespace mercury {
 
-// See evaluate() in mercury/network.h.
-std::vector<float> evaluate_layers(std::span<const Layer> layers, std::span<const float> points);
+// See evaluate() in mercury/network.h. `kernel` is below perceptron_kernels().
+std::vector<float> evaluate_layers(std::span<const Layer> layers, std::span<const float> points,
+                                   std::size_t kernel = 0);
+
+// Number of instruction sets that this machine has a kernel for. Kernel 0 is the fastest.
+std::size_t perceptron_kernels();
 
 }  // namespace mercury

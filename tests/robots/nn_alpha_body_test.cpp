@@ -10,6 +10,7 @@
 #include "mercury/error.h"
 #include "mercury/random.h"
 #include "robots/alpha_body.h"
+#include "robots/exact_geometry.h"
 
 namespace mercury {
 namespace {
@@ -201,6 +202,63 @@ TEST(AlphaBody, OfAMirroredCloudIsMirrored) {
       }
       EXPECT_GT(compared, 50u);
     }
+}
+
+TEST(Circumradius, LiesBetweenItsBounds) {
+  // From regular tetrahedra to flat and small ones.
+  Random random(7);
+  std::size_t tight = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::vector<Vec3> points = [&] {
+      std::vector<Vec3> corners = random_cloud(4, static_cast<std::uint64_t>(i));
+      const auto flatness = static_cast<float>(std::pow(10, -12 * random.uniform()));
+      if (i % 4 == 1) corners[3] = 0.5f * (corners[0] + corners[1]) + flatness * corners[3];  // near a side
+      if (i % 4 == 2)
+        for (Vec3& p : corners) p.z *= flatness;
+      if (i % 4 == 3)
+        for (Vec3& p : corners) p = flatness * p + Vec3{1, 1, 1};
+      return corners;
+    }();
+    Tetrahedron t = {0, 1, 2, 3};
+    const int side = exact_orientation(points[0], points[1], points[2], points[3]);
+    if (side == 0) continue;
+    if (side < 0) std::swap(t[2], t[3]);
+    const ExactSquaredRadius exact(points, t);
+    const Bounds bounds = squared_circumradius(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
+    EXPECT_TRUE(exact.compare(bounds.low) >= 0) << i;
+    EXPECT_TRUE(!std::isfinite(bounds.high) || exact.compare(bounds.high) <= 0) << i;
+    tight += bounds.high - bounds.low < 1e-9 * bounds.low ? 1 : 0;
+    EXPECT_TRUE(exact.compare(exact.bounds().low) >= 0);
+    EXPECT_TRUE(exact.compare(exact.bounds().high) <= 0);
+    EXPECT_NEAR(exact.bounds().high / exact.bounds().low, 1, 1e-15);
+    if (i % 4 == 0) {
+      const auto radius = static_cast<double>(circumscribed_sphere(points, t).second);
+      EXPECT_NEAR(std::sqrt(exact.bounds().low), radius, 1e-6 * radius);
+    }
+  }
+  EXPECT_GT(tight, 10000u);
+}
+
+TEST(Circumradius, IsComputedExactlyWhereItsBoundsSayNothing) {
+  // Two sides are nearly parallel: n (n + 2) - (n + 1)^2 = -1, of terms near 7e13.
+  const float n = 0x1p23f;
+  const std::vector<Vec3> points = {{0, 0, 0}, {n + 1, n + 2, 0}, {n, n + 1, 0}, {0, 0, 1}};
+  const Bounds bounds = squared_circumradius(points[0], points[1], points[2], points[3]);
+  EXPECT_EQ(bounds.low, 0);
+  EXPECT_FALSE(std::isfinite(bounds.high));
+  const auto radius = static_cast<double>(circumscribed_sphere(points, {0, 1, 2, 3}).second);
+  EXPECT_NEAR(alpha_body(points).alpha, radius, 1e-12 * radius);
+}
+
+TEST(Circumradius, ComparesExactly) {
+  // Edges 1, 1, 1 at a right angle: the squared radius is 3/4, whichever corner comes first.
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1 + 0x1p-23f}};
+  const ExactSquaredRadius one(points, {0, 1, 2, 3}), turned(points, {1, 3, 2, 0}), larger(points, {0, 1, 2, 4});
+  EXPECT_TRUE(one.compare(0.75) == 0);
+  EXPECT_TRUE(one.compare(turned) == 0);
+  EXPECT_TRUE(one.compare(larger) < 0);
+  EXPECT_TRUE(larger.compare(0.75) > 0);
+  EXPECT_TRUE(one.compare(std::nextafter(0.75, 1)) < 0);
 }
 
 TEST(AlphaBody, OfALatticeIsTheWholeLattice) {

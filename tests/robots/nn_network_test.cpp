@@ -9,6 +9,7 @@
 #include "mercury/error.h"
 #include "mercury/network.h"
 #include "mercury/random.h"
+#include "robots/perceptron.h"
 
 namespace mercury {
 namespace {
@@ -98,13 +99,20 @@ TEST(Network, AgreesWithACalculationInDoublePrecision) {
 }
 
 TEST(Network, SumsInTheOrderOfItsInputsAndRoundsAfterEachStep) {
-  const Network network = random_network({3, 64, 64, 25}, 3);
-  const std::vector<float> points = random_points(3 * 100, 4);
-  const std::vector<float> outputs = evaluate(network, points);
-  for (std::size_t p = 0; p < 100; ++p) {
-    const auto expected = by_hand<float>(network, std::span(points).subspan(p * 3, 3));
-    for (std::size_t k = 0; k < 25; ++k) EXPECT_EQ(outputs[p * 25 + k], expected[k]);
-  }
+  // With every instruction set, for widths and numbers of points that fill vectors and tiles or do not.
+  for (std::size_t kernel = 0; kernel < perceptron_kernels(); ++kernel)
+    for (const std::vector<int>& sizes : {std::vector{3, 64, 64, 25}, {5, 17, 40, 25}, {3, 25}, {1, 16, 1, 33, 25}})
+      for (const std::size_t count : {1u, 64u, 100u}) {
+        const Network network = random_network(sizes, 3);
+        const auto inputs = static_cast<std::size_t>(sizes.front());
+        const std::vector<float> points = random_points(inputs * count, 4);
+        const std::vector<float> outputs = evaluate_layers(network.layers, points, kernel);
+        ASSERT_EQ(outputs.size(), 25 * count);
+        for (std::size_t p = 0; p < count; ++p) {
+          const auto expected = by_hand<float>(network, std::span(points).subspan(p * inputs, inputs));
+          for (std::size_t k = 0; k < 25; ++k) EXPECT_EQ(outputs[p * 25 + k], expected[k]);
+        }
+      }
 }
 
 TEST(Network, NaNReachesTheResult) {
