@@ -64,6 +64,7 @@ void Evaluator::stop() {
   if (!parts.waiting.empty()) parts.end_at(parts.waiting.front().first);
   for (const Portion& portion : parts.waiting) parts.memory_in_use -= portion.bytes();
   parts.waiting.clear();
+  parts.waiting_robots = 0;
   parts.notify_all();
 }
 

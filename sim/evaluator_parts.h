@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads of an evaluator.
 //
-//     maker ──> waiting portions ──> worker, worker, ... of device 0 ──> finished portions ──> next()
+//     maker ──> waiting pieces ────> worker, worker, ... of device 0 ──> finished portions ──> next()
 //       ^                       └──> worker, worker, ... of device 1 ──┘                         |
 //       └────────────────────── memory of robots that were yielded ──────────────────────────────┘
 //
-// 1. One thread makes portions, one after the other, each on all cores. A portion is complete when it is as large as
-//    the device wants it; when a device has too little to do; or when its share of the memory is used up. So portions
-//    are small as long as stepping is faster than making, and large otherwise.
+// 1. One thread makes pieces of consecutive robots, each on all cores. A piece is complete when it is as large as
+// usual,
+//    when a device has too little to do, or when its share of the memory is used up.
 // 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
-//    another are loaded. The CPU has one worker, since stepping itself uses all cores.
+//    another are loaded. A worker takes several pieces as one portion (evaluator_policy.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
 //    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
 // 4. `end` is the index behind the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
-// the
-//    first robot of the portion, and whoever works on robots from there on gives up.
+//    its first robot, and whoever works on robots from there on gives up.
 #pragma once
 
 #include <atomic>
@@ -48,11 +47,12 @@ struct Evaluator::Parts {
     MakeBackend make_backend;
     bool is_cpu = false;
     // The rest is guarded by the mutex.
-    std::string name;         // empty = not yet started
-    std::size_t in_hand = 0;  // portions that its workers have
-    std::size_t idle_workers = 0;
-    std::size_t robots = 0;  // stepped to the end
-    std::size_t robots_at_once = 0;
+    std::string name;                                      // empty = not yet started
+    std::size_t portions_in_hand = 0, robots_in_hand = 0;  // that its workers have
+    std::size_t idle_workers = 0;                          // that wait for a portion
+    std::size_t portions_taken = 0;
+    std::size_t robots = 0;          // stepped to the end
+    std::size_t robots_at_once = 0;  // 0 = not yet known
     UnionClock stepping{};
   };
 
@@ -70,12 +70,16 @@ struct Evaluator::Parts {
 
   // Of the maker.
   bool is_large_enough(std::size_t first, std::size_t robots) const;
-  bool may_make() const;             // to be called with the mutex locked, as all functions below marked so
-  std::size_t memory_share() const;  // locked
+  bool may_make() const;            // to be called with the mutex locked, as all functions below that are marked so
+  std::size_t piece_bytes() const;  // locked
 
   // Of the workers.
   int workers_of(const DeviceParts& device) const;
   void device_started(DeviceParts& device, const Simulation& simulation);
+  std::size_t robots_that_fill(const DeviceParts& device) const;    // locked
+  std::size_t largest_portion_of(const DeviceParts& device) const;  // locked
+  bool may_take(const DeviceParts& device) const;                   // locked
+  Portion next_portion(const DeviceParts& device);                  // locked
   std::optional<Portion> take(DeviceParts& device);
   void evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace);
   void loaded(DeviceParts& device, const Simulation& simulation);
@@ -99,6 +103,9 @@ struct Evaluator::Parts {
   std::deque<DeviceParts> devices;  // complete once `devices_are_known`
   bool devices_are_known = false;
   std::deque<Portion> waiting;
+  std::size_t waiting_robots = 0;             // of all pieces
+  std::size_t next_first = 0;                 // index of the first of them
+  std::size_t portion_bytes = unknown_count;  // accepted per portion because of the devices' memory
   bool all_made = false;
   std::map<std::size_t, FinishedPortion> finished;  // by the index of the first robot
   std::size_t next_index = 0;                       // of the portion that is yielded after `current`
@@ -110,10 +117,9 @@ struct Evaluator::Parts {
 
   std::atomic<std::size_t> end;
   std::atomic<bool> stopping = false;
-  std::atomic<std::size_t> memory_in_use = 0;              // by portions and results that are not yet yielded
-  std::atomic<std::size_t> largest_robot = 0;              // [bytes]
-  std::atomic<std::size_t> portion_robots = 0;             // wanted per portion, at most
-  std::atomic<std::size_t> portion_bytes = unknown_count;  // accepted per portion because of the devices' memory
+  std::atomic<std::size_t> memory_in_use = 0;  // by portions and results that are not yet yielded
+  std::atomic<std::size_t> largest_robot = 0;  // [bytes]
+  std::atomic<std::size_t> piece_robots = 0;   // wanted per piece, at most
   std::atomic<std::size_t> device_count = 0;
   std::atomic<bool> device_is_hungry = false;  // a device has too little to do
   std::atomic<std::int64_t> robot_steps = 0;

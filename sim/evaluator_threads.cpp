@@ -10,22 +10,11 @@
 #include "sim/evaluator_parts.h"
 
 namespace mercury {
-namespace {
-
-// Per device. On CUDA, one portion steps, one is loaded, and one is read or waits for the other two.
-constexpr int cuda_workers = 3, cpu_workers = 1;
-// Robots per portion, unless the request says how many. On the CPU, more robots make fuller lockstep groups.
-constexpr std::size_t cpu_robots_per_thread = 512;
-constexpr std::size_t smallest_portion = 128, usual_portion = 512, largest_portion = 8192;
-// Portions that may wait before the devices have started, and per device afterwards.
-constexpr std::size_t waiting_at_start = 16, waiting_per_device = 2;
-
-}  // namespace
 
 Evaluator::Parts::Parts(const EvaluationRequest& wanted, RobotSource robots, std::size_t number)
     : request(wanted), source(std::move(robots)), count(number),
       memory_limit(wanted.memory_limit > 0 ? wanted.memory_limit : available_host_memory() / 4), end(number) {
-  portion_robots = request.portion > 0 ? request.portion : usual_portion;
+  update_demand();
 }
 
 Evaluator::Parts::~Parts() {
@@ -72,10 +61,6 @@ void Evaluator::Parts::start_devices(const std::vector<MakeBackend>& given) {
   }
 }
 
-int Evaluator::Parts::workers_of(const DeviceParts& device) const {
-  return request.workers > 0 ? request.workers : device.is_cpu ? cpu_workers : cuda_workers;
-}
-
 // --- The maker
 
 void Evaluator::Parts::make_portions() {
@@ -89,7 +74,7 @@ void Evaluator::Parts::make_portions() {
         std::unique_lock lock(mutex);
         maker_may_go_on.wait(lock, [&] { return limits.cancelled() || may_make(); });
         if (limits.cancelled()) break;
-        limits.bytes = std::min(memory_share(), portion_bytes.load());
+        limits.bytes = piece_bytes();
       }
       std::optional<UnionClock::Interval> interval(std::in_place, making);
       Portion portion = make_portion(source, first, count, limits, largest_robot);
@@ -100,6 +85,7 @@ void Evaluator::Parts::make_portions() {
       first += portion.candidates.size();
       made += portion.candidates.size();
       memory_in_use += portion.bytes();
+      waiting_robots += portion.candidates.size();
       if (!portion.candidates.empty()) waiting.push_back(std::move(portion));
       update_demand();
       portion_waits.notify_all();
@@ -111,51 +97,6 @@ void Evaluator::Parts::make_portions() {
   all_made = true;
   end_at(first);
   notify_all();
-}
-
-bool Evaluator::Parts::may_make() const {
-  const std::size_t most_waiting = devices_are_known ? waiting_per_device * devices.size() : waiting_at_start;
-  const std::size_t in_use = memory_in_use;
-  return waiting.size() < most_waiting &&
-         (in_use == 0 || in_use + std::max(memory_share(), largest_robot.load()) <= memory_limit);
-}
-
-// What one portion may take, so that each worker can have one, and others wait to be loaded or yielded.
-std::size_t Evaluator::Parts::memory_share() const {
-  std::size_t portions = 2;
-  for (const DeviceParts& device : devices) portions += static_cast<std::size_t>(workers_of(device));
-  if (!devices_are_known) portions += cuda_workers;
-  return memory_limit / portions;
-}
-
-bool Evaluator::Parts::is_large_enough(std::size_t first, std::size_t robots) const {
-  std::size_t most = portion_robots;
-  if (request.portion == 0 && count != unknown_count) {
-    const std::size_t remaining = count - first;
-    if (device_count > 1)  // all devices should end at the same time
-      most = std::min(most, std::max(smallest_portion, remaining / (2 * device_count)));
-    else if (remaining <= most + most / 4)  // rather a larger portion than a tiny one at the end
-      most = remaining;
-  }
-  return robots >= most || (request.portion == 0 && device_is_hungry && robots >= smallest_portion);
-}
-
-void Evaluator::Parts::update_demand() {
-  device_count = devices.size();
-  device_is_hungry = waiting.empty() && std::ranges::any_of(devices, [](const DeviceParts& device) {
-                       return !device.is_cpu && !device.name.empty() && device.in_hand < 2;
-                     });
-  if (request.portion > 0) return;
-  std::size_t most = 0;
-  for (const DeviceParts& device : devices) {
-    const auto cores = static_cast<std::size_t>(request.configuration.device.threads);
-    const std::size_t threads = cores > 0 ? cores : std::max(1u, std::thread::hardware_concurrency());
-    const std::size_t wanted = device.is_cpu                ? cpu_robots_per_thread * threads
-                               : device.robots_at_once == 0 ? usual_portion
-                                                            : device.robots_at_once;
-    most = std::max(most, std::clamp(wanted, smallest_portion, largest_portion));
-  }
-  if (most > 0) portion_robots = most;
 }
 
 // --- The workers
@@ -179,10 +120,10 @@ void Evaluator::Parts::work(DeviceParts& device) {
 
 void Evaluator::Parts::device_started(DeviceParts& device, const Simulation& simulation) {
   const int cuda = simulation.cuda_device();
-  const std::size_t free = cuda >= 0 ? free_cuda_memory(cuda) : portion_bytes.load();
+  const std::size_t free = cuda >= 0 ? free_cuda_memory(cuda) : unknown_count;
   const std::lock_guard lock(mutex);
   device.name = simulation.device_name();
-  portion_bytes = std::min(portion_bytes.load(), free / static_cast<std::size_t>(workers_of(device) + 1));
+  portion_bytes = std::min(portion_bytes, free / static_cast<std::size_t>(workers_of(device) + 1));
   update_demand();
   device_has_started.notify_all();
   portion_waits.notify_all();
@@ -191,20 +132,15 @@ void Evaluator::Parts::device_started(DeviceParts& device, const Simulation& sim
 std::optional<Portion> Evaluator::Parts::take(DeviceParts& device) {
   std::unique_lock lock(mutex);
   ++device.idle_workers;
-  const auto has_more_to_do = [&](const DeviceParts& other) {
-    return other.idle_workers > 0 && other.in_hand < device.in_hand;
-  };
-  portion_waits.wait(lock, [&] {
-    return all_made || stopping || (!waiting.empty() && std::ranges::none_of(devices, has_more_to_do));
-  });
+  portion_waits.wait(lock, [&] { return (all_made && waiting.empty()) || stopping || may_take(device); });
   --device.idle_workers;
   if (waiting.empty()) return std::nullopt;
-  Portion portion = std::move(waiting.front());
-  waiting.pop_front();
-  ++device.in_hand;
+  Portion portion = next_portion(device);
+  ++device.portions_in_hand;
+  ++device.portions_taken;
+  device.robots_in_hand += portion.candidates.size();
   update_demand();
-  maker_may_go_on.notify_one();
-  portion_waits.notify_all();
+  notify_all();
   return portion;
 }
 
@@ -242,6 +178,7 @@ void Evaluator::Parts::loaded(DeviceParts& device, const Simulation& simulation)
   for (const std::string& note : simulation.notes())
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   update_demand();
+  portion_waits.notify_all();
 }
 
 void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& after) {
@@ -254,7 +191,8 @@ void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& 
 // Without results if the portion was given up.
 void Evaluator::Parts::finish(DeviceParts& device, const Portion& portion, FinishedPortion result) {
   const std::lock_guard lock(mutex);
-  --device.in_hand;
+  --device.portions_in_hand;
+  device.robots_in_hand -= portion.candidates.size();
   if (result.results.empty()) {
     memory_in_use -= portion.bytes();
     end_at(portion.first);
