@@ -71,9 +71,10 @@ class CpuBackend final : public Backend {
     std::unordered_set<const Body*> gone;
     for (const auto& body : kept)
       if (body) gone.insert(body.get());
-    if (gone.empty() || batches_.empty()) return;
+    if (gone.empty()) return;
     std::erase_if(loose_, [&](const Body* body) { return gone.contains(body); });
     std::ranges::copy(take_out(gone, batches_), std::back_inserter(loose_));
+    if (batches_.empty()) ungroup();
   }
 
   BatchSettings settings() const override {

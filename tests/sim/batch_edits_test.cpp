@@ -176,6 +176,23 @@ TEST_P(BatchEdits, ManyGenerationsLeaveTheElderUntouched) {
   EXPECT_EQ(edited.hash(0), alone.hash(0));
 }
 
+TEST_P(BatchEdits, AllRobotsCanGoAndOthersCome) {
+  const std::vector<Robot> robots = herd();
+  Simulation simulation = start(robots);
+  simulation.step(5);
+  simulation.add(robots[3]);
+  simulation.keep(std::array<std::size_t, 1>{robots.size()});
+  simulation.keep({});
+  simulation.step(5);
+  EXPECT_TRUE(simulation.hashes().empty());
+  EXPECT_TRUE(simulation.step_and_sample(10, 5).empty());
+  EXPECT_EQ(simulation.steps(), 20);
+  simulation.add(robots);
+  simulation.set_clock({.dt = configuration().dt});
+  simulation.step(20);
+  EXPECT_EQ(simulation.hashes(), hashes_after(robots, 20));
+}
+
 TEST_P(BatchEdits, AfterAResetRobotsMoveAsFromTheStart) {
   const std::vector<Robot> robots = herd();
   Simulation simulation = start(std::span(robots).first(10));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/sim/bodies.h"
 
 namespace mercury {
@@ -46,6 +48,30 @@ TEST(SplitBackend, GivesTheSameResultsAsOneBackend) {
   one->report(start, telemetry1, statuses);
   split->report(start, telemetry2, statuses);
   for (std::size_t i = 0; i < robots.size(); ++i) EXPECT_EQ(telemetry1[i].elastic_energy, telemetry2[i].elastic_energy);
+}
+
+TEST(SplitBackend, AnAddedRobotGoesToThePartWithTheLeastSpringsAndStaysThere) {
+  std::vector<std::unique_ptr<Backend>> parts;
+  for (int part = 0; part < 2; ++part) parts.push_back(make_cpu_backend({}));
+  const std::array<const Backend*, 2> part{parts[0].get(), parts[1].get()};
+  const auto split = make_split_backend(std::move(parts));
+  const auto sizes = [&] { return std::array{part[0]->statuses().size(), part[1]->statuses().size()}; };
+  using Sizes = std::array<std::size_t, 2>;
+
+  const Robot small = bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1),
+              large = bodies::random_voxels({.x = 4, .y = 4, .z = 4}, 2);
+  std::vector<const Robot*> robots{&large, &small, &small};
+  split->load(robots, {});
+  EXPECT_EQ(sizes(), (Sizes{1, 2}));
+  robots.push_back(&small);
+  split->add(robots, 3);
+  EXPECT_EQ(sizes(), (Sizes{1, 3}));
+  robots.insert(robots.end(), {&large, &small});
+  split->add(robots, 4);
+  EXPECT_EQ(sizes(), (Sizes{2, 4}));
+  const std::array<std::size_t, 4> kept{4, 3, 1, 5};
+  split->keep(std::array{&large, &small, &small, &small}, kept);
+  EXPECT_EQ(sizes(), (Sizes{1, 3}));
 }
 
 }  // namespace
