@@ -51,25 +51,28 @@ constexpr std::int64_t sweep_steps = 1000;  // per call in a sweep
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // Boxes without air, with a random material per voxel.
-std::vector<Robot> make_robots(const BenchOptions& options, std::size_t count) {
+std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& options, std::size_t count) {
   RandomVoxelOptions voxel;
   voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
   voxel.air = 0;
   voxel.patch = 1;
   voxel.mirror = Mirror::none;
   voxel.frequencies = 5;
-  return random_voxel_robots(voxel, options.seed, count);
+  std::vector<std::shared_ptr<const Robot>> robots;
+  for (Robot& robot : random_voxel_robots(voxel, options.seed, count))
+    robots.push_back(std::make_shared<const Robot>(std::move(robot)));
+  return robots;
 }
 
 // Chooses a number of robots that keeps the device busy: several times what it steps at once.
 std::size_t choose_count(const BenchOptions& options, const Configuration& configuration) {
   if (options.count > 0) return options.count;
-  const std::vector<Robot> one = make_robots(options, 1);
+  const auto one = make_robots(options, 1).front();
   constexpr double springs_wanted = 7.5e6;
-  const Simulation probe(configuration, std::vector<Robot>(512, one.front()));
+  const Simulation probe(configuration, std::vector(512, one));
   const std::size_t at_once = std::max<std::size_t>(1, probe.robots_at_once());
   if (configuration.device.kind == DeviceKind::cpu || probe.spring_limit() == 0) return 4 * at_once;
-  const double rounds = springs_wanted / static_cast<double>(one.front().springs.size() * at_once);
+  const double rounds = springs_wanted / static_cast<double>(one->springs.size() * at_once);
   return at_once * static_cast<std::size_t>(std::max(2.0, std::round(rounds)));
 }
 
@@ -77,7 +80,7 @@ std::size_t choose_count(const BenchOptions& options, const Configuration& confi
 Measurement measure(const BenchOptions& options, const Configuration& configuration, std::size_t count) {
   Measurement result;
   double start = now();
-  const std::vector<Robot> robots = make_robots(options, count);
+  const auto robots = make_robots(options, count);
   result.making = now() - start;
   start = now();
   Simulation simulation(configuration, robots);
@@ -87,7 +90,7 @@ Measurement measure(const BenchOptions& options, const Configuration& configurat
   result.hash = simulation.hash(0);
   result.robots = count;
   result.masses = simulation.mass_count();
-  for (const Robot& robot : robots) result.springs += robot.springs.size();
+  for (const auto& robot : robots) result.springs += robot->springs.size();
   result.limit = simulation.spring_limit();
   result.device = simulation.device_name();
   result.configuration = configuration;
