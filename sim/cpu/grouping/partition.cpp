@@ -209,11 +209,14 @@ class Exchange {
     const Group& group = groups_[g];
     others_[g].assign(group.size() * sets_.words(), 0);
     own_[g].resize(group.size());
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      for (std::size_t j = 0; j < group.size(); ++j)
-        if (j != i) sets_.unite(others_[g].data() + i * sets_.words(), sets_.of(group[j]));
-      own_[g][i] = sets_.added(others(g, i), sets_.of(group[i]));
-    }
+    std::vector<Word> before(sets_.words()), after(sets_.words());  // unions of the members before and after i
+    const auto take = [&](std::size_t i, std::vector<Word>& with) {
+      sets_.unite(others_[g].data() + i * sets_.words(), with.data());
+      sets_.unite(with.data(), sets_.of(group[i]));
+    };
+    for (std::size_t i = 0; i < group.size(); ++i) take(i, before);
+    for (std::size_t i = group.size(); i-- > 0;) take(i, after);
+    for (std::size_t i = 0; i < group.size(); ++i) own_[g][i] = sets_.added(others(g, i), sets_.of(group[i]));
   }
   const Word* others(std::size_t g, std::size_t i) const { return others_[g].data() + i * sets_.words(); }
 
