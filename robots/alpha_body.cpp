@@ -17,6 +17,7 @@
 #include "robots/circumradius.h"
 #include "robots/delaunay.h"
 #include "robots/exact_geometry.h"
+#include "robots/radix_sort.h"
 
 namespace mercury {
 namespace {
@@ -124,10 +125,11 @@ class Filtration {
       const auto& [a, b, c, d] = all_.tetrahedra[i];
       Bounds squared = squared_circumradius(points_[a], points_[b], points_[c], points_[d]);
       if (!std::isfinite(squared.high)) squared = exact(i).bounds();
+      squared.low = rounded_down(squared.low);
       bounds_.push_back(squared);
-      by_low_bound_.emplace_back(squared.low, i);
+      by_low_bound_.push_back({squared.low, i});
     }
-    std::ranges::sort(by_low_bound_, {}, &std::pair<double, std::uint32_t>::first);
+    radix_sort(by_low_bound_, spare_);
     classes_.clear();
     order_.clear();
     for (const auto& [low, index] : by_low_bound_) {
@@ -248,7 +250,7 @@ class Filtration {
   Triangulation all_, reordered_;
   std::vector<Class> classes_;
   std::vector<Bounds> bounds_;  // while sorting
-  std::vector<std::pair<double, std::uint32_t>> by_low_bound_;
+  std::vector<SortEntry> by_low_bound_, spare_;
   std::vector<std::uint32_t> order_, moved_to_;
 };
 
