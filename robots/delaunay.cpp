@@ -153,7 +153,8 @@ class Builder {
     }
   }
 
-  bool in_conflict(std::uint32_t index, const ExactPoint& point) const {
+  // Not inline: that would push the loop of find_cavity() out of the registers.
+  [[gnu::noinline]] bool in_conflict(std::uint32_t index, const ExactPoint& point) const {
     const Cell& cell = cells_[index];
     const std::size_t outer = corner_at_infinity(cell);
     if (outer == 4) {
@@ -183,20 +184,22 @@ class Builder {
     cavity_.resize(std::max<std::size_t>(cavity_.size(), 64));
     sides_.resize(std::max<std::size_t>(sides_.size(), 64));
     cavity_[0] = start;
+    const Cell* const all = cells_.data();
+    std::uint32_t* const marks = marks_.data();
     for (std::size_t k = 0; k < cells; ++k) {
       if (cavity_.size() < cells + 4) cavity_.resize(2 * cavity_.size());
       if (sides_.size() < sides + 4) sides_.resize(2 * sides_.size());
       const std::uint32_t cell = cavity_[k];
       for (std::uint32_t i = 0; i < 4; ++i) {
-        const std::uint32_t other = cells_[cell].neighbours[i];
-        if (marks_[other] < outside) {
+        const std::uint32_t other = all[cell].neighbours[i];
+        if (marks[other] < outside) {
           const auto joins = static_cast<std::uint32_t>(in_conflict(other, point));
-          marks_[other] = outside + joins;
+          marks[other] = outside + joins;
           cavity_[cells] = other;
           cells += joins;
         }
         sides_[sides] = {cell, i};
-        sides += marks_[other] == outside ? 1 : 0;
+        sides += marks[other] == outside ? 1 : 0;
       }
     }
     cavity_size_ = cells;
@@ -233,17 +236,21 @@ class Builder {
   void join_by_table(std::span<const Side> sides) {
     std::uint32_t next = 0;
     numbers_.resize(sides.size());
+    Cell* const cells = cells_.data();
+    std::uint32_t* const number_of = number_of_.data();
+    const auto outer_number = static_cast<std::uint32_t>(points_.size());
+    const std::uint32_t first_number = mark_ * max_local;
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const auto& [old_cell, corner] = sides[k];
-      const Cell& old = cells_[old_cell];
+      const Cell& old = cells[old_cell];
       const std::uint32_t cell = old.neighbours[corner];
       auto& numbers = numbers_[k];
       for (const auto& [opposite, from, to] : edges_of_side[corner]) {
         const std::uint32_t point = old.corners[opposite];
-        std::uint32_t& known = number_of_[point == infinite ? points_.size() : point];
-        const bool is_new = known / max_local != mark_;
-        known = is_new ? mark_ * max_local + next : known;
-        next += is_new ? 1 : 0;
+        std::uint32_t& known = number_of[point == infinite ? outer_number : point];
+        const std::uint32_t is_new = known < first_number ? 1 : 0;
+        known += is_new * (first_number + next - known);
+        next += is_new;
         numbers[opposite] = known % max_local;
       }
       for (const auto& [opposite, from, to] : edges_of_side[corner])
@@ -251,7 +258,7 @@ class Builder {
     }
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const auto& [old_cell, corner] = sides[k];
-      Cell& here = cells_[cells_[old_cell].neighbours[corner]];
+      Cell& here = cells[cells[old_cell].neighbours[corner]];
       for (const auto& [opposite, from, to] : edges_of_side[corner])
         here.neighbours[opposite] = cell_at_edge_[numbers_[k][to] * max_local + numbers_[k][from]];
     }
