@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evaluations and what a simulation gives instead.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bodies.h"
+#include "mercury/evaluator.h"
+#include "mercury/simulation.h"
+
+namespace mercury {
+
+using Robots = std::vector<std::shared_ptr<const Robot>>;
+
+// Robots of several sizes.
+inline Robots mixed(std::size_t count) {
+  Robots robots;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int n = static_cast<int>(i);
+    robots.push_back(
+        std::make_shared<Robot>(bodies::random_voxels({.x = 1 + n % 3, .y = 1 + n % 2, .z = 1 + n / 3 % 3}, i)));
+  }
+  return robots;
+}
+
+inline std::vector<Evaluation> rest_of(Evaluator& evaluator) {
+  std::vector<Evaluation> all;
+  while (std::optional<Evaluation> one = evaluator.next()) all.push_back(*std::move(one));
+  return all;
+}
+
+inline std::vector<Evaluation> evaluate(const EvaluationRequest& request, const Robots& robots,
+                                        const std::vector<Evaluator::MakeBackend>& devices = {}) {
+  Evaluator evaluator(request, source_of(robots), robots.size(), devices);
+  return rest_of(evaluator);
+}
+
+inline std::vector<Evaluator::MakeBackend> cpus(std::size_t count) {
+  return std::vector<Evaluator::MakeBackend>(count, [] { return make_cpu_backend({.threads = 1}); });
+}
+
+inline void expect_equal(const Telemetry& a, const Telemetry& b) {
+  EXPECT_EQ(a.center_of_mass, b.center_of_mass);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.kinetic_energy, b.kinetic_energy);
+  EXPECT_EQ(a.elastic_energy, b.elastic_energy);
+  EXPECT_EQ(a.largest_strain, b.largest_strain);
+  EXPECT_EQ(a.exploded, b.exploded);
+  EXPECT_EQ(a.exploded_at, b.exploded_at);
+  EXPECT_EQ(a.culprit_spring, b.culprit_spring);
+}
+
+inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Evaluation>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].index, b[i].index);
+    EXPECT_EQ(a[i].robot, b[i].robot);
+    EXPECT_EQ(a[i].failure, b[i].failure);
+    EXPECT_EQ(a[i].steps, b[i].steps);
+    expect_equal(a[i].start, b[i].start);
+    expect_equal(a[i].end, b[i].end);
+    EXPECT_EQ(a[i].path, b[i].path);
+    EXPECT_EQ(a[i].largest_strain, b[i].largest_strain);
+    EXPECT_EQ(a[i].hash, b[i].hash);
+    EXPECT_EQ(a[i].state.positions, b[i].state.positions);
+    EXPECT_EQ(a[i].state.velocities, b[i].state.velocities);
+  }
+}
+
+// What a simulation of all robots gives, step by step.
+inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const Robots& robots) {
+  Simulation simulation(request.configuration, robots);
+  simulation.step(request.settling);
+  const std::vector<Telemetry> start = simulation.telemetry();
+  std::vector<Evaluation> expected(robots.size());
+  std::vector<Telemetry> last = start;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    expected[i] = {.index = i,
+                   .robot = robots[i],
+                   .steps = request.steps,
+                   .start = start[i],
+                   .largest_strain = start[i].largest_strain};
+  for (std::int64_t step = 1; step <= request.steps; ++step) {
+    simulation.step();
+    if (step < request.steps && (request.sample_every == 0 || step % request.sample_every != 0)) continue;
+    const std::vector<Telemetry> now = simulation.telemetry();
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      expected[i].path += static_cast<double>(length(now[i].center_of_mass - last[i].center_of_mass));
+      expected[i].largest_strain = std::max(expected[i].largest_strain, static_cast<double>(now[i].largest_strain));
+    }
+    last = now;
+  }
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    expected[i].end = last[i];
+    if (request.hashes) expected[i].hash = simulation.hash(i);
+    if (request.states) expected[i].state = simulation.state(i);
+  }
+  return expected;
+}
+
+inline EvaluationRequest usual(Environment environment = Land{}) {
+  return {.configuration = {.environment = environment, .device = {.kind = DeviceKind::cpu}},
+          .settling = 20,
+          .steps = 130,
+          .sample_every = 30,
+          .hashes = true,
+          .states = true};
+}
+
+}  // namespace mercury
