@@ -219,10 +219,12 @@ class Filtration {
   void join(UnionFind& bodies, std::uint32_t end) const {
     for (auto i = static_cast<std::uint32_t>(bodies.parent.size()); i < end; ++i) {
       bodies.parent.push_back(i);
+      std::uint32_t root = i;
       for (const std::uint32_t other : all_.neighbours[i]) {
         if (other >= i) continue;
-        const auto [low, high] = std::minmax({bodies.root(other), bodies.root(i)});
-        bodies.parent[high] = low;
+        const std::uint32_t others_root = bodies.root(other);
+        bodies.parent[std::max(root, others_root)] = std::min(root, others_root);
+        root = std::min(root, others_root);
       }
     }
   }
@@ -231,15 +233,16 @@ class Filtration {
   // not come before `begin`.
   bool has_body_of_all(UnionFind& bodies, std::uint32_t last_point, std::uint32_t begin) const {
     const auto count = static_cast<std::uint32_t>(bodies.parent.size());
+    for (std::uint32_t& parent : bodies.parent) parent = bodies.parent[parent];  // now all are roots: they come first
     std::vector<std::uint32_t> tried;
     for (std::uint32_t i = begin; i < count; ++i) {
       if (std::ranges::find(all_.tetrahedra[i], last_point) == all_.tetrahedra[i].end()) continue;
-      const std::uint32_t body = bodies.root(i);
+      const std::uint32_t body = bodies.parent[i];
       if (std::ranges::find(tried, body) != tried.end()) continue;
       tried.push_back(body);
       std::vector<char> held(points_.size(), 0);
       for (std::uint32_t k = 0; k < count; ++k)
-        if (bodies.root(k) == body)
+        if (bodies.parent[k] == body)
           for (const std::uint32_t point : all_.tetrahedra[k]) held[point] = 1;
       if (std::ranges::find(held, 0) == held.end()) return true;
     }

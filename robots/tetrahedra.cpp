@@ -52,6 +52,24 @@ bool is_shared(const std::vector<Side>& sides, std::size_t i) {
   return i + 1 < sides.size() && sides[i].points == sides[i + 1].points;
 }
 
+// The edges from a point to points above it, which differ. As few as there mostly are, they are sorted by counting
+// those below each, without a branch.
+void append_sorted(std::vector<Edge>& edges, std::uint32_t low, std::span<std::uint32_t> highs) {
+  constexpr std::size_t few = 64;
+  if (highs.size() > few) {
+    std::ranges::sort(highs);
+    for (const std::uint32_t high : highs) edges.emplace_back(low, high);
+    return;
+  }
+  const std::size_t first = edges.size();
+  edges.resize(first + highs.size());
+  for (const std::uint32_t high : highs) {
+    std::size_t below = 0;
+    for (const std::uint32_t other : highs) below += other < high ? 1 : 0;
+    edges[first + below] = {low, high};
+  }
+}
+
 }  // namespace
 
 // Even permutations keep the volume positive.
@@ -88,8 +106,7 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra) {
       *last = *next;
       last += std::exchange(last_seen_by[*next], low) != low ? 1 : 0;
     }
-    std::sort(begin, last);
-    for (auto high = begin; high != last; ++high) edges.emplace_back(low, *high);
+    append_sorted(edges, low, {begin, last});
   }
   return edges;
 }

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "robots/tetrahedra.h"
 
 namespace mercury {
@@ -44,6 +46,16 @@ TEST(Tetrahedra, EdgesAreListedOnce) {
   const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {1, 2, 3, 4}};
   EXPECT_THAT(edges_of(two), ElementsAre(Edge(0, 1), Edge(0, 2), Edge(0, 3), Edge(1, 2), Edge(1, 3), Edge(1, 4),
                                          Edge(2, 3), Edge(2, 4), Edge(3, 4)));
+}
+
+TEST(Tetrahedra, EdgesOfAPointWithManyAreSortedToo) {
+  // A fan: points 0 and 1 form a tetrahedron with every two neighbours of a ring of 200.
+  std::vector<Tetrahedron> fan;
+  for (std::uint32_t i = 0; i < 200; ++i) fan.push_back({0, 1, 2 + (77 * i) % 200, 2 + (77 * i + 1) % 200});
+  const std::vector<Edge> edges = edges_of(fan);
+  EXPECT_EQ(edges.size(), 1u + 200 + 200 + 200);
+  EXPECT_TRUE(std::is_sorted(edges.begin(), edges.end()));
+  EXPECT_EQ(std::adjacent_find(edges.begin(), edges.end()), edges.end());
 }
 
 TEST(Tetrahedra, NeighboursShareASide) {
