@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 
 namespace mercury {
 namespace {
@@ -56,10 +57,11 @@ bool Population::follow(const std::vector<LiveRobot>& wanted) {
 }
 
 void Population::keep_states(const std::vector<LiveRobot>& wanted) {
+  std::unordered_map<RobotId, const LiveRobot*> stay;
+  for (const LiveRobot& robot : wanted) stay.emplace(robot.id, &robot);
   for (std::size_t i = 0; i < robots_->size(); ++i) {
     const LiveRobot& old = robots_->robots[i];
-    const bool stays = std::ranges::any_of(wanted, [&](const LiveRobot& robot) { return same_body(robot, old); });
-    if (stays) continue;
+    if (const auto found = stay.find(old.id); found != stay.end() && same_body(*found->second, old)) continue;
     forget(old.id);
     departed_[old.id] = {old.robot, simulation_.state(i)};
     departed_masses_ += old.robot->masses.size();
@@ -88,16 +90,15 @@ void Population::start_over() {
 // Keeps the robots that stay, adds the new ones behind them, then sorts all into the wanted order.
 void Population::arrange(const std::vector<LiveRobot>& wanted) {
   std::vector<std::size_t> staying, indices(wanted.size()), added;
-  std::vector<Robot> robots;
+  std::vector<std::shared_ptr<const Robot>> robots;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto old =
-        std::ranges::find_if(robots_->robots, [&](const LiveRobot& robot) { return same_body(robot, wanted[i]); });
-    if (old != robots_->robots.end()) {
+    const auto old = robots_->index_of(wanted[i].id);
+    if (old && same_body(robots_->robots[*old], wanted[i])) {
       indices[i] = staying.size();
-      staying.push_back(static_cast<std::size_t>(old - robots_->robots.begin()));
+      staying.push_back(*old);
     } else {
       added.push_back(i);
-      robots.push_back(*wanted[i].robot);
+      robots.push_back(wanted[i].robot);
     }
   }
   simulation_.keep(staying);
@@ -114,10 +115,19 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
 }
 
 void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arranged) {
+  // Robots that stay keep their materials in the simulation, and new ones bring their own. Writing the tables of all
+  // robots prepares all of them again, so it is done only if one differs.
+  const auto differs = [&](std::size_t i) {
+    const auto materials = materials_of(wanted[i]);
+    const std::size_t count = std::min(materials.size(), materials_of(simulation_.robot(i)).size());
+    for (std::size_t id = 0; id < count; ++id)
+      if (simulation_.material(i, static_cast<MaterialId>(id)) != materials[id]) return true;
+    return false;
+  };
   std::vector<Material> tables;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const bool known = !arranged && robots_->robots[i].materials == wanted[i].materials;
-    if (known) continue;
+    if (known || !differs(i)) continue;
     if (tables.empty()) tables = simulation_.materials();
     const auto table = std::span(tables).subspan(i * max_materials, max_materials);
     const auto materials = materials_of(wanted[i]);
