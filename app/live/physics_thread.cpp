@@ -104,7 +104,7 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool dt_changed = configuration.dt != simulation.configuration().dt;
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
-  simulation.configure(configuration);
+  if (configuration != simulation.configuration()) simulation.configure(configuration);
   simulation.set_perturbations({});
   bool changed = false;
   try {
