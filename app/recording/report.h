@@ -28,7 +28,7 @@ struct RunReport {
   std::string device;  // device name, for people
   std::int64_t steps = 0;
   double seconds = 0;        // simulated
-  double wall_seconds = 0;   // spent on stepping
+  double wall_seconds = 0;   // during which robots were stepped, on any device
   bool interrupted = false;  // the user stopped it before the end
   std::size_t missing = 0;   // robots that are not in an interrupted report, as they have not come so far
   std::vector<std::string> notes;

@@ -19,6 +19,12 @@ TEST(Progress, BarShowsTheFractionAndFitsTheTerminal) {
   EXPECT_EQ(progress_bar("rendering", "frames", 300, 300, 6, 40).size(), 39u);
 }
 
+TEST(Progress, WhatIsDoneInPartCountsForTheBarAlone) {
+  // Half of the work in 3 s leaves 3 s for the other half; the second of three robots is not done yet.
+  EXPECT_EQ(progress_bar("simulating", "robots", 1.5, 3, 3, 200),
+            "simulating [############............]  50 %  1/3 robots  0.50 robots/s  0:03 left");
+}
+
 TEST(WithMagnitude, HasThreeDigits) {
   EXPECT_EQ(with_magnitude(0), "0");
   EXPECT_EQ(with_magnitude(7), "7");
