@@ -44,36 +44,53 @@ void all_kinds(benchmark::internal::Benchmark* row) {
   row->Unit(benchmark::kMicrosecond);
 }
 
+// The passes of an access to each column of a face tile: a read takes as many as the busiest bank has different masses,
+// an addition as many as it has corners.
+struct Passes {
+  std::size_t reads = 0, additions = 0;
+};
+
+void count_face_tile(const FacePair* pairs, Passes& passes) {
+  std::array<std::array<std::vector<std::uint16_t>, cuda::lanes>, 4> slots;  // [column][bank]
+  for (std::uint32_t i = 0; i < cuda::lanes; ++i) {
+    const FacePair& p = pairs[i];
+    if (p == cuda::padding_faces) continue;
+    for (const auto& [column, slot] : {std::pair(0, p.a), std::pair(1, p.b), std::pair(2, p.c), std::pair(3, p.d)})
+      slots[static_cast<std::size_t>(column)][slot % cuda::lanes].push_back(slot);
+  }
+  for (auto& column : slots) {
+    std::size_t reads = 0, additions = 0;
+    for (std::vector<std::uint16_t>& bank : column) {
+      additions = std::max(additions, bank.size());
+      std::ranges::sort(bank);
+      reads = std::max(reads, bank.size() - std::ranges::unique(bank).size());
+    }
+    passes.reads += reads;
+    passes.additions += additions;
+  }
+}
+
 void whole(State& state) {
   for_each_robot(state, [](const Robot& robot) { benchmark::DoNotOptimize(cuda::arrange(robot)); });
-  double springs = 0, rows = 0, tiles = 0, passes = 0, fewest = 0;
+  double springs = 0, rows = 0, tiles = 0;
+  Passes passes;
   for (const Robot& robot : robots_of(state)) {
     const cuda::Arrangement arrangement = cuda::arrange(robot);
     springs += static_cast<double>(robot.springs.size());
     rows += arrangement.schedule.rows();
     tiles += static_cast<double>(arrangement.faces.size() / cuda::lanes);
-    cuda::CornerBanks banks;
-    std::size_t pairs = 0;
-    for (std::size_t first = 0; first < arrangement.faces.size(); first += cuda::lanes) {
-      std::array<std::array<int, cuda::lanes>, 4> uses{};
-      for (std::size_t i = first; i < first + cuda::lanes; ++i) {
-        const FacePair& p = arrangement.faces[i];
-        if (p == cuda::padding_faces) continue;
-        banks.add(p), ++pairs;
-        ++uses[0][p.a % cuda::lanes], ++uses[1][p.b % cuda::lanes];
-        ++uses[2][p.c % cuda::lanes], ++uses[3][p.d % cuda::lanes];
-      }
-      for (const auto& column : uses) passes += std::ranges::max(column);
-    }
-    fewest += banks.fewest_passes(pairs);
+    for (std::size_t first = 0; first < arrangement.faces.size(); first += cuda::lanes)
+      count_face_tile(&arrangement.faces[first], passes);
   }
   const auto count = static_cast<double>(robots_of(state).size());
+  const auto reads = static_cast<double>(passes.reads), additions = static_cast<double>(passes.additions);
   state.counters["springs"] = springs / count;
   state.counters["rows"] = rows / count;
   state.counters["full"] = springs / cuda::lanes / rows;  // share of the entries that hold a spring
   state.counters["face_tiles"] = tiles / count;
-  state.counters["passes"] = passes / count;  // of the face tiles' columns
-  state.counters["fewest"] = fewest / count;
+  state.counters["reads"] = reads / tiles / 4;  // passes per column
+  state.counters["additions"] = additions / tiles / 4;
+  state.counters["passes"] = (10 * rows + 6 * reads + 3 * additions) / count;  // of a step, for springs and faces
 }
 BENCHMARK(whole)->Name("arrangement")->Apply(all_kinds);
 

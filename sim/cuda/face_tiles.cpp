@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::uint32_t columns = 4;
 
-using Banks = std::array<std::uint8_t, columns>;  // of a pair's four masses
-using Tiles = std::uint64_t;                      // a set of face tiles, one bit each
+using Tiles = std::uint64_t;  // a set of face tiles, one bit each
 constexpr std::size_t max_tiles = 64;
 
 Tiles tile_bit(std::uint32_t tile) { return Tiles{1} << tile; }
@@ -24,9 +23,15 @@ FacePair in_vertex_order(FacePair p, std::uint32_t order) {
   return p;
 }
 
-Banks banks_of(const FacePair& p) {
-  const auto bank = [](std::uint16_t slot) { return static_cast<std::uint8_t>(slot % lanes); };
-  return {bank(p.a), bank(p.b), bank(p.c), bank(p.d)};
+std::uint16_t corner(const FacePair& p, std::uint32_t column) {
+  return column == 0 ? p.a : column == 1 ? p.b : column == 2 ? p.c : p.d;
+}
+
+std::size_t slots_of(std::span<const FacePair> pairs) {
+  std::size_t slots = 0;
+  for (const FacePair& p : pairs)
+    slots = std::max({slots, std::size_t{p.a} + 1, std::size_t{p.b} + 1, std::size_t{p.c} + 1, std::size_t{p.d} + 1});
+  return slots;
 }
 
 // For each tile how often it is in some of the sets that were added, up to 63 of them: bit i of the number is in plane
@@ -63,11 +68,12 @@ class TileCounts {
 // Deals up to 2048 pairs out to as few face tiles as can hold them.
 class FaceTiles {
  public:
-  explicit FaceTiles(std::span<const FacePair> pairs) : pairs_(pairs), banks_(pairs.size()), choices_(pairs.size()) {
+  explicit FaceTiles(std::span<const FacePair> pairs) : pairs_(pairs), choices_(pairs.size()) {
     const std::size_t tiles = (pairs.size() + lanes - 1) / lanes;
     with_room_ = ~Tiles{0} >> (max_tiles - tiles);
-    for (auto& column : free_) column.fill(with_room_);
-    for (std::size_t p = 0; p < pairs.size(); ++p) banks_[p] = banks_of(pairs[p]);
+    for (auto& column : room_for_mass_) column.fill(with_room_);
+    for (auto& column : room_for_corner_) column.fill(with_room_);
+    for (auto& column : has_) column.resize(slots_of(pairs));
     std::vector<std::uint32_t> left = by_load();
     std::erase_if(left, [&](std::uint32_t p) { return place(p); });
     place_with_conflicts(left);
@@ -88,21 +94,30 @@ class FaceTiles {
     std::uint8_t tile, order;
   };
 
-  // The pairs whose banks are corners of most others first, since they fit into the fewest tiles. Sorted by counting.
+  // The pairs whose banks are corners of most others first, since they fit into the fewest tiles. Pairs with about as
+  // many keep their order, because those that follow one another often share masses. Sorted by counting.
   std::vector<std::uint32_t> by_load() const {
     CornerBanks corners;
     for (const FacePair& p : pairs_) corners.add(p);
+    const auto width = static_cast<std::uint32_t>(1 + pairs_.size() / 64);
     const std::uint32_t most = 2 * (std::ranges::max(corners.shared) + std::ranges::max(corners.outer));
-    const auto lightness = [&](const Banks& b) {
-      return most - corners.shared[b[0]] - corners.shared[b[2]] - corners.outer[b[1]] - corners.outer[b[3]];
+    const auto lightness = [&](const FacePair& p) {
+      return (most - corners.shared[p.a % lanes] - corners.shared[p.c % lanes] - corners.outer[p.b % lanes] -
+              corners.outer[p.d % lanes]) /
+             width;
     };
-    std::vector<std::uint32_t> first(most + 1);
-    for (const Banks& banks : banks_) ++first[lightness(banks)];
+    std::vector<std::uint32_t> first(most / width + 1);
+    for (const FacePair& p : pairs_) ++first[lightness(p)];
     std::uint32_t count = 0;
     for (std::uint32_t& f : first) f = std::exchange(count, count + f);
     std::vector<std::uint32_t> sorted(pairs_.size());
-    for (std::uint32_t p = 0; p < pairs_.size(); ++p) sorted[first[lightness(banks_[p])]++] = p;
+    for (std::uint32_t p = 0; p < pairs_.size(); ++p) sorted[first[lightness(pairs_[p])]++] = p;
     return sorted;
+  }
+
+  // The tiles whose column can take a corner in this slot.
+  Tiles fits(std::uint32_t column, std::uint16_t slot) const {
+    return room_for_mass_[column][slot % lanes] | (has_[column][slot] & room_for_corner_[column][slot % lanes]);
   }
 
   // Two columns that a vertex order can exchange: 0 and 2 (a and c), or 1 and 3 (b and d).
@@ -111,46 +126,56 @@ class FaceTiles {
     Tiles blocked_by_first;   // only the first column is in the way, in either order
     Tiles blocked_by_second;  // only the second one is
   };
-  Side side(const Banks& banks, std::uint32_t first) const {
-    const std::uint32_t second = first + 2, x = banks[first], y = banks[second];
-    const Tiles x1 = free_[first][x], y2 = free_[second][y], y1 = free_[first][y], x2 = free_[second][x];
+  Side side(const FacePair& p, std::uint32_t first) const {
+    const std::uint32_t second = first + 2;
+    const std::uint16_t x = corner(p, first), y = corner(p, second);
+    const Tiles x1 = fits(first, x), y2 = fits(second, y), y1 = fits(first, y), x2 = fits(second, x);
     return {(x1 & y2) | (y1 & x2), (~x1 & y2) | (~y1 & x2), (x1 & ~y2) | (y1 & ~x2)};
   }
 
   // Puts a pair into the first tile that fits. Returns false if none does.
   bool place(std::uint32_t p) {
-    const Tiles tiles = with_room_ & side(banks_[p], 0).fits & side(banks_[p], 1).fits;
+    const Tiles tiles = with_room_ & side(pairs_[p], 0).fits & side(pairs_[p], 1).fits;
     if (tiles == 0) return false;
     put(p, first_of(tiles));
     return true;
   }
 
   void put(std::uint32_t p, std::uint32_t tile) {
-    const Tiles bit = tile_bit(tile);
-    const auto fits = [&](std::uint32_t first) {
-      return (free_[first][banks_[p][first]] & free_[first + 2][banks_[p][first + 2]] & bit) != 0;
-    };
-    const std::uint32_t order = (fits(0) ? 0u : 1u) | (fits(1) ? 0u : 2u);
+    const FacePair& pair = pairs_[p];
+    const std::uint32_t order = (fits_in_order(pair, 0, tile) ? 0u : 1u) | (fits_in_order(pair, 1, tile) ? 0u : 2u);
     choices_[p] = {static_cast<std::uint8_t>(tile), static_cast<std::uint8_t>(order)};
-    const Banks banks = banks_in(order, banks_[p]);
+    const FacePair ordered = in_vertex_order(pair, order);
     for (std::uint32_t column = 0; column < columns; ++column) {
-      if (++uses_[column][banks[column]][tile] == limit_[column][tile]) free_[column][banks[column]] &= ~bit;
+      const std::uint16_t slot = corner(ordered, column);
+      ++corners_[column][slot % lanes][tile];
+      masses_[column][slot % lanes][tile] += (has_[column][slot] & tile_bit(tile)) == 0;
+      has_[column][slot] |= tile_bit(tile);
+      update_room(column, slot % lanes, tile);
     }
-    if (++size_[tile] == lanes) with_room_ &= ~bit;
+    if (++size_[tile] == lanes) with_room_ &= ~tile_bit(tile);
   }
 
-  static Banks banks_in(std::uint32_t order, Banks banks) {
-    if (order & 1) std::swap(banks[0], banks[2]);
-    if (order & 2) std::swap(banks[1], banks[3]);
-    return banks;
+  bool fits_in_order(const FacePair& p, std::uint32_t first, std::uint32_t tile) const {
+    return (fits(first, corner(p, first)) & fits(first + 2, corner(p, first + 2)) & tile_bit(tile)) != 0;
   }
 
-  // Lets columns use banks once more until all pairs have a place, each time the column that lets most pairs in.
+  void update_room(std::uint32_t column, std::uint32_t bank, std::uint32_t tile) {
+    const std::uint32_t limit = limit_[column][tile];
+    const bool room = corners_[column][bank][tile] < std::max(limit, least_corners);
+    const bool for_mass = room && masses_[column][bank][tile] < limit;
+    const auto set = [&](Tiles& tiles, bool on) { tiles = (tiles & ~tile_bit(tile)) | Tiles{on} << tile; };
+    set(room_for_corner_[column][bank], room);
+    set(room_for_mass_[column][bank], for_mass);
+  }
+
+  // Lets columns use banks for one more mass until all pairs have a place, each time the column that lets most pairs
+  // in.
   void place_with_conflicts(std::vector<std::uint32_t>& left) {
     while (!left.empty()) {
       std::array<TileCounts, columns> wanted;
       for (std::size_t i = 0; i < std::min<std::size_t>(left.size(), (1u << TileCounts::planes) - 1); ++i) {
-        const Side shared = side(banks_[left[i]], 0), outer = side(banks_[left[i]], 1);
+        const Side shared = side(pairs_[left[i]], 0), outer = side(pairs_[left[i]], 1);
         wanted[0].add(with_room_ & outer.fits & shared.blocked_by_first);
         wanted[1].add(with_room_ & shared.fits & outer.blocked_by_first);
         wanted[2].add(with_room_ & outer.fits & shared.blocked_by_second);
@@ -164,7 +189,7 @@ class FaceTiles {
         raise_limit(column, most.tile);
       } else {  // each pair needs two columns
         const std::uint32_t tile = first_of(with_room_);
-        const std::uint32_t first = side(banks_[left.front()], 0).fits >> tile & 1;
+        const std::uint32_t first = side(pairs_[left.front()], 0).fits >> tile & 1;
         raise_limit(first, tile);
         raise_limit(first + 2, tile);
       }
@@ -174,19 +199,23 @@ class FaceTiles {
 
   void raise_limit(std::uint32_t column, std::uint32_t tile) {
     ++limit_[column][tile];
-    for (Tiles& tiles : free_[column]) tiles |= tile_bit(tile);
+    for (std::uint32_t bank = 0; bank < lanes; ++bank) update_room(column, bank, tile);
   }
 
   template <class T>
   using ByBankAndTile = std::array<std::array<std::array<T, max_tiles>, lanes>, columns>;  // [column][bank][tile]
 
+  // Corners that a bank can have at first: those of one mass are read in one pass, and added in as many as they are.
+  static constexpr std::uint32_t least_corners = 2;
+
   std::span<const FacePair> pairs_;
-  std::vector<Banks> banks_;                            // [pair]
-  std::vector<Choice> choices_;                         // [pair]
-  std::array<std::array<Tiles, lanes>, columns> free_;  // [column][bank] tiles that may use the bank once more
-  Tiles with_room_;                                     // for one more pair
-  ByBankAndTile<std::uint8_t> uses_{};
-  std::array<std::array<std::uint8_t, max_tiles>, columns> limit_ = all_one();  // [column][tile] uses per bank
+  std::vector<Choice> choices_;  // [pair]
+  // [column][bank] tiles where the bank can take one more mass, or one more corner of a mass that it has
+  std::array<std::array<Tiles, lanes>, columns> room_for_mass_, room_for_corner_;
+  std::array<std::vector<Tiles>, columns> has_;                                 // [column][slot] tiles that have it
+  Tiles with_room_;                                                             // for one more pair
+  ByBankAndTile<std::uint8_t> corners_{}, masses_{};                            // in use; different ones
+  std::array<std::array<std::uint8_t, max_tiles>, columns> limit_ = all_one();  // [column][tile] masses per bank
   std::array<std::uint8_t, max_tiles> size_{};                                  // [tile]
 
   static constexpr std::array<std::array<std::uint8_t, max_tiles>, columns> all_one() {

@@ -10,17 +10,20 @@
 //        |  /     |    column c |  39    |    8    |     |  101    |   banks  7  8 ...  5
 //        a ------ b    column d |  38    |    7    |     |   69    |   banks  6  7 ...  5
 //
-// 1. A column is one access to shared memory. If two of its masses share a bank, the access takes a second pass, and
-//    so on for each further mass in that bank. A column takes as many passes as its busiest bank has masses.
-// 2. The two triangles can be listed in four vertex orders, which put other masses into the columns. A face's force
+// 1. A column is read by six accesses to shared memory (x and v) and updated by three additions (sum). If two of its
+//    masses share a bank, each of these takes a second pass, and so on for each further mass in that bank.
+// 2. Lanes that read the same mass get it in one pass. Only additions take a pass for each corner in a bank, whether
+//    the corners are of different masses or of one.
+// 3. The two triangles can be listed in four vertex orders, which put other masses into the columns. A face's force
 //    does not depend on the order, so each pair takes one that fits.
-// 3. There are as few face tiles as there can be, because a pass costs less than one more face tile would. Padding
+// 4. There are as few face tiles as there can be, because a pass costs less than one more face tile would. Padding
 //    (padding_faces) fills the last one.
-// 4. At first a column may use each bank once. Each pair goes to the first face tile that has its four banks free. For
-//    each column and bank there is a word with a bit per face tile, so that four ANDs find it. If there is none, a pair
-//    that is in the way may move to another face tile.
-// 5. For the pairs that are left, columns may use banks once more, one column after the other: each time the column
-//    that lets most pairs in. So the second passes of a column serve many pairs.
+// 5. At first the banks of a column have room for one mass each, which may be a corner of two pairs. Each pair goes to
+//    the first face tile where its four corners have room. For each column and bank there is a word with a bit per face
+//    tile that says where another mass has room, and for each column and mass one that says where the mass is already.
+//    So a few operations on words find the face tile.
+// 6. For the pairs that are left, the banks of a column get room for another mass, one column after the other: each
+//    time the column that lets most pairs in. So the second passes of a column serve many pairs.
 #pragma once
 
 #include <array>
