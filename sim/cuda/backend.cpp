@@ -14,6 +14,7 @@
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/device_limits.h"
 #include "sim/cuda/intake.h"
+#include "sim/cuda/rest_lengths.h"
 #include "sim/cuda/step.h"
 
 namespace mercury {
@@ -155,6 +156,27 @@ class CudaBackend final : public Backend {
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
     begin_change();
     class_of(robot).write(places_[robot].number, positions, velocities);
+  }
+
+  // A run of consecutive places at a time.
+  void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts) override {
+    begin_change();
+    std::vector<std::size_t> order(lifts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto place = [&](std::size_t k) { return places_[first + order[k]]; };
+    std::ranges::sort(
+        order, {}, [&](std::size_t i) { return std::pair(places_[first + i].size_class, places_[first + i].number); });
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+      std::vector<const Robot*> run;
+      std::vector<float> run_lifts;
+      for (end = begin; end < order.size() && place(end).size_class == place(begin).size_class &&
+                        place(end).number == place(begin).number + (end - begin);
+           ++end) {
+        run.push_back(robots[order[end]]);
+        run_lifts.push_back(lifts[order[end]]);
+      }
+      owned_->classes[place(begin).size_class].put_at_rest(place(begin).number, run, run_lifts);
+    }
   }
 
   void read_positions(std::span<Vec3> out) const override { gather(out, field_x); }
@@ -374,7 +396,7 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   BatchView batch{};
   batch.robot_count = many_robots;
   batch.tile_stride = tiles_for(robot.masses.size());
-  batch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
+  batch.record_words = record_words_for(robot);
   const LaunchConfiguration launch =
       choose_launch_configuration(configuration.solver, configuration.environment, batch, true, many_robots);
   const AnyEnvironmentModel model = solver_model_of(configuration.environment);

@@ -40,10 +40,6 @@
 
 namespace mercury::cuda {
 
-// The different rest lengths of a robot in ascending order, beginning with 0 for padding. It ends after max_lengths + 1
-// of them.
-std::vector<float> lengths_of(const Robot& robot);
-
 // The parameters of a material's springs in the present step.
 template <Solver solver>
 struct SpringParameters;

@@ -6,13 +6,11 @@
 
 namespace mercury {
 
-std::vector<float> cuda::lengths_of(const Robot& robot) { return rest_lengths(robot).table; }
-
 std::size_t chip_bytes(const Robot& robot, const Configuration& configuration) {
   using namespace cuda;
   const std::uint32_t tiles = tiles_for(robot.masses.size());
   LaunchConfiguration launch;
-  launch.record_words = lengths_of(robot).size() <= max_lengths ? 1 : 2;
+  launch.record_words = record_words_for(robot);
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
   return block_layout(launch, tiles, working_fields(configuration.solver, false)).total;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "sim/cuda/rest_lengths.h"
+
 namespace mercury::cuda {
 namespace {
 
@@ -36,37 +38,36 @@ Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory) :
   take(incoming_counts, sizes.slots());
 }
 
-void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangement,
-                  std::span<const float> robot_lengths) {
+void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangement) {
   fill_masses(k, robot, arrangement.order);
-  fill_springs(k, robot, arrangement.schedule, robot_lengths);
-  if (sizes_.record_words == 1) put(chunk(lengths, k, max_lengths), robot_lengths);
-  put(chunk(row_start, k, sizes_.row_starts()), std::span(arrangement.schedule.row_start));
+  fill_springs(k, robot, arrangement.schedule);
+  put(chunk(row_start, k, sizes_.row_starts()), std::span<const std::uint32_t>(arrangement.schedule.row_start));
   put(chunk(face_pairs, k, sizes_.face_pairs), std::span(arrangement.faces));
 }
 
 void Chunks::fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order) {
-  const auto to = chunk(state, k, sizes_.state()), valence = chunk(valences, k, sizes_.slots());
-  std::ranges::fill(to, 0.f);
+  fill_state(chunk(state, k, sizes_.state()), robot, order, 0);
+  const auto valence = chunk(valences, k, sizes_.slots());
   std::ranges::fill(valence, 0.f);
-  for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass)
-    put_vector(to, order.slot_of(mass), field_x, robot.masses[mass]);
   for (const Spring& spring : robot.springs)
     for (const std::uint16_t mass : {spring.a, spring.b}) valence[order.slot_of(mass)] += 1;
 }
 
-void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule,
-                          std::span<const float> robot_lengths) {
+void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule) {
   const auto records = chunk(springs, k, sizes_.springs()), incoming = chunk(incoming_counts, k, sizes_.slots());
   std::ranges::fill(incoming, 0u);
+  RestLengths rest;
+  if (sizes_.record_words == 1) {
+    rest = rest_lengths(robot);
+    put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
+  }
   auto to = records.begin();
   for (const ScheduledSpring& entry : schedule.entries) {
-    // Padding is of air, so it adds nothing.
-    const Spring spring = entry.spring == padding ? Spring{} : robot.springs[entry.spring];
+    const bool is_padding = entry.spring == padding;  // of air, so it adds nothing
+    const Spring spring = is_padding ? Spring{} : robot.springs[entry.spring];
     const std::uint32_t key = static_cast<std::uint32_t>(entry.partner) << 16 | spring.material;
     if (sizes_.record_words == 1) {
-      const auto index = std::ranges::lower_bound(robot_lengths, spring.rest_length) - robot_lengths.begin();
-      *to++ = key | static_cast<std::uint32_t>(index) << 8;
+      *to++ = key | (is_padding ? 0u : std::uint32_t{rest.index[entry.spring]} << 8);
     } else {
       *to++ = key;
       *to++ = std::bit_cast<std::uint32_t>(spring.rest_length);
@@ -74,6 +75,13 @@ void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& sch
     ++incoming[entry.partner];
   }
   std::fill(to, records.end(), 0u);
+}
+
+void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& order, float lift) {
+  std::ranges::fill(state, 0.f);
+  for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass)
+    put_vector(state, order.slot_of(mass), field_x,
+               lift == 0 ? robot.masses[mass] : robot.masses[mass] + Vec3{0, 0, lift});
 }
 
 Vec3 vector_at(std::span<const float> state, std::uint32_t slot, Field field) {

@@ -33,7 +33,7 @@ class Chunks {
   Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory);
 
   // Fills the chunks of robot k of these. Partners are slots. Safe to call for several robots at once.
-  void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement, std::span<const float> robot_lengths);
+  void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement);
 
   std::span<FacePair> face_pairs;
   std::span<float> state, valences, lengths;
@@ -41,10 +41,13 @@ class Chunks {
 
  private:
   void fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order);
-  void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule, std::span<const float> robot_lengths);
+  void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule);
 
   ChunkSizes sizes_;
 };
+
+// The state of a robot at rest where it began, but `lift` [m] higher.
+void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& order, float lift);
 
 // A vector of a slot in a robot's chunk of the state buffer.
 Vec3 vector_at(std::span<const float> state, std::uint32_t slot, Field field);

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "mercury/stopwatch.h"
-#include "sim/cuda/block_layout.h"
+#include "sim/cuda/rest_lengths.h"
 
 namespace mercury::cuda {
 namespace {
@@ -24,7 +24,7 @@ std::uint32_t class_limit(std::uint32_t tiles) {
 struct NewRobot {
   const Robot* robot = nullptr;
   RobotMeasures measures;
-  std::vector<float> lengths;  // as from lengths_of()
+  std::uint32_t record_words = 1;
   Place place{};
   std::uint32_t first_of_topology = 0;
 };
@@ -37,7 +37,7 @@ class Intake {
     const Stopwatch stopwatch(times_.schedule);
     const std::vector<std::uint32_t> first = first_of_topology(robots);
     oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
-      new_robots_[i] = {robots[i], measure(*robots[i]), lengths_of(*robots[i]), {}, first[i]};
+      new_robots_[i] = {robots[i], measure(*robots[i]), record_words_for(*robots[i]), {}, first[i]};
     });
     for (const std::uint32_t f : first) ++users_[f];
     assign_places();
@@ -68,8 +68,7 @@ class Intake {
   // Sorts the new robots by class, then by descending springs, and gives them the next places of their classes.
   void assign_places() {
     for (NewRobot& entry : new_robots_)
-      entry.place.size_class =
-          classes_.class_for(tiles_for(entry.robot->masses.size()), entry.lengths.size() <= max_lengths ? 1 : 2);
+      entry.place.size_class = classes_.class_for(tiles_for(entry.robot->masses.size()), entry.record_words);
     std::iota(order_.begin(), order_.end(), 0u);
     std::ranges::stable_sort(order_, [&](std::uint32_t a, std::uint32_t b) {
       const NewRobot &one = new_robots_[a], &other = new_robots_[b];
@@ -138,7 +137,7 @@ class Intake {
       const NewRobot& entry = new_robots_[run[k]];
       const Arrangement& arrangement = arrangement_of(run[k]);
       to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
-      chunks.fill(k, *entry.robot, arrangement, entry.lengths);
+      chunks.fill(k, *entry.robot, arrangement);
     });
     to.write_chunks(new_robots_[run.front()].place.number, chunks, to.stream().get());
     to.stream().synchronize();  // `memory` is free again

@@ -62,4 +62,6 @@ RestLengths rest_lengths(const Robot& robot) {
   return result;
 }
 
+std::uint32_t record_words_for(const Robot& robot) { return rest_lengths(robot).table.size() <= max_lengths ? 1 : 2; }
+
 }  // namespace mercury::cuda

@@ -19,4 +19,7 @@ struct RestLengths {
 
 RestLengths rest_lengths(const Robot& robot);
 
+// Words of the robot's spring records: 1 if its rest lengths fit into a table, else 2.
+std::uint32_t record_words_for(const Robot& robot);
+
 }  // namespace mercury::cuda

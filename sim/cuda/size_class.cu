@@ -323,6 +323,22 @@ void SizeClass::write(std::uint32_t place, std::span<const Vec3> positions, std:
   state_.write(place, state, stream_->get());
 }
 
+void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* const> robots,
+                            std::span<const float> lifts) {
+  const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, (std::size_t{16} << 20) / (4 * stride));
+  const PinnedBuffer memory(4 * stride * std::min(most, robots.size()));
+  for (std::size_t first = 0; first < robots.size(); first += most) {
+    const std::size_t count = std::min(most, robots.size() - first);
+    const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
+    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      const auto place = first_place + static_cast<std::uint32_t>(first + k);
+      fill_state(states.subspan(k * stride, stride), *robots[first + k], order_of(place), lifts[first + k]);
+    });
+    state_.write(first_place + first, states, stream_->get());
+  }
+  statuses_.write(first_place, std::vector<DeviceStatus>(robots.size(), DeviceStatus{-1, no_mass}), stream_->get());
+}
+
 DeviceStatus SizeClass::status(std::uint32_t place) const {
   DeviceStatus status{};
   statuses_.read(place, std::span(&status, 1), stream_->get());

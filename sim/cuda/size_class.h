@@ -77,6 +77,8 @@ class SizeClass {
   SlotOrder order_of(std::uint32_t place) const { return slot_order(headers_[place]); }
   void read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const;
   void write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities);
+  // Puts the robots of consecutive places at rest where they began, but lifts[i] [m] higher. They have not exploded.
+  void put_at_rest(std::uint32_t first_place, std::span<const Robot* const> robots, std::span<const float> lifts);
   DeviceStatus status(std::uint32_t place) const;
   std::vector<DeviceStatus> statuses() const;
   void set_status(std::uint32_t place, DeviceStatus status);
