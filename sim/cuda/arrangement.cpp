@@ -10,16 +10,7 @@
 namespace mercury::cuda {
 namespace {
 
-std::vector<std::uint16_t> slots_of_masses(const SlotOrder& order) {
-  std::vector<std::uint16_t> slots(order.masses);
-  order.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) slots[mass + i] = static_cast<std::uint16_t>(slot + i);
-  });
-  return slots;
-}
-
-std::vector<OwnedSpring> in_slots(std::span<const Spring> springs, const SlotOrder& order) {
-  const std::vector<std::uint16_t> slot = slots_of_masses(order);
+std::vector<OwnedSpring> in_slots(std::span<const Spring> springs, std::span<const std::uint16_t> slot) {
   std::vector<OwnedSpring> moved;
   moved.reserve(springs.size());
   for (const Spring& s : springs) moved.push_back({slot[s.a], slot[s.b]});
@@ -40,7 +31,7 @@ std::array<Shift, 12> shifts_by_passes(std::uint32_t masses, std::span<const Fac
   std::array<Shift, 12> shifts{{{0}, {1}, {2}, {3}, {5}, {6}, {7}, {13}, {16}, {25}, {27}, {29}}};
   for (Shift& shift : shifts) {
     CornerBanks banks;
-    SlotOrder{masses, shift.shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
+    TileRotation{masses, shift.shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
       for (std::uint32_t i = 0; i < count; ++i) banks.shared[slot % lanes + i] += shared[mass + i];
       for (std::uint32_t i = 0; i < count; ++i) banks.outer[slot % lanes + i] += outer[mass + i];
     });
@@ -52,19 +43,19 @@ std::array<Shift, 12> shifts_by_passes(std::uint32_t masses, std::span<const Fac
 
 // The shift with the fewest passes through shared memory. Rows of springs are estimated for small robots only: in
 // these, shifts differ by more, and an estimate takes less time.
-SlotOrder choose_order(const Robot& robot, std::span<const FacePair> pairs) {
+TileRotation choose_rotation(const Robot& robot, std::span<const FacePair> pairs) {
   const auto masses = static_cast<std::uint32_t>(robot.masses.size());
   const std::array<Shift, 12> shifts = shifts_by_passes(masses, pairs);
   constexpr std::size_t max_estimated = 4000;  // springs, of all estimates together
   const std::size_t estimates = std::clamp<std::size_t>(max_estimated / (robot.springs.size() + 1), 1, 4);
-  SlotOrder best{masses, shifts.front().shift};
+  TileRotation best{masses, shifts.front().shift};
   std::uint32_t fewest = ~0u;
   for (std::size_t i = 0; i < estimates && estimates > 1; ++i) {
-    const SlotOrder order{masses, shifts[i].shift};
+    const TileRotation rotation{masses, shifts[i].shift};
     constexpr std::uint32_t per_row = 10, per_column = 9;  // docs/performance.md; x, v and sum of a corner
-    const std::uint32_t passes =
-        per_row * estimate_rows(masses, in_slots(robot.springs, order)) + per_column * shifts[i].passes;
-    if (passes < fewest) best = order, fewest = passes;
+    const std::uint32_t passes = per_row * estimate_rows(masses, in_slots(robot.springs, rotation.order().slots)) +
+                                 per_column * shifts[i].passes;
+    if (passes < fewest) best = rotation, fewest = passes;
   }
   return best;
 }
@@ -73,10 +64,11 @@ SlotOrder choose_order(const Robot& robot, std::span<const FacePair> pairs) {
 
 Arrangement arrange(const Robot& robot) {
   std::vector<FacePair> pairs = pair_faces(robot);
-  const SlotOrder order = choose_order(robot, pairs);
-  const std::vector<std::uint16_t> slot = slots_of_masses(order);
+  const TileRotation rotation = choose_rotation(robot, pairs);
+  auto order = std::make_shared<const SlotOrder>(rotation.order());
+  const std::vector<std::uint16_t>& slot = order->slots;
   for (FacePair& p : pairs) p = {slot[p.a], slot[p.b], slot[p.c], slot[p.d]};
-  return {order, schedule_springs(order.masses, in_slots(robot.springs, order)), make_face_tiles(pairs)};
+  return {std::move(order), schedule_springs(rotation.masses, in_slots(robot.springs, slot)), make_face_tiles(pairs)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {

@@ -3,17 +3,19 @@
 // tiles. Robots of one topology share an arrangement, whatever their materials, rest lengths and states are.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sim/cuda/face_tiles.h"
 #include "sim/cuda/schedule.h"
+#include "sim/cuda/slot_order.h"
 #include "sim/cuda/tile.h"
 
 namespace mercury::cuda {
 
 struct Arrangement {
-  SlotOrder order;
+  std::shared_ptr<const SlotOrder> order;
   Schedule schedule;
   std::vector<FacePair> faces;  // in face tiles, padding included
 };

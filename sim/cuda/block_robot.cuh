@@ -54,6 +54,10 @@ class BlockRobot {
   __device__ std::size_t slot_in_batch(std::uint32_t tile) const {
     return (std::size_t{context_.robot} * arguments_.batch.tile_stride + tile) * lanes + context_.lane;
   }
+  // The number of the mass that stands in a slot.
+  __device__ std::uint32_t number_of(std::uint32_t slot) const {
+    return arguments_.batch.masses[std::size_t{context_.robot} * arguments_.batch.tile_stride * lanes + slot];
+  }
   // The number of springs at a slot.
   __device__ float load_valence(std::uint32_t slot) const {
     const float* valences =

@@ -36,10 +36,11 @@ Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory) :
   take(springs, sizes.springs());
   take(row_start, sizes.row_starts());
   take(incoming_counts, sizes.slots());
+  take(masses, sizes.slots());
 }
 
 void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangement) {
-  fill_masses(k, robot, arrangement.order);
+  fill_masses(k, robot, *arrangement.order);
   fill_springs(k, robot, arrangement.schedule);
   put(chunk(row_start, k, sizes_.row_starts()), std::span<const std::uint32_t>(arrangement.schedule.row_start));
   put(chunk(face_pairs, k, sizes_.face_pairs), std::span(arrangement.faces));
@@ -47,6 +48,7 @@ void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangem
 
 void Chunks::fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order) {
   fill_state(chunk(state, k, sizes_.state()), robot, order, 0);
+  put(chunk(masses, k, sizes_.slots()), std::span<const std::uint16_t>(order.masses()));
   const auto valence = chunk(valences, k, sizes_.slots());
   std::ranges::fill(valence, 0.f);
   for (const Spring& spring : robot.springs)

@@ -22,7 +22,8 @@ struct ChunkSizes {
   std::size_t lengths() const { return record_words == 1 ? max_lengths : 0; }
   std::size_t row_starts() const { return std::size_t{tiles} + 1; }
   std::size_t bytes() const {  // of all chunks of one robot
-    return 4 * (state() + 2 * slots() + lengths() + springs() + row_starts()) + sizeof(FacePair) * face_pairs;
+    return 2 * slots() + 4 * (state() + 2 * slots() + lengths() + springs() + row_starts()) +
+           sizeof(FacePair) * face_pairs;
   }
 };
 
@@ -36,6 +37,7 @@ class Chunks {
   void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement);
 
   std::span<FacePair> face_pairs;
+  std::span<std::uint16_t> masses;
   std::span<float> state, valences, lengths;
   std::span<std::uint32_t> springs, row_start, incoming_counts;
 

@@ -24,8 +24,7 @@ class FacePass {
       const ushort4 corners = next;
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
       if (corners.x == corners.y) continue;  // padding
-      if (!add_pair(robot, model, corners))
-        failure.report(step, phase_environment, lowest_mass(slot_order(robot.header()), corners));
+      if (!add_pair(robot, model, corners)) failure.report(step, phase_environment, lowest_mass(robot, corners));
     }
   }
 
@@ -64,9 +63,10 @@ class FacePass {
     return true;
   }
 
-  __device__ static std::uint32_t lowest_mass(const SlotOrder& order, ushort4 corners) {
-    return min(min(order.mass_of(corners.x), order.mass_of(corners.y)),
-               min(order.mass_of(corners.z), order.mass_of(corners.w)));
+  template <class Robot>
+  __device__ static std::uint32_t lowest_mass(const Robot& robot, ushort4 corners) {
+    return min(min(robot.number_of(corners.x), robot.number_of(corners.y)),
+               min(robot.number_of(corners.z), robot.number_of(corners.w)));
   }
 
   ushort4 first_{};

@@ -41,13 +41,10 @@ inline constexpr int rows_at_once = 4;
 
 struct RobotHeader {
   std::uint32_t masses, tiles, face_pairs, springs;
-  std::uint32_t lane_shift;             // SlotOrder
   float force_scale, correction_scale;  // FixedPointScale
   float squared_stretch_limit;          // [m2]
   float contact_distance;               // [m]
 };
-
-MERCURY_HOST_DEVICE SlotOrder slot_order(const RobotHeader& header) { return {header.masses, header.lane_shift}; }
 
 // Whether and when a robot exploded.
 struct DeviceStatus {
@@ -72,6 +69,7 @@ struct BatchView {
   const std::uint32_t* row_start;  // [robot][tile + 1]
   const FacePair* face_pairs;      // [robot][pair]
   const float* valences;           // [robot][slot]
+  const std::uint16_t* masses;     // [robot][slot], the mass that stands there, by its number
   // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
   const std::uint32_t* incoming_counts;
   const Material* materials;  // [robot][max_materials]

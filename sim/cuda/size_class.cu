@@ -29,16 +29,16 @@ __global__ void compute_phases(const Material* materials, MusclePhase* phases, s
 }
 
 // One block per robot.
-__global__ void gather_vectors(const float* state, const RobotHeader* headers, const std::uint64_t* first_masses,
-                               std::uint32_t tile_stride, std::uint32_t first_field, float* out) {
+__global__ void gather_vectors(const float* state, const std::uint16_t* masses, const RobotHeader* headers,
+                               const std::uint64_t* first_masses, std::uint32_t tile_stride, std::uint32_t first_field,
+                               float* out) {
   const std::uint32_t place = blockIdx.x;
-  const SlotOrder order = slot_order(headers[place]);
-  const std::uint64_t first = first_masses[place], masses = headers[place].masses;
-  const float* chunk = state + std::size_t{place} * tile_stride * state_fields * lanes + first_field * lanes;
-  for (std::uint64_t k = threadIdx.x; k < 3 * masses; k += blockDim.x) {
-    const auto axis = static_cast<std::uint32_t>(k % 3), slot = order.slot_of(static_cast<std::uint32_t>(k / 3));
-    out[3 * first + k] = chunk[offset_of_slot(slot, state_fields) + axis * lanes];
-  }
+  const float* from = state + std::size_t{place} * tile_stride * state_fields * lanes + first_field * lanes;
+  const std::uint16_t* numbers = masses + std::size_t{place} * tile_stride * lanes;
+  float* const to = out + 3 * first_masses[place];
+  for (std::uint32_t slot = threadIdx.x; slot < headers[place].masses; slot += blockDim.x)
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      to[3 * numbers[slot] + axis] = from[offset_of_slot(slot, state_fields) + axis * lanes];
 }
 
 // One block per move.
@@ -82,6 +82,7 @@ void SizeClass::for_each_array(const Visit& visit) {
   visit(phases_, max_materials);
   visit(state_, sizes_.state());
   visit(valences_, sizes_.slots());
+  visit(masses_, sizes_.slots());
   visit(incoming_counts_, sizes_.slots());
   visit(lengths_, sizes_.lengths());
   visit(row_start_, sizes_.row_starts());
@@ -93,6 +94,7 @@ std::uint32_t SizeClass::append(std::size_t count) {
   const std::uint32_t first = size();
   headers_.resize(first + count);
   measures_.resize(first + count);
+  orders_.resize(first + count);
   materials_.resize((first + count) * max_materials);
   return first;
 }
@@ -128,11 +130,11 @@ void SizeClass::make_room(const ChunkSizes& sizes) {
 void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
                           const Arrangement& arrangement) {
   measures_[place] = measures;
+  orders_[place] = arrangement.order;
   headers_[place] = {.masses = static_cast<std::uint32_t>(robot.masses.size()),
                      .tiles = arrangement.schedule.tiles(),
                      .face_pairs = static_cast<std::uint32_t>(arrangement.faces.size()),
                      .springs = static_cast<std::uint32_t>(robot.springs.size()),
-                     .lane_shift = arrangement.order.shift,
                      .force_scale = 1,  // publish() sets the scales
                      .correction_scale = 1,
                      .squared_stretch_limit = measures.squared_stretch_limit(),
@@ -150,6 +152,7 @@ void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks, cu
   };
   copy(state_, std::span<const float>(chunks.state));
   copy(valences_, std::span<const float>(chunks.valences));
+  copy(masses_, std::span<const std::uint16_t>(chunks.masses));
   copy(lengths_, std::span<const float>(chunks.lengths));
   copy(springs_, std::span<const std::uint32_t>(chunks.springs));
   copy(row_start_, std::span<const std::uint32_t>(chunks.row_start));
@@ -175,6 +178,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
 void SizeClass::truncate(std::uint32_t first_place) {
   headers_.resize(first_place);
   measures_.resize(first_place);
+  orders_.resize(first_place);
   materials_.resize(std::size_t{first_place} * max_materials);
 }
 
@@ -186,6 +190,7 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
     new_place[move.x] = move.y;
     headers_[move.y] = headers_[move.x];
     measures_[move.y] = measures_[move.x];
+    orders_[move.y] = orders_[move.x];
     std::ranges::copy(table(move.x), table(move.y).begin());
   }
   truncate(static_cast<std::uint32_t>(std::ranges::count(keep, true)));
@@ -291,6 +296,7 @@ BatchView SizeClass::view() const {
           .row_start = row_start_.data(),
           .face_pairs = face_pairs_.data(),
           .valences = valences_.data(),
+          .masses = masses_.data(),
           .incoming_counts = incoming_counts_.data(),
           .materials = device_materials_.data(),
           .phases = phases_.data(),
@@ -306,7 +312,7 @@ BatchView SizeClass::view() const {
 }
 
 void SizeClass::read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const {
-  const SlotOrder order = order_of(place);
+  const SlotOrder& order = order_of(place);
   std::vector<float> state(sizes_.state());
   state_.read(place, state, stream_->get());
   for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(state, order.slot_of(i), field_x);
@@ -314,7 +320,7 @@ void SizeClass::read(std::uint32_t place, std::span<Vec3> positions, std::span<V
 }
 
 void SizeClass::write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
-  const SlotOrder order = order_of(place);
+  const SlotOrder& order = order_of(place);
   std::vector<float> state(sizes_.state());
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
     put_vector(state, order.slot_of(i), field_x, positions[i]);
@@ -354,8 +360,8 @@ void SizeClass::set_status(std::uint32_t place, DeviceStatus status) {
 }
 
 void SizeClass::gather(float* device_out, Field first_field, cudaStream_t stream) const {
-  gather_vectors<<<size(), threads, 0, stream>>>(state_.data(), device_headers_.data(), first_masses_.data(),
-                                                 sizes_.tiles, first_field, device_out);
+  gather_vectors<<<size(), threads, 0, stream>>>(state_.data(), masses_.data(), device_headers_.data(),
+                                                 first_masses_.data(), sizes_.tiles, first_field, device_out);
   check(cudaGetLastError(), "gathering masses");
 }
 

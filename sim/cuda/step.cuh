@@ -154,7 +154,7 @@ class RobotStepper {
       robot_.own_mass(tile).set_vector(field_x, x);
       robot_.own_mass(tile).set_vector(field_v, v);
     } else {
-      failure_->report(step, phase, slot_order(robot_.header()).mass_of(robot_.own_slot(tile)));
+      failure_->report(step, phase, robot_.number_of(robot_.own_slot(tile)));
     }
   }
 

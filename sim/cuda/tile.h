@@ -20,7 +20,7 @@
 //    fields of slot s lie in bank s mod 32, so a schedule (schedule.h) without conflicts in one field has none in
 //    any.
 // 3. All lists on the device (springs, faces, perturbations) name masses by their slots. Only the host knows the
-//    robot's own numbers, and SlotOrder converts them.
+//    robot's own numbers, and SlotOrder (slot_order.h) converts them.
 #pragma once
 
 #include <cstdint>
@@ -56,40 +56,5 @@ MERCURY_HOST_DEVICE constexpr std::uint32_t offset_of_slot(std::uint32_t slot, s
 MERCURY_HOST_DEVICE constexpr std::uint32_t slot_at_offset(std::uint32_t offset, std::uint32_t fields) {
   return fields == 0 ? offset : offset / (fields * lanes) * lanes + offset % lanes;
 }
-
-// Which slot each mass stands in. Masses fill the tiles in their order; within tile t they are rotated by t * shift
-// lanes:
-//
-//   shift 5     tile 0:   0  1  2 ... 31     tile 1:  59 60 61 62 63 32 33 ... 58     tile 2:  86 87 ...
-//
-// Generators number the masses of a lattice row by row. Without the rotation, neighbours in other rows would often
-// share a bank, and all corners of one kind would stand in even banks.
-struct SlotOrder {
-  std::uint32_t masses, shift;
-
-  MERCURY_HOST_DEVICE std::uint32_t slot_of(std::uint32_t mass) const {
-    const std::uint32_t tile = mass / lanes;
-    return tile * lanes + (mass % lanes + tile * shift) % masses_in(tile);
-  }
-  MERCURY_HOST_DEVICE std::uint32_t mass_of(std::uint32_t slot) const {
-    const std::uint32_t tile = slot / lanes, size = masses_in(tile);
-    return tile * lanes + (slot % lanes + size - tile * shift % size) % size;
-  }
-  // Calls visit(mass, slot, count) for runs of masses in consecutive slots: one or two per tile, since it is rotated.
-  template <class Visit>
-  void for_each_run(Visit visit) const {
-    for (std::uint32_t first = 0; first < masses; first += lanes) {
-      const std::uint32_t size = masses_in(first / lanes), rotation = slot_of(first) - first;
-      visit(first, first + rotation, size - rotation);
-      if (rotation > 0) visit(first + size - rotation, first, rotation);
-    }
-  }
-
- private:
-  MERCURY_HOST_DEVICE std::uint32_t masses_in(std::uint32_t tile) const {
-    const std::uint32_t rest = masses - tile * lanes;
-    return rest < lanes ? rest : lanes;
-  }
-};
 
 }  // namespace mercury::cuda
