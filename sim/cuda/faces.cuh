@@ -46,13 +46,17 @@ class FacePass {
   __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, ushort4 corners) {
     const auto a = robot.mass_at(corners.x), b = robot.mass_at(corners.y), c = robot.mass_at(corners.z),
                d = robot.mass_at(corners.w);
-    const Vec3 xa = a.vector(field_x);
-    const Vec3 to_b = b.vector(field_x) - xa, to_c = c.vector(field_x) - xa, to_d = d.vector(field_x) - xa;
+    const Vec3 xa = a.vector(field_x), xb = b.vector(field_x), xc = c.vector(field_x), xd = d.vector(field_x);
+    // 2 (xb - xa) x (xc - xa) = ((xb - xa) + (xb - xc)) x (xc - xa). To exchange a and c, or b and d, changes at most
+    // the sign of the right side, and of no bit else. So no force depends on the vertex order.
+    const Vec3 shared_edge = xc - xa;
+    const Vec3 first_normal = 0.25f * cross((xb - xa) + (xb - xc), shared_edge);
+    const Vec3 second_normal = 0.25f * cross((xd - xa) + (xd - xc), shared_edge);
     const Vec3 shared = a.vector(field_v) + c.vector(field_v);
     const float third = 1.0f / 3.0f;
     const float scale = third * robot.header().force_scale;
-    const Vec3 first = scale * model.on_face(0.5f * cross(to_b, to_c), third * (shared + b.vector(field_v)));
-    const Vec3 second = scale * model.on_face(0.5f * cross(to_c, to_d), third * (shared + d.vector(field_v)));
+    const Vec3 first = scale * model.on_face(first_normal, third * (shared + b.vector(field_v)));
+    const Vec3 second = scale * model.on_face(second_normal, third * (shared + d.vector(field_v)));
     if (!fits(first) || !fits(second)) return false;
     const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
     const int x2 = round_to_int(second.x), y2 = round_to_int(second.y), z2 = round_to_int(second.z);
