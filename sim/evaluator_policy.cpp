@@ -19,7 +19,8 @@ constexpr int cuda_workers = 4, cpu_workers = 1;
 constexpr std::size_t cpu_robots_per_thread = 512;
 // Robots that the maker makes before it hands them on, if a device waits for them and if none does.
 constexpr std::size_t smallest_piece = 128, usual_piece = 512;
-// Robots per portion on CUDA: the first, then twice as many, and so on.
+// Robots per portion on CUDA: the first, then twice as many, and so on. If more wait when the device starts, the first
+// portions share them evenly.
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 3, waiting_at_start = 16384;
@@ -82,6 +83,10 @@ std::size_t Evaluator::Parts::largest_portion_of(const DeviceParts& device) cons
   if (device.is_cpu) return robots_that_fill(device);
   const std::size_t growing = first_portion << std::min<std::size_t>(device.portions_taken, 10);
   std::size_t most = std::min(growing, largest_portion);
+  if (device.portions_taken < portions_at_start) {
+    const std::size_t sharing = (portions_at_start - device.portions_taken) * std::max<std::size_t>(1, devices.size());
+    most = std::clamp((waiting_robots + sharing - 1) / sharing, most, largest_portion);
+  }
   if (device.robots_at_once > 0) most = std::min(most, std::max(usual_piece, device.robots_at_once));
   if (devices.size() > 1 && count != unknown_count)  // all devices should end at the same time
     most = std::min(most, std::max(smallest_piece, (count - next_first) / (2 * devices.size())));

@@ -28,8 +28,8 @@ struct TrialContext {
   UnionClock* stepping = nullptr;                         // of all devices
 };
 
-// Work per call of step(), so that a call takes about a tenth of a second. It adapts to the device from call to call,
-// and a worker keeps it from trial to trial.
+// Work per call of step(), so that a call takes a tenth of a second on the CPU and a third on a GPU. It adapts to the
+// device from call to call, and a worker keeps it from trial to trial.
 struct StepPace {
   double springs_and_masses = 2e7;
 };

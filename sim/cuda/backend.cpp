@@ -126,7 +126,8 @@ class CudaBackend final : public Backend {
     report_valid_ = report != nullptr && steps > 0;
   }
 
-  // The launches of all portions follow one another in the streams of their classes, without a pause.
+  // The launches of all portions follow one another in the streams of their classes, without a pause. (A kernel that
+  // reports on the way was 1 to 6 % slower.)
   void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
                        std::span<RobotStatus> statuses) override {
     if (places_.empty()) return;

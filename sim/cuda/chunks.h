@@ -21,9 +21,9 @@ struct ChunkSizes {
   std::size_t springs() const { return std::size_t{rows} * lanes * record_words; }  // [words]
   std::size_t lengths() const { return record_words == 1 ? max_lengths : 0; }
   std::size_t row_starts() const { return std::size_t{tiles} + 1; }
-  std::size_t bytes() const {  // of all chunks of one robot
-    return 2 * slots() + 4 * (state() + 2 * slots() + lengths() + springs() + row_starts()) +
-           sizeof(FacePair) * face_pairs;
+  std::size_t bytes() const {  // of all chunks of one robot, a multiple of 8
+    const std::size_t words = state() + 2 * slots() + lengths() + springs() + row_starts();
+    return (4 * words + sizeof(FacePair) * face_pairs + 2 * slots() + 7) / 8 * 8;
   }
 };
 

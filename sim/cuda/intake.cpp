@@ -95,13 +95,7 @@ class Intake {
 
   void upload_portion(std::span<const std::uint32_t> portion) {
     arrange_topologies(portion);
-    for (std::size_t first = 0; first < portion.size();) {
-      const std::uint32_t size_class = new_robots_[portion[first]].place.size_class;
-      std::size_t last = first;
-      while (last < portion.size() && new_robots_[portion[last]].place.size_class == size_class) ++last;
-      upload_run(classes_[size_class], portion.subspan(first, last - first));
-      first = last;
-    }
+    upload_chunks(portion);
     for (const std::uint32_t i : portion) {
       const std::uint32_t first = new_robots_[i].first_of_topology;
       if (--users_[first] == 0) arrangements_[first].reset();
@@ -120,33 +114,62 @@ class Intake {
     });
   }
 
-  // Robots in consecutive places of a class.
-  void upload_run(SizeClass& to, std::span<const std::uint32_t> run) {
+  // Robots of a portion in consecutive places of a class.
+  struct Run {
+    SizeClass& to;
+    std::span<const std::uint32_t> robots;
+  };
+
+  std::vector<Run> runs_of(std::span<const std::uint32_t> portion) const {
+    const auto class_of = [&](std::size_t k) { return new_robots_[portion[k]].place.size_class; };
+    std::vector<Run> runs;
+    for (std::size_t first = 0, last = 0; first < portion.size(); first = last) {
+      while (last < portion.size() && class_of(last) == class_of(first)) ++last;
+      runs.push_back({classes_[class_of(first)], portion.subspan(first, last - first)});
+    }
+    return runs;
+  }
+
+  void upload_chunks(std::span<const std::uint32_t> portion) {
     const Stopwatch stopwatch(times_.upload);
+    const std::vector<Run> runs = runs_of(portion);
+    std::size_t bytes = 0;
+    for (const Run& run : runs) {
+      run.to.make_room(sizes_of(run));
+      bytes += run.robots.size() * run.to.sizes().bytes();
+    }
+    if (bytes > memory_.bytes()) memory_ = PinnedBuffer(bytes);
+    std::byte* memory = memory_.data();
+    for (const Run& run : runs) {
+      Chunks chunks(run.to.sizes(), run.robots.size(), memory);
+      memory += run.robots.size() * run.to.sizes().bytes();
+      oneapi::tbb::parallel_for(std::size_t{0}, run.robots.size(), [&](std::size_t k) {
+        const NewRobot& entry = new_robots_[run.robots[k]];
+        const Arrangement& arrangement = arrangement_of(run.robots[k]);
+        run.to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
+        chunks.fill(k, *entry.robot, arrangement);
+      });
+      run.to.write_chunks(new_robots_[run.robots.front()].place.number, chunks, run.to.stream().get());
+    }
+    for (const Run& run : runs) run.to.stream().synchronize();  // `memory_` is free again
+  }
+
+  ChunkSizes sizes_of(const Run& run) const {
     ChunkSizes sizes;
-    for (const std::uint32_t i : run) {
+    for (const std::uint32_t i : run.robots) {
       const Arrangement& arrangement = arrangement_of(i);
       sizes.tiles = std::max(sizes.tiles, arrangement.schedule.tiles());
       sizes.rows = std::max(sizes.rows, arrangement.schedule.rows());
       sizes.face_pairs = std::max(sizes.face_pairs, static_cast<std::uint32_t>(arrangement.faces.size()));
     }
-    to.make_room(sizes);
-    const PinnedBuffer memory(run.size() * to.sizes().bytes());
-    Chunks chunks(to.sizes(), run.size(), memory.data());
-    oneapi::tbb::parallel_for(std::size_t{0}, run.size(), [&](std::size_t k) {
-      const NewRobot& entry = new_robots_[run[k]];
-      const Arrangement& arrangement = arrangement_of(run[k]);
-      to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
-      chunks.fill(k, *entry.robot, arrangement);
-    });
-    to.write_chunks(new_robots_[run.front()].place.number, chunks, to.stream().get());
-    to.stream().synchronize();  // `memory` is free again
+    return sizes;
   }
 
   const Arrangement& arrangement_of(std::uint32_t i) const { return *arrangements_[new_robots_[i].first_of_topology]; }
 
   SizeClasses& classes_;
   LoadTimes& times_;
+  PinnedBuffer memory_;  // the chunks of a portion, on their way
   std::vector<NewRobot> new_robots_;
   std::vector<std::unique_ptr<const Arrangement>> arrangements_;  // [new robot], at the first of each topology
   std::vector<std::uint32_t> users_;      // [new robot], of its arrangement, still to be uploaded

@@ -53,12 +53,15 @@ class PinnedPool {
   std::size_t kept_ = 0;
 };
 
-// Lets the pool keep what is freed, up to half of the device's memory.
+// Lets the pool keep what is freed, up to half of the device's memory. A pool grows slowly, so it begins with some.
 void let_pool_keep_memory(cudaMemPool_t pool) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total), "querying the device's memory");
   std::uint64_t threshold = total / 2;
   check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &threshold), "setting up device memory");
+  void* data = nullptr;
+  check(cudaMallocAsync(&data, free / 256, cudaStreamPerThread), "setting up device memory");
+  check(cudaFreeAsync(data, cudaStreamPerThread), "setting up device memory");
 }
 
 cudaMemPool_t present_pool() {

@@ -96,7 +96,7 @@ class Evaluator {
   // Uses these devices. The configuration's device has no effect.
   Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count, std::vector<MakeBackend> devices);
   // Cancels what has not been yielded. Waits for the robots that are being made and for one call of step(), about a
-  // tenth of a second.
+  // third of a second.
   ~Evaluator();
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
@@ -107,7 +107,7 @@ class Evaluator {
   // Waits until next() would return at once, or until the time is over. Returns whether next() would.
   bool wait_for(std::chrono::milliseconds time);
 
-  // Makes no more robots. Those that are being stepped stop within about a tenth of a second, and next() yields what
+  // Makes no more robots. Those that are being stepped stop within about a third of a second, and next() yields what
   // they have reached; it omits robots that have not started, and all behind them.
   void stop();
 
