@@ -94,7 +94,7 @@ std::uint32_t SizeClass::append(std::size_t count) {
   const std::uint32_t first = size();
   headers_.resize(first + count);
   measures_.resize(first + count);
-  slot_orders_.resize(first + count);
+  slot_tables_.resize(first + count);
   materials_.resize((first + count) * max_materials);
   return first;
 }
@@ -130,7 +130,7 @@ void SizeClass::make_room(const ChunkSizes& sizes) {
 void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
                           const Arrangement& arrangement) {
   measures_[place] = measures;
-  slot_orders_[place] = arrangement.order;
+  slot_tables_[place] = arrangement.order;
   headers_[place] = {.masses = static_cast<std::uint32_t>(robot.masses.size()),
                      .tiles = arrangement.schedule.tiles(),
                      .face_pairs = static_cast<std::uint32_t>(arrangement.faces.size()),
@@ -178,7 +178,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
 void SizeClass::truncate(std::uint32_t first_place) {
   headers_.resize(first_place);
   measures_.resize(first_place);
-  slot_orders_.resize(first_place);
+  slot_tables_.resize(first_place);
   materials_.resize(std::size_t{first_place} * max_materials);
 }
 
@@ -190,7 +190,7 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
     new_place[move.x] = move.y;
     headers_[move.y] = headers_[move.x];
     measures_[move.y] = measures_[move.x];
-    slot_orders_[move.y] = slot_orders_[move.x];
+    slot_tables_[move.y] = slot_tables_[move.x];
     std::ranges::copy(table(move.x), table(move.y).begin());
   }
   truncate(static_cast<std::uint32_t>(std::ranges::count(keep, true)));

@@ -74,7 +74,7 @@ class SizeClass {
   void update_phases(const Clock& clock);
   void set_perturbations(std::span<const DevicePerturbation> perturbations);
 
-  const SlotOrder& order_of(std::uint32_t place) const { return *slot_orders_[place]; }
+  const SlotOrder& order_of(std::uint32_t place) const { return *slot_tables_[place]; }
   void read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const;
   void write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   // Puts the robots of consecutive places at rest where they began, but lifts[i] [m] higher. They have not exploded.
@@ -104,7 +104,7 @@ class SizeClass {
   // [place]
   std::vector<RobotHeader> headers_;
   std::vector<RobotMeasures> measures_;
-  std::vector<std::shared_ptr<const SlotOrder>> slot_orders_;
+  std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
   std::vector<Material> materials_;  // [place][max_materials]
   LaunchConfiguration launch_;
   std::uint32_t partner_fields_ = 0;  // by which the partners of all spring records are addressed; 0 = slots
