@@ -4,8 +4,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <unordered_map>
+#include <utility>
+
+#include "sim/physics/measures.h"
 
 namespace mercury::cuda {
 namespace {
@@ -17,58 +19,45 @@ std::vector<OwnedSpring> in_slots(std::span<const Spring> springs, std::span<con
   return moved;
 }
 
-struct Shift {
-  std::uint32_t shift, passes;  // CornerBanks::fewest_passes() with this shift
-};
-
-// Some shifts, first those that spread the corners of the faces over the banks most evenly.
-std::array<Shift, 12> shifts_by_passes(std::uint32_t masses, std::span<const FacePair> pairs) {
-  std::vector<std::uint32_t> shared(masses), outer(masses);  // how often each mass is a or c, b or d
-  for (const FacePair& p : pairs) {
-    ++shared[p.a], ++shared[p.c];
-    ++outer[p.b], ++outer[p.d];
+// The largest distance of two masses is at most this [m].
+float diameter_bound(const Robot& robot) {
+  Vec3 low = robot.masses.front(), high = low;
+  for (const Vec3 x : robot.masses) {
+    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
   }
-  std::array<Shift, 12> shifts{{{0}, {1}, {2}, {3}, {5}, {6}, {7}, {13}, {16}, {25}, {27}, {29}}};
-  for (Shift& shift : shifts) {
-    CornerBanks banks;
-    TileRotation{masses, shift.shift}.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
-      for (std::uint32_t i = 0; i < count; ++i) banks.shared[slot % lanes + i] += shared[mass + i];
-      for (std::uint32_t i = 0; i < count; ++i) banks.outer[slot % lanes + i] += outer[mass + i];
-    });
-    shift.passes = banks.fewest_passes(pairs.size());
-  }
-  std::ranges::stable_sort(shifts, {}, &Shift::passes);
-  return shifts;
+  return length(high - low);
 }
 
-// The shift with the fewest passes through shared memory. Rows of springs are estimated for small robots only: in
-// these, shifts differ by more, and an estimate takes less time.
-TileRotation choose_rotation(const Robot& robot, std::span<const FacePair> pairs) {
-  const auto masses = static_cast<std::uint32_t>(robot.masses.size());
-  const std::array<Shift, 12> shifts = shifts_by_passes(masses, pairs);
-  constexpr std::size_t max_estimated = 4000;  // springs, of all estimates together
-  const std::size_t estimates = std::clamp<std::size_t>(max_estimated / (robot.springs.size() + 1), 1, 4);
-  TileRotation best{masses, shifts.front().shift};
-  std::uint32_t fewest = ~0u;
-  for (std::size_t i = 0; i < estimates && estimates > 1; ++i) {
-    const TileRotation rotation{masses, shifts[i].shift};
-    constexpr std::uint32_t per_row = 10, per_column = 9;  // docs/performance.md; x, v and sum of a corner
-    const std::uint32_t passes = per_row * estimate_rows(masses, in_slots(robot.springs, rotation.order().slots)) +
-                                 per_column * shifts[i].passes;
-    if (passes < fewest) best = rotation, fewest = passes;
-  }
-  return best;
+// Padding that is longer than springs may be makes the kernel measure again without it (SpringPass). In robots so large
+// that it could be, padding with a partner too far away reads its owner instead, though the bank may be in use.
+void shorten_padding(Schedule& schedule, const Robot& robot, const SlotOrder& order) {
+  const float limit = measure(robot).squared_stretch_limit() / 4;
+  if (const float diameter = diameter_bound(robot); diameter * diameter <= limit) return;
+  const std::vector<std::uint16_t> masses = order.masses();
+  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+    for (std::uint32_t i = schedule.row_start[tile] * lanes; i < schedule.row_start[tile + 1] * lanes; ++i) {
+      ScheduledSpring& entry = schedule.entries[i];
+      const std::uint32_t owner = tile * lanes + i % lanes;
+      if (entry.spring != padding || owner >= masses.size()) continue;
+      const Vec3 d = robot.masses[masses[owner]] - robot.masses[masses[entry.partner]];
+      if (dot(d, d) <= limit) continue;
+      --schedule.incoming_counts[entry.partner];
+      ++schedule.incoming_counts[owner];
+      entry.partner = static_cast<std::uint16_t>(owner);
+    }
 }
 
 }  // namespace
 
 Arrangement arrange(const Robot& robot) {
   std::vector<FacePair> pairs = pair_faces(robot);
-  const TileRotation rotation = choose_rotation(robot, pairs);
-  auto order = std::make_shared<const SlotOrder>(rotation.order());
+  auto order = std::make_shared<const SlotOrder>(choose_slots(robot, pairs));
   const std::vector<std::uint16_t>& slot = order->slots;
   for (FacePair& p : pairs) p = {slot[p.a], slot[p.b], slot[p.c], slot[p.d]};
-  return {std::move(order), schedule_springs(rotation.masses, in_slots(robot.springs, slot)), make_face_tiles(pairs)};
+  Schedule schedule = schedule_springs(robot.masses.size(), in_slots(robot.springs, slot));
+  shorten_padding(schedule, robot, *order);
+  return {std::move(order), std::move(schedule), make_face_tiles(pairs)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {

@@ -9,20 +9,6 @@
 namespace mercury::cuda {
 namespace {
 
-// The warps that the kernel's registers allow on a multiprocessor. They are best split into two blocks, so that one
-// computes while the other waits at a barrier.
-constexpr std::uint32_t resident_warps = 28;
-// Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
-constexpr std::uint32_t min_tiles_per_warp = 3;
-
-std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
-
-// The fewest warps that finish a robot's tiles in as many turns as `max_warps` would.
-std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps) {
-  const std::uint32_t turns = std::max(divide_up(tiles, max_warps), std::min(min_tiles_per_warp, tiles));
-  return divide_up(tiles, turns);
-}
-
 // Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
 // not even one copy does.
 bool fit(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fields, const DeviceLimits& limits,

@@ -3,6 +3,7 @@
 // every build can compute what a robot needs.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -23,6 +24,25 @@ struct LaunchConfiguration {
   bool contacts_on_chip = true;       // else after the working memory in the workspace
   std::size_t shared_bytes = 0;
 };
+
+// The warps that the kernel's registers allow on a multiprocessor. They are best split into two blocks, so that one
+// computes while the other waits at a barrier.
+inline constexpr std::uint32_t resident_warps = 28;
+// Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
+inline constexpr std::uint32_t min_tiles_per_warp = 3;
+
+constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+
+// The fewest warps that finish a robot's tiles in as many turns as `max_warps` would.
+constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps) {
+  const std::uint32_t turns = std::max(divide_up(tiles, max_warps), std::min(min_tiles_per_warp, tiles));
+  return divide_up(tiles, turns);
+}
+
+// Tiles that a warp computes in turn if robots of this many tiles fill the device.
+constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
+  return divide_up(tiles, even_warps(tiles, resident_warps / 2));
+}
 
 // The configuration that keeps most robots in flight on the present device, beside the rest of `batch_size` robots.
 LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,

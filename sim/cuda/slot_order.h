@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which slot each mass of a robot stands in.
+//
+//   masses by valence   | 26 26 26 ... 25 | 25 24 24 ... 20 | 19 19 17 ... 13 | 11 9 7 |   32 per tile
+//   tiles by warp       | the first and the fourth           | the second and the third |   two per warp here
+//   lanes               each mass of a tile takes the lane whose bank is least busy
+//
+// 1. A lane of a tile computes about half of the springs of its mass, and a tile takes as many rows as its busiest lane
+//    has springs (schedule.h). So masses of about the same valence share a tile.
+// 2. A warp computes consecutive tiles, and the robot waits for its last warp. So heavy tiles and light ones are dealt
+//    out to the warps.
+// 3. A row uses each bank once. So the springs of a tile should lead to masses in all banks alike: a mass takes the
+//    free lane of its tile whose bank the tiles of its neighbours have used least so far. The corners of faces should
+//    also lie in all banks alike (face_tiles.h), and count in the same way.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "mercury/robot.h"
 #include "sim/cuda/tile.h"
+#include "sim/physics/face_pairs.h"
 
 namespace mercury::cuda {
 
@@ -21,42 +36,11 @@ struct SlotOrder {
   }
 };
 
-// An order in which masses fill the tiles in their order; within tile t they are rotated by t * shift
-// lanes:
-//
-//   shift 5     tile 0:   0  1  2 ... 31     tile 1:  59 60 61 62 63 32 33 ... 58     tile 2:  86 87 ...
-//
-// Generators number the masses of a lattice row by row. Without the rotation, neighbours in other rows would often
-// share a bank, and all corners of one kind would stand in even banks.
-struct TileRotation {
-  std::uint32_t masses, shift;
+// `pairs` = pair_faces(robot). The order follows from the topology alone.
+SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs);
 
-  std::uint32_t slot_of(std::uint32_t mass) const {
-    const std::uint32_t tile = mass / lanes;
-    return tile * lanes + (mass % lanes + tile * shift) % masses_in(tile);
-  }
-  // Calls visit(mass, slot, count) for runs of masses in consecutive slots: one or two per tile, since it is rotated.
-  template <class Visit>
-  void for_each_run(Visit visit) const {
-    for (std::uint32_t first = 0; first < masses; first += lanes) {
-      const std::uint32_t size = masses_in(first / lanes), rotation = slot_of(first) - first;
-      visit(first, first + rotation, size - rotation);
-      if (rotation > 0) visit(first + size - rotation, first, rotation);
-    }
-  }
-
-  SlotOrder order() const {
-    SlotOrder order;
-    for (std::uint32_t mass = 0; mass < masses; ++mass)
-      order.slots.push_back(static_cast<std::uint16_t>(slot_of(mass)));
-    return order;
-  }
-
- private:
-  std::uint32_t masses_in(std::uint32_t tile) const {
-    const std::uint32_t rest = masses - tile * lanes;
-    return rest < lanes ? rest : lanes;
-  }
-};
+// Positions for tiles whose work is given in descending order, so that the groups of `per_warp` consecutive positions
+// have about the same work. The last tile stays last, because it may be partly empty.
+std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t per_warp);
 
 }  // namespace mercury::cuda

@@ -26,23 +26,17 @@ class OwnerSearch {
       : springs_(std::move(springs)), tiles_(tiles_for(masses)), load_(tiles_ * tile_counters) {
     choose_first();
     even_out(3);
-  }
-
-  std::uint32_t rows() const {
-    std::uint32_t rows = 0;
-    for (std::uint32_t tile = 0; tile < tiles_; ++tile) rows += static_cast<std::uint32_t>(busiest(tile));
-    return rows;
-  }
-
-  OwnedSprings finish() {
     even_out(2);
     list_candidates();
     lower_peaks();
+  }
+
+  OwnedSprings take() {
     return {std::move(springs_), std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
   }
 
  private:
-  static constexpr std::uint32_t max_visited = 12;
+  static constexpr std::uint32_t max_visited = 8;
 
   // A step of a chain: `spring` makes `counter` too full, and the counter before it less full.
   struct Link {
@@ -220,11 +214,7 @@ class OwnerSearch {
 }  // namespace
 
 OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs) {
-  return OwnerSearch(masses, std::move(springs)).finish();
-}
-
-std::uint32_t estimate_rows(std::size_t masses, std::vector<OwnedSpring> springs) {
-  return OwnerSearch(masses, std::move(springs)).rows();
+  return OwnerSearch(masses, std::move(springs)).take();
 }
 
 }  // namespace mercury::cuda

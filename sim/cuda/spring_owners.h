@@ -49,8 +49,4 @@ struct OwnedSprings {
 // Exchanges the ends of springs, so that the tiles need few rows in all.
 OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs);
 
-// The rows of all tiles if the search ended after its first sweep: somewhat more than choose_owners() needs, in a
-// quarter of the time.
-std::uint32_t estimate_rows(std::size_t masses, std::vector<OwnedSpring> springs);
-
 }  // namespace mercury::cuda

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "sim/cuda/arrangement.h"
+#include "sim/physics/measures.h"
 #include "tests/sim/bodies.h"
 
 namespace mercury::cuda {
@@ -154,45 +155,9 @@ TEST(Schedule, TilesHaveAsManyRowsAsTheirBusiestLaneOrBankHasSprings) {
   }
 }
 
-TEST(Schedule, WastesLittleOnALattice) {
-  const Robot robot = bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 1);
-  EXPECT_GT(static_cast<double>(robot.springs.size()), 0.92 * schedule_of(robot).rows() * lanes);
-}
-
 TEST(SpringOwners, TwoMassesShareTheirSpringsEvenly) {
   EXPECT_EQ(choose_owners(2, ends_of(tangle(2, 300, 1))).rows, std::vector<std::uint32_t>{150});
   EXPECT_EQ(choose_owners(2, ends_of(tangle(2, 301, 1))).rows, std::vector<std::uint32_t>{151});
-}
-
-TEST(TileRotation, GivesEachMassItsOwnSlotInItsTile) {
-  for (const std::uint32_t masses : {1u, 31u, 32u, 33u, 70u, 1331u})
-    for (const std::uint32_t shift : {0u, 1u, 5u, 13u, 31u}) {
-      const TileRotation rotation{masses, shift};
-      const SlotOrder order = rotation.order();
-      std::set<std::uint32_t> slots;
-      for (std::uint32_t mass = 0; mass < masses; ++mass) {
-        const std::uint32_t slot = order.slot_of(mass);
-        EXPECT_EQ(slot / lanes, mass / lanes);
-        EXPECT_EQ(order.masses()[slot], mass);
-        slots.insert(slot);
-      }
-      EXPECT_EQ(slots.size(), masses);
-      EXPECT_EQ(*slots.rbegin(), masses - 1);
-    }
-}
-
-TEST(TileRotation, RunsCoverEveryMassInOrder) {
-  for (const std::uint32_t masses : {1u, 31u, 33u, 70u, 1331u})
-    for (const std::uint32_t shift : {0u, 5u, 31u}) {
-      const TileRotation rotation{masses, shift};
-      std::uint32_t next = 0;
-      rotation.for_each_run([&](std::uint32_t mass, std::uint32_t slot, std::uint32_t count) {
-        EXPECT_EQ(mass, next);
-        for (std::uint32_t i = 0; i < count; ++i) EXPECT_EQ(slot + i, rotation.slot_of(mass + i));
-        next += count;
-      });
-      EXPECT_EQ(next, masses);
-    }
 }
 
 TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
@@ -225,13 +190,32 @@ TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
   }
 }
 
-// Lattices number their masses row by row, so corners of one kind lie in few banks. Their face tiles are well filled
-// nevertheless.
-TEST(Arrangement, FaceTilesOfALatticeAreWellFilled) {
-  for (const int size : {10, 15}) {
+TEST(Arrangement, WastesLittleOnALattice) {
+  for (const int size : {9, 10, 15}) {
     const Robot robot = bodies::random_voxels({.x = size, .y = size, .z = size}, 1);
-    EXPECT_GT(static_cast<double>(pair_faces(robot).size()), 0.65 * static_cast<double>(arrange(robot).faces.size()));
+    const Arrangement arrangement = arrange(robot);
+    EXPECT_GT(static_cast<double>(robot.springs.size()), 0.95 * arrangement.schedule.rows() * lanes) << size;
   }
+}
+
+// A long chain of cubes. Padding that reads a mass of its tile would be longer than any spring may be.
+TEST(Arrangement, PaddingIsNoLongerThanSpringsMayBe) {
+  const Robot robot = bodies::random_voxels({.x = 200, .y = 1, .z = 1}, 1);
+  const Arrangement arrangement = arrange(robot);
+  const std::vector<std::uint16_t> masses = arrangement.order->masses();
+  const Schedule& schedule = arrangement.schedule;
+  const float limit = measure(robot).squared_stretch_limit();
+  std::vector<std::uint32_t> incoming(schedule.tiles() * lanes);
+  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+    for (std::uint32_t entry = schedule.row_start[tile] * lanes; entry < schedule.row_start[tile + 1] * lanes;
+         ++entry) {
+      const std::uint32_t owner = tile * lanes + entry % lanes, partner = schedule.entries[entry].partner;
+      ++incoming[partner];
+      if (owner >= masses.size()) continue;
+      const Vec3 d = robot.masses.at(masses.at(owner)) - robot.masses.at(masses.at(partner));
+      EXPECT_LT(dot(d, d), limit);
+    }
+  EXPECT_EQ(schedule.incoming_counts, incoming);
 }
 
 TEST(Arrangement, FindsTheFirstRobotOfEachTopology) {

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/slot_order.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "sim/cuda/launch_configuration.h"
+
+namespace mercury::cuda {
+namespace {
+
+// Numbers of eight banks, added as a vector (GCC and Clang).
+using EightBanks [[gnu::vector_size(16)]] = std::uint16_t;
+constexpr std::uint32_t parts = lanes / 8;
+
+// A number per bank. Whole vectors are added also where a single bank changes: a vector load right after a narrow store
+// would stall.
+struct PerBank {
+  std::array<EightBanks, parts> part{};
+
+  std::uint32_t operator[](std::uint32_t bank) const { return part[bank / 8][bank % 8]; }
+  void add(const PerBank& other) {
+    for (std::uint32_t i = 0; i < parts; ++i) part[i] += other.part[i];
+  }
+  void add(const PerBank& other, std::uint16_t times) {
+    for (std::uint32_t i = 0; i < parts; ++i) part[i] += other.part[i] * times;
+  }
+};
+
+std::array<PerBank, lanes> unit_vectors() {
+  std::array<PerBank, lanes> units;
+  for (std::uint32_t bank = 0; bank < lanes; ++bank) units[bank].part[bank / 8][bank % 8] = 1;
+  return units;
+}
+
+class SlotSearch {
+ public:
+  SlotSearch(const Robot& robot, std::span<const FacePair> pairs)
+      : masses_(static_cast<std::uint32_t>(robot.masses.size())), tiles_(tiles_for(masses_)) {
+    count_springs(robot);
+    sort_by_valence();
+    list_neighbours(robot);
+    count_corners(pairs);
+    place_tiles();
+    choose_lanes();
+  }
+
+  SlotOrder take() { return {std::move(slots_)}; }
+
+ private:
+  std::uint32_t valence(std::uint32_t mass) const { return first_neighbour_[mass + 1] - first_neighbour_[mass]; }
+
+  void count_springs(const Robot& robot) {
+    first_neighbour_.assign(masses_ + 1, 0);
+    for (const Spring& s : robot.springs) ++first_neighbour_[s.a], ++first_neighbour_[s.b];
+    std::uint32_t count = 0;
+    for (std::uint32_t& first : first_neighbour_) first = std::exchange(count, count + first);
+  }
+
+  // By counting. Until then tiles are numbered by descending valence.
+  void sort_by_valence() {
+    std::uint32_t most = 0;
+    for (std::uint32_t mass = 0; mass < masses_; ++mass) most = std::max(most, valence(mass));
+    std::vector<std::uint32_t> next(most + 1);
+    for (std::uint32_t mass = 0; mass < masses_; ++mass) ++next[most - valence(mass)];
+    std::uint32_t count = 0;
+    for (std::uint32_t& n : next) n = std::exchange(count, count + n);
+    sorted_.resize(masses_);
+    tile_.resize(masses_);
+    for (std::uint32_t mass = 0; mass < masses_; ++mass) {
+      const std::uint32_t rank = next[most - valence(mass)]++;
+      sorted_[rank] = static_cast<std::uint16_t>(mass);
+      tile_[mass] = static_cast<std::uint16_t>(rank / lanes);
+    }
+  }
+
+  void list_neighbours(const Robot& robot) {
+    neighbour_tiles_.resize(first_neighbour_.back());
+    std::vector<std::uint32_t> next(first_neighbour_.begin(), first_neighbour_.end() - 1);
+    for (const Spring& s : robot.springs) {
+      neighbour_tiles_[next[s.a]++] = tile_[s.b];
+      neighbour_tiles_[next[s.b]++] = tile_[s.a];
+    }
+  }
+
+  void count_corners(std::span<const FacePair> pairs) {
+    corners_.resize(masses_);
+    for (const FacePair& p : pairs) {
+      ++corners_[p.a].shared, ++corners_[p.c].shared;
+      ++corners_[p.b].outer, ++corners_[p.d].outer;
+    }
+  }
+
+  void place_tiles() {
+    std::vector<std::uint32_t> work(tiles_);
+    for (std::uint32_t rank = 0; rank < masses_; ++rank) work[rank / lanes] += valence(sorted_[rank]);
+    position_ = deal_tiles(work, tiles_per_warp(tiles_));
+  }
+
+  void choose_lanes() {
+    slots_.resize(masses_);
+    used_.resize(tiles_);
+    for (std::uint32_t tile = 0; tile < tiles_; ++tile) {
+      const std::uint32_t size = std::min(masses_ - tile * lanes, lanes);
+      std::uint32_t free = size == lanes ? ~0u : (1u << size) - 1;
+      for (std::uint32_t rank = tile * lanes; rank < tile * lanes + size; ++rank) {
+        const std::uint32_t mass = sorted_[rank], lane = best_lane(mass, free);
+        free &= ~(1u << lane);
+        take_bank(mass, lane);
+        slots_[mass] = static_cast<std::uint16_t>(position_[tile] * lanes + lane);
+      }
+    }
+  }
+
+  std::uint32_t best_lane(std::uint32_t mass, std::uint32_t free) const {
+    PerBank uses;
+    for (std::uint32_t k = first_neighbour_[mass]; k < first_neighbour_[mass + 1]; ++k)
+      uses.add(used_[neighbour_tiles_[k]]);
+    uses.add(used_by_shared_, corners_[mass].shared);
+    uses.add(used_by_outer_, corners_[mass].outer);
+    std::uint32_t best = ~0u;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+      best = std::min(best, std::uint32_t{uses[lane]} << 5 | lane | (free >> lane & 1 ? 0u : 1u << 31));
+    return best % lanes;
+  }
+
+  void take_bank(std::uint32_t mass, std::uint32_t bank) {
+    const PerBank unit = units_[bank];
+    for (std::uint32_t k = first_neighbour_[mass]; k < first_neighbour_[mass + 1]; ++k)
+      used_[neighbour_tiles_[k]].add(unit);
+    used_by_shared_.add(unit, corners_[mass].shared);
+    used_by_outer_.add(unit, corners_[mass].outer);
+  }
+
+  struct Corners {
+    std::uint16_t shared = 0, outer = 0;  // as a or c, as b or d
+  };
+
+  std::uint32_t masses_, tiles_;
+  std::vector<std::uint32_t> first_neighbour_;  // [mass]
+  std::vector<std::uint16_t> sorted_;           // masses by descending valence
+  std::vector<std::uint16_t> tile_;             // [mass]
+  std::vector<std::uint16_t> neighbour_tiles_;  // those of mass m at [first_neighbour_[m], first_neighbour_[m + 1])
+  std::vector<Corners> corners_;                // [mass]
+  std::vector<std::uint32_t> position_;         // [tile]
+  const std::array<PerBank, lanes> units_ = unit_vectors();
+  std::vector<PerBank> used_;                   // [tile] by its springs, those within it twice
+  PerBank used_by_shared_{}, used_by_outer_{};  // by corners
+  std::vector<std::uint16_t> slots_;            // [mass]
+};
+
+}  // namespace
+
+SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs) { return SlotSearch(robot, pairs).take(); }
+
+std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t per_warp) {
+  const auto tiles = static_cast<std::uint32_t>(work.size());
+  struct Warp {
+    std::uint32_t work = 0, first, end;  // positions that are free
+  };
+  std::vector<Warp> warps;
+  for (std::uint32_t first = 0; first < tiles; first += per_warp)
+    warps.push_back({0, first, std::min(first + per_warp, tiles)});
+  std::vector<std::uint32_t> position(tiles);
+  position.back() = --warps.back().end;
+  warps.back().work += work.back();
+  for (std::uint32_t tile = 0; tile + 1 < tiles; ++tile) {
+    const auto lightest =
+        std::ranges::min_element(warps, {}, [](const Warp& w) { return std::pair(w.first == w.end, w.work); });
+    position[tile] = lightest->first++;
+    lightest->work += work[tile];
+  }
+  return position;
+}
+
+}  // namespace mercury::cuda
