@@ -16,9 +16,9 @@ std::span<T> chunk(std::span<T> buffer, std::size_t k, std::size_t stride) {
 }
 
 // Copies the values and clears the rest of the chunk.
-template <class T>
-void put(std::span<T> chunk, std::span<const T> values) {
-  const auto rest = std::ranges::copy(values, chunk.begin()).out;
+template <class T, class Value>
+void put(std::span<T> chunk, std::span<const Value> values) {
+  const auto rest = std::ranges::transform(values, chunk.begin(), [](Value v) { return static_cast<T>(v); }).out;
   std::fill(rest, chunk.end(), T{});
 }
 
@@ -40,41 +40,30 @@ Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory) :
 }
 
 void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangement) {
-  fill_masses(k, robot, *arrangement.order);
-  fill_springs(k, robot, arrangement.schedule);
-  put(chunk(row_start, k, sizes_.row_starts()), std::span<const std::uint32_t>(arrangement.schedule.row_start));
+  const Schedule& schedule = arrangement.schedule;
+  fill_state(chunk(state, k, sizes_.state()), robot, *arrangement.order, 0);
+  put(chunk(masses, k, sizes_.slots()), std::span<const std::uint16_t>(arrangement.order->masses()));
+  fill_springs(k, robot, schedule);
+  put(chunk(valences, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.valences));
+  put(chunk(incoming_counts, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.incoming_counts));
+  put(chunk(row_start, k, sizes_.row_starts()), std::span<const std::uint32_t>(schedule.row_start));
   put(chunk(face_pairs, k, sizes_.face_pairs), std::span(arrangement.faces));
 }
 
-void Chunks::fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order) {
-  fill_state(chunk(state, k, sizes_.state()), robot, order, 0);
-  put(chunk(masses, k, sizes_.slots()), std::span<const std::uint16_t>(order.masses()));
-  const auto valence = chunk(valences, k, sizes_.slots());
-  std::ranges::fill(valence, 0.f);
-  for (const Spring& spring : robot.springs)
-    for (const std::uint16_t mass : {spring.a, spring.b}) valence[order.slot_of(mass)] += 1;
-}
-
 void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule) {
-  const auto records = chunk(springs, k, sizes_.springs()), incoming = chunk(incoming_counts, k, sizes_.slots());
-  std::ranges::fill(incoming, 0u);
-  RestLengths rest;
-  if (sizes_.record_words == 1) {
-    rest = rest_lengths(robot);
-    put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
-  }
+  const auto records = chunk(springs, k, sizes_.springs());
+  const RestLengths rest = sizes_.record_words == 1 ? rest_lengths(robot) : RestLengths{};
+  if (sizes_.record_words == 1) put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
+  // Keys without the partner. The last one is that of padding: of air, so it adds nothing.
+  const auto count = static_cast<std::uint32_t>(robot.springs.size());
+  std::vector<std::uint16_t> keys(count + 1);
+  for (std::uint32_t i = 0; i < count; ++i)
+    keys[i] = static_cast<std::uint16_t>((rest.index.empty() ? 0 : rest.index[i] << 8) | robot.springs[i].material);
   auto to = records.begin();
   for (const ScheduledSpring& entry : schedule.entries) {
-    const bool is_padding = entry.spring == padding;  // of air, so it adds nothing
-    const Spring spring = is_padding ? Spring{} : robot.springs[entry.spring];
-    const std::uint32_t key = static_cast<std::uint32_t>(entry.partner) << 16 | spring.material;
-    if (sizes_.record_words == 1) {
-      *to++ = key | (is_padding ? 0u : std::uint32_t{rest.index[entry.spring]} << 8);
-    } else {
-      *to++ = key;
-      *to++ = std::bit_cast<std::uint32_t>(spring.rest_length);
-    }
-    ++incoming[entry.partner];
+    *to++ = static_cast<std::uint32_t>(entry.partner) << 16 | keys[std::min(entry.spring, count)];
+    if (sizes_.record_words == 2)
+      *to++ = entry.spring == padding ? 0 : std::bit_cast<std::uint32_t>(robot.springs[entry.spring].rest_length);
   }
   std::fill(to, records.end(), 0u);
 }

@@ -42,7 +42,6 @@ class Chunks {
   std::span<std::uint32_t> springs, row_start, incoming_counts;
 
  private:
-  void fill_masses(std::size_t k, const Robot& robot, const SlotOrder& order);
   void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule);
 
   ChunkSizes sizes_;
