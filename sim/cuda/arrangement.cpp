@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "sim/physics/measures.h"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::cuda {
 namespace {
@@ -32,8 +32,13 @@ float diameter_bound(const Robot& robot) {
 // Padding that is longer than springs may be makes the kernel measure again without it (SpringPass). In robots so large
 // that it could be, padding with a partner too far away reads its owner instead, though the bank may be in use.
 void shorten_padding(Schedule& schedule, const Robot& robot, const SlotOrder& order) {
-  const float limit = measure(robot).squared_stretch_limit() / 4;
-  if (const float diameter = diameter_bound(robot); diameter * diameter <= limit) return;
+  constexpr float share = 0.75f;  // of the limit, so that it may stretch
+  const float diameter = diameter_bound(robot);
+  float limit = 0;
+  for (const Spring& spring : robot.springs) {
+    limit = std::max(limit, share * stretch_limit * spring.rest_length);
+    if (diameter <= limit) return;
+  }
   const std::vector<std::uint16_t> masses = order.masses();
   for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
     for (std::uint32_t i = schedule.row_start[tile] * lanes; i < schedule.row_start[tile + 1] * lanes; ++i) {
@@ -41,7 +46,7 @@ void shorten_padding(Schedule& schedule, const Robot& robot, const SlotOrder& or
       const std::uint32_t owner = tile * lanes + i % lanes;
       if (entry.spring != padding || owner >= masses.size()) continue;
       const Vec3 d = robot.masses[masses[owner]] - robot.masses[masses[entry.partner]];
-      if (dot(d, d) <= limit) continue;
+      if (dot(d, d) <= limit * limit) continue;
       --schedule.incoming_counts[entry.partner];
       ++schedule.incoming_counts[owner];
       entry.partner = static_cast<std::uint16_t>(owner);
