@@ -99,7 +99,7 @@ class FaceTiles {
   std::vector<std::uint32_t> by_load() const {
     CornerBanks corners;
     for (const FacePair& p : pairs_) corners.add(p);
-    const auto width = static_cast<std::uint32_t>(1 + pairs_.size() / 64);
+    const auto width = static_cast<std::uint32_t>(1 + pairs_.size() / 32);
     const std::uint32_t most = 2 * (std::ranges::max(corners.shared) + std::ranges::max(corners.outer));
     const auto lightness = [&](const FacePair& p) {
       return (most - corners.shared[p.a % lanes] - corners.shared[p.c % lanes] - corners.outer[p.b % lanes] -

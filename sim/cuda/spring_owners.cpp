@@ -23,10 +23,13 @@ OwnedSpring exchanged_if(bool condition, OwnedSpring s) {
 class OwnerSearch {
  public:
   OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs)
-      : springs_(std::move(springs)), tiles_(tiles_for(masses)), load_(tiles_ * tile_counters) {
+      : springs_(std::move(springs)), tiles_(tiles_for(masses)), partly_empty_(masses % lanes != 0 && tiles_ > 1),
+        load_(tiles_ * tile_counters) {
+    if (partly_empty_) add_to_last_lanes(head_start);
     choose_first();
     even_out(3);
     even_out(2);
+    if (partly_empty_) add_to_last_lanes(-head_start);
     list_candidates();
     lower_peaks();
   }
@@ -36,12 +39,18 @@ class OwnerSearch {
   }
 
  private:
-  static constexpr std::uint32_t max_visited = 8;
+  static constexpr std::uint32_t max_visited = 12;
+  // Springs that the lanes of a partly empty tile seem to have from the start. So other tiles own its springs.
+  static constexpr int head_start = 16;
 
   // A step of a chain: `spring` makes `counter` too full, and the counter before it less full.
   struct Link {
     std::uint32_t counter, spring, before;
   };
+
+  void add_to_last_lanes(int springs) {
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) load_[(tiles_ - 1) * tile_counters + lane] += springs;
+  }
 
   void change_loads(OwnedSpring s, int by) {
     load_[lane_counter(s)] += by;
@@ -113,6 +122,10 @@ class OwnerSearch {
     visited_.assign(load_.size(), 0);
     std::vector<std::uint32_t> open(tiles_);
     std::iota(open.begin(), open.end(), 0u);
+    if (partly_empty_) {
+      while (lower(tiles_ - 1)) continue;
+      open.pop_back();
+    }
     while (!open.empty()) std::erase_if(open, [&](std::uint32_t tile) { return !lower(tile); });
   }
 
@@ -203,6 +216,7 @@ class OwnerSearch {
 
   std::vector<OwnedSpring> springs_;
   std::uint32_t tiles_;
+  bool partly_empty_;                                        // the last tile
   std::vector<int> load_;                                    // [counter]
   std::vector<std::uint32_t> limit_;                         // [tile]
   std::vector<std::uint32_t> first_candidate_, candidates_;  // OwnedSprings

@@ -14,6 +14,8 @@
 //    gives away a spring. If that puts one of the spring's new counters above its limit, this one gives away a spring
 //    in turn, and so on: a breadth-first search finds the shortest such chain (an augmenting path). Where there is
 //    none, the tile keeps its limit, and is done.
+// 3. A row of the last tile has fewer springs than one of another tile, if that tile is partly empty. So its masses own
+//    as few springs as possible: the search prefers their partners, and lowers the limit of the last tile first.
 #pragma once
 
 #include <cstdint>

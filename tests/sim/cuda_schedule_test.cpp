@@ -160,6 +160,15 @@ TEST(SpringOwners, TwoMassesShareTheirSpringsEvenly) {
   EXPECT_EQ(choose_owners(2, ends_of(tangle(2, 301, 1))).rows, std::vector<std::uint32_t>{151});
 }
 
+// A row of the last tile has at most 8 springs here, one of another tile 32.
+TEST(SpringOwners, MassesOfAPartlyEmptyTileOwnFewSprings) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const std::vector<std::uint32_t> rows = choose_owners(72, ends_of(tangle(72, 576, seed))).rows;
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_LT(rows[2], std::min(rows[0], rows[1]) / 2);
+  }
+}
+
 TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
   for (const Robot& robot : robots()) {
     const Arrangement arrangement = arrange(robot);
