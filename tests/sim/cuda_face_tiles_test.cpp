@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/sim/bodies.h"
+#include "tests/sim/cuda_passes.h"
 
 namespace mercury::cuda {
 namespace {
@@ -18,36 +19,6 @@ std::vector<Robot> robots() {
           bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2), bodies::random_voxels({.x = 15, .y = 15, .z = 2}, 2),
           // more than 64 face tiles
           bodies::random_voxels({.x = 40, .y = 30, .z = 1}, 3), bodies::point()};
-}
-
-// The passes of an access to each column of each face tile. Lanes that read one mass get it together, so a read takes
-// as many passes as the busiest bank has different masses. An addition takes as many as it has corners.
-struct Passes {
-  std::uint32_t reads = 0, additions = 0;
-  std::uint32_t all() const { return 6 * reads + 3 * additions; }  // of x, v and sum
-};
-
-Passes passes_of(const std::vector<FacePair>& pairs) {
-  Passes passes;
-  for (std::size_t first = 0; first < pairs.size(); first += lanes) {
-    std::array<std::array<std::multiset<int>, lanes>, 4> uses;
-    for (std::size_t i = first; i < first + lanes; ++i) {
-      const FacePair& p = pairs[i];
-      if (p == padding_faces) continue;
-      const std::array<std::uint16_t, 4> corners{p.a, p.b, p.c, p.d};
-      for (std::size_t column = 0; column < 4; ++column) uses[column][corners[column] % lanes].insert(corners[column]);
-    }
-    for (const auto& column : uses) {
-      std::size_t reads = 0, additions = 0;
-      for (const std::multiset<int>& bank : column) {
-        reads = std::max(reads, std::set<int>(bank.begin(), bank.end()).size());
-        additions = std::max(additions, bank.size());
-      }
-      passes.reads += static_cast<std::uint32_t>(reads);
-      passes.additions += static_cast<std::uint32_t>(additions);
-    }
-  }
-  return passes;
 }
 
 TEST(FaceTiles, HoldEveryFaceOnce) {

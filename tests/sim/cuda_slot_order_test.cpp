@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <random>
 #include <vector>
 
+#include "sim/cuda/arrangement.h"
 #include "sim/physics/measures.h"
 #include "tests/sim/bodies.h"
+#include "tests/sim/cuda_passes.h"
 
 namespace mercury::cuda {
 namespace {
@@ -55,6 +58,48 @@ TEST(SlotOrder, DoesNotDependOnPositions) {
   Robot other = robot;
   bodies::rotate(other, bodies::random_rotation(1));
   EXPECT_EQ(order_of(other).slots, order_of(robot).slots);
+}
+
+Schedule schedule_in_order_of_masses(const Robot& robot) {
+  std::vector<OwnedSpring> springs;
+  for (const Spring& s : robot.springs) springs.push_back({s.a, s.b});
+  return schedule_springs(robot.masses.size(), springs);
+}
+
+// Masses of low numbers have far more springs than those of high numbers, and equal ones are far apart.
+Robot uneven(int masses, int springs, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  Robot robot;
+  robot.masses.resize(static_cast<std::size_t>(masses));
+  for (int i = 0; i < springs; ++i) {
+    const int a = below(1 + below(masses)), b = (a + 1 + below(masses - 1)) % masses;
+    robot.springs.push_back(
+        {static_cast<std::uint16_t>(a * 7 % masses), static_cast<std::uint16_t>(b * 7 % masses), 1});
+  }
+  return robot;
+}
+
+TEST(SlotOrder, TakesFewerRowsThanTheOrderOfTheMasses) {
+  for (const int masses : {50, 117, 300})
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      const Robot robot = uneven(masses, 8 * masses, seed);
+      EXPECT_LT(arrange(robot).schedule.rows(), schedule_in_order_of_masses(robot).rows()) << masses;
+    }
+}
+
+// A full lattice gains least. Its faces have fewer conflicts in the order of the masses, its springs have more.
+TEST(SlotOrder, TakesNoMorePassesThanTheOrderOfTheMasses) {
+  for (const int size : {1, 3, 5, 6, 10}) {
+    const Robot robot = bodies::random_voxels({.x = size, .y = size, .z = size}, 1);
+    const Arrangement arrangement = arrange(robot);
+    const auto passes = [](const Schedule& schedule, const std::vector<FacePair>& faces) {
+      return 10 * schedule.rows() + passes_of(faces).all();  // docs/performance.md
+    };
+    EXPECT_LE(passes(arrangement.schedule, arrangement.faces),
+              passes(schedule_in_order_of_masses(robot), make_face_tiles(pair_faces(robot))))
+        << size;
+  }
 }
 
 TEST(DealTiles, GivesWarpsAboutTheSameWork) {
