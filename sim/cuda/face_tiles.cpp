@@ -143,7 +143,7 @@ class FaceTiles {
 
   void put(std::uint32_t p, std::uint32_t tile) {
     const FacePair& pair = pairs_[p];
-    const std::uint32_t order = (fits_in_order(pair, 0, tile) ? 0u : 1u) | (fits_in_order(pair, 1, tile) ? 0u : 2u);
+    const std::uint32_t order = (exchanges(pair, 0, tile) ? 1u : 0u) | (exchanges(pair, 1, tile) ? 2u : 0u);
     choices_[p] = {static_cast<std::uint8_t>(tile), static_cast<std::uint8_t>(order)};
     const FacePair ordered = in_vertex_order(pair, order);
     for (std::uint32_t column = 0; column < columns; ++column) {
@@ -154,6 +154,19 @@ class FaceTiles {
       update_room(column, slot % lanes, tile);
     }
     if (++size_[tile] == lanes) with_room_ &= ~tile_bit(tile);
+  }
+
+  // Whether a pair should exchange the corners of a side: if only that fits, or if more of its masses are in their
+  // columns already.
+  bool exchanges(const FacePair& p, std::uint32_t first, std::uint32_t tile) const {
+    const FacePair exchanged = in_vertex_order(p, 3);
+    if (!fits_in_order(exchanged, first, tile)) return false;
+    return !fits_in_order(p, first, tile) || known(exchanged, first, tile) > known(p, first, tile);
+  }
+
+  std::uint32_t known(const FacePair& p, std::uint32_t first, std::uint32_t tile) const {
+    const Tiles x = has_[first][corner(p, first)] >> tile, y = has_[first + 2][corner(p, first + 2)] >> tile;
+    return static_cast<std::uint32_t>((x & 1) + (y & 1));
   }
 
   bool fits_in_order(const FacePair& p, std::uint32_t first, std::uint32_t tile) const {

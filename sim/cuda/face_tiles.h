@@ -15,7 +15,8 @@
 // 2. Lanes that read the same mass get it in one pass. Only additions take a pass for each corner in a bank, whether
 //    the corners are of different masses or of one.
 // 3. The two triangles can be listed in four vertex orders, which put other masses into the columns. A face's force
-//    does not depend on the order, so each pair takes one that fits.
+//    does not depend on the order, so each pair takes one that fits, if possible one that repeats masses of the
+//    columns.
 // 4. There are as few face tiles as there can be, because a pass costs less than one more face tile would. Padding
 //    (padding_faces) fills the last one.
 // 5. At first the banks of a column have room for one mass each, which may be a corner of two pairs. Each pair goes to
