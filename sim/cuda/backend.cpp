@@ -99,7 +99,7 @@ class CudaBackend final : public Backend {
     for (const std::size_t i : indices)
       places.push_back({places_[i].size_class, new_places[places_[i].size_class][places_[i].number]});
     places_ = std::move(places);
-    owned_->classes.free_empty();
+    if (!places_.empty()) owned_->classes.free_empty();  // an empty batch is about to be filled again
     number_masses(robots);
     choose_launches();
   }
@@ -180,8 +180,14 @@ class CudaBackend final : public Backend {
     }
   }
 
-  void read_positions(std::span<Vec3> out) const override { gather(out, field_x); }
-  void read_velocities(std::span<Vec3> out) const override { gather(out, field_v); }
+  void read_positions(std::span<Vec3> out) const override {
+    use_device();
+    for (const auto& robots : classes()) robots->read_all(field_x, out);
+  }
+  void read_velocities(std::span<Vec3> out) const override {
+    use_device();
+    for (const auto& robots : classes()) robots->read_all(field_v, out);
+  }
   int cuda_device() const override { return device_; }
   void copy_positions(float* device_out) const override {
     use_device();
@@ -254,7 +260,6 @@ class CudaBackend final : public Backend {
     SizeClasses classes;
     Event start, end, sleepy_end{true}, gathered;
     MappedArray<DeviceTelemetry> reports;  // of the present state if report_valid_
-    DeviceArray<float> packed;             // vectors of all masses, on their way to the host
   };
 
   const SizeClasses& classes() const { return owned_->classes; }
@@ -285,18 +290,8 @@ class CudaBackend final : public Backend {
       first_masses[places_[i].size_class][places_[i].number] = masses;
       masses += robots[i]->masses.size();
     }
-    for (std::size_t c = 0; c < first_masses.size(); ++c) owned_->classes[c].set_first_masses(first_masses[c]);
-  }
-
-  void gather(std::span<Vec3> out, Field first_field) const {
-    if (out.empty()) return;
-    use_device();
-    DeviceArray<float>& packed = owned_->packed;
-    if (packed.size() < 3 * out.size()) packed = DeviceArray<float>(3 * out.size());
-    for (const auto& robots : classes())
-      if (robots->size() > 0) robots->gather(packed.data(), first_field, main().get());
-    static_assert(sizeof(Vec3) == 3 * sizeof(float));
-    packed.read(0, std::span(&out.front().x, 3 * out.size()), main().get());
+    for (std::size_t c = 0; c < first_masses.size(); ++c)
+      owned_->classes[c].set_first_masses(std::move(first_masses[c]));
   }
 
   // To be called before every change by the caller: it invalidates the last report.

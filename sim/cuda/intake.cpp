@@ -149,9 +149,9 @@ class Intake {
         run.to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
         chunks.fill(k, *entry.robot, arrangement);
       });
-      run.to.write_chunks(new_robots_[run.robots.front()].place.number, chunks, run.to.stream().get());
+      run.to.write_chunks(new_robots_[run.robots.front()].place.number, chunks);
     }
-    for (const Run& run : runs) run.to.stream().synchronize();  // `memory_` is free again
+    for (const Run& run : runs) run.to.urgent().synchronize();  // `memory_` is free again
   }
 
   ChunkSizes sizes_of(const Run& run) const {

@@ -64,6 +64,14 @@ void let_pool_keep_memory(cudaMemPool_t pool) {
   check(cudaFreeAsync(data, cudaStreamPerThread), "setting up device memory");
 }
 
+// Of this thread, for the present device.
+cudaStream_t urgent_stream() {
+  int device = 0;
+  check(cudaGetDevice(&device), "querying the present device");
+  thread_local std::map<int, Stream> streams;
+  return streams.try_emplace(device, true).first->second.get();
+}
+
 cudaMemPool_t present_pool() {
   int device = 0;
   cudaMemPool_t pool = nullptr;
@@ -80,13 +88,14 @@ cudaMemPool_t present_pool() {
 
 void* allocate_on_device(std::size_t bytes) {
   const cudaMemPool_t pool = present_pool();
+  const cudaStream_t stream = urgent_stream();
   void* data = nullptr;
-  cudaError_t error = cudaMallocAsync(&data, bytes, cudaStreamPerThread);
+  cudaError_t error = cudaMallocAsync(&data, bytes, stream);
   if (error == cudaErrorMemoryAllocation) {
     (void)cudaGetLastError();
     check(cudaDeviceSynchronize(), "freeing device memory");
     check(cudaMemPoolTrimTo(pool, 0), "freeing device memory");
-    error = cudaMallocAsync(&data, bytes, cudaStreamPerThread);
+    error = cudaMallocAsync(&data, bytes, stream);
   }
   if (error == cudaErrorMemoryAllocation) {
     (void)cudaGetLastError();
@@ -94,8 +103,8 @@ void* allocate_on_device(std::size_t bytes) {
                       " MiB: give it fewer or smaller robots");
   }
   check(error, "allocating device memory");
-  check(cudaMemsetAsync(data, 0, bytes, cudaStreamPerThread), "clearing device memory");
-  check(cudaStreamSynchronize(cudaStreamPerThread), "allocating device memory");
+  check(cudaMemsetAsync(data, 0, bytes, stream), "clearing device memory");
+  check(cudaStreamSynchronize(stream), "allocating device memory");
   return data;
 }
 

@@ -12,6 +12,9 @@ namespace {
 
 constexpr unsigned threads = 256;
 
+// Of pinned memory for states on their way.
+constexpr std::size_t portion_bytes = std::size_t{16} << 20;
+
 // Rewrites the partners of records for tiles of another number of fields.
 __global__ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
                                    std::uint32_t old_fields, std::uint32_t new_fields) {
@@ -107,7 +110,7 @@ void SizeClass::make_room(const ChunkSizes& sizes) {
   const ChunkSizes old_sizes = sizes_;
   const std::size_t old_capacity = capacity_, used = std::min<std::size_t>(capacity_, size());
   const auto reshape = [&] {
-    for_each_array([&](auto& array, std::size_t stride) { array.reshape(capacity_, stride, used, stream_->get()); });
+    for_each_array([&](auto& array, std::size_t stride) { array.reshape(capacity_, stride, used, urgent_->get()); });
   };
   // Some room to spare, for robots that need a little more than those before.
   const auto enlarge = [](std::uint32_t needed, std::uint32_t& present) {
@@ -144,10 +147,11 @@ void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMe
   std::fill(rest, to.end(), Material{});
 }
 
-void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks, cudaStream_t stream) {
+void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks) {
   const auto copy = [&]<class T>(const ChunkedArray<T>& to, std::span<const T> values) {
     if (values.empty()) return;
-    check(cudaMemcpyAsync(to.chunk(first_place), values.data(), values.size_bytes(), cudaMemcpyHostToDevice, stream),
+    check(cudaMemcpyAsync(to.chunk(first_place), values.data(), values.size_bytes(), cudaMemcpyHostToDevice,
+                          urgent_->get()),
           "uploading robots");
   };
   copy(state_, std::span<const float>(chunks.state));
@@ -167,7 +171,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   for (std::uint32_t place = first_place; same_materials_ && place < size(); ++place)
     same_materials_ = has_first_table(place);
   oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
-  const cudaStream_t stream = stream_->get();
+  const cudaStream_t stream = urgent_->get();
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
   statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
   device_materials_.write(first_place, std::span(materials_).subspan(std::size_t{first_place} * max_materials), stream);
@@ -196,24 +200,25 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
   truncate(static_cast<std::uint32_t>(std::ranges::count(keep, true)));
   if (moves.empty()) return new_place;
   DeviceArray<uint2> device_moves(moves.size());
-  device_moves.write(0, moves, stream_->get());
+  device_moves.write(0, moves, urgent_->get());
   for_each_array([&]<class T>(const ChunkedArray<T>& array, std::size_t stride) {
     if (stride == 0) return;
-    move_chunks<<<static_cast<unsigned>(moves.size()), threads, 0, stream_->get()>>>(
+    move_chunks<<<static_cast<unsigned>(moves.size()), threads, 0, urgent_->get()>>>(
         reinterpret_cast<std::uint32_t*>(array.data()), stride * sizeof(T) / 4, device_moves.data());
     check(cudaGetLastError(), "moving robots");
   });
-  stream_->synchronize();
+  urgent_->synchronize();
   return new_place;
 }
 
-void SizeClass::set_first_masses(std::span<const std::uint64_t> first_masses) {
-  first_masses_.write(0, first_masses, stream_->get());
+void SizeClass::set_first_masses(std::vector<std::uint64_t> first_masses) {
+  first_masses_.write(0, first_masses, urgent_->get());
+  first_mass_ = std::move(first_masses);
 }
 
 void SizeClass::configure(const Configuration& configuration) {
   oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
-  device_headers_.write(0, headers_, stream_->get());
+  device_headers_.write(0, headers_, urgent_->get());
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
@@ -239,9 +244,10 @@ bool SizeClass::has_first_table(std::uint32_t place) { return std::ranges::equal
 void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
   const std::size_t count = (size() - first_place) * sizes_.springs() / sizes_.record_words;
   if (old_fields == new_fields || count == 0) return;
-  readdress_partners<<<blocks_for(count), threads, 0, stream_->get()>>>(springs_.chunk(first_place), count,
+  readdress_partners<<<blocks_for(count), threads, 0, urgent_->get()>>>(springs_.chunk(first_place), count,
                                                                         sizes_.record_words, old_fields, new_fields);
   check(cudaGetLastError(), "addressing the partners of springs");
+  urgent_->synchronize();
 }
 
 void SizeClass::reserve_workspace(std::size_t bytes_per_robot) {
@@ -254,8 +260,8 @@ void SizeClass::reserve_workspace(std::size_t bytes_per_robot) {
 
 void SizeClass::publish_materials(std::uint32_t place, const Configuration& configuration) {
   update_scales(place, configuration);
-  device_headers_.write(place, std::span(headers_).subspan(place, 1), stream_->get());
-  device_materials_.write(place, table(place), stream_->get());
+  device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
+  device_materials_.write(place, table(place), urgent_->get());
   same_materials_ = true;
   for (std::uint32_t other = 0; same_materials_ && other < size(); ++other) same_materials_ = has_first_table(other);
   phases_stale_ = true;
@@ -263,7 +269,7 @@ void SizeClass::publish_materials(std::uint32_t place, const Configuration& conf
 
 void SizeClass::publish_all_materials(const Configuration& configuration) {
   configure(configuration);
-  device_materials_.write(0, materials_, stream_->get());
+  device_materials_.write(0, materials_, urgent_->get());
   same_materials_ = true;
   for (std::uint32_t place = 0; same_materials_ && place < size(); ++place) same_materials_ = has_first_table(place);
   phases_stale_ = true;
@@ -273,9 +279,10 @@ void SizeClass::update_phases(const Clock& clock) {
   const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
   if (size() == 0 || (!phases_stale_ && same_base)) return;
   const std::size_t count = std::size_t{size()} * max_materials;
-  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream_->get()>>>(
+  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, urgent_->get()>>>(
       device_materials_.data(), phases_.data(), count, clock);
   check(cudaGetLastError(), "computing muscle phases");
+  urgent_->synchronize();
   phase_clock_ = clock;
   phases_stale_ = false;
 }
@@ -283,7 +290,7 @@ void SizeClass::update_phases(const Clock& clock) {
 void SizeClass::set_perturbations(std::span<const DevicePerturbation> perturbations) {
   if (perturbations.size() > perturbations_.size())
     perturbations_ = DeviceArray<DevicePerturbation>(perturbations.size());
-  perturbations_.write(0, perturbations, stream_->get());
+  perturbations_.write(0, perturbations, urgent_->get());
   perturbation_count_ = perturbations.size();
 }
 
@@ -314,7 +321,7 @@ BatchView SizeClass::view() const {
 void SizeClass::read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const {
   const SlotOrder& order = order_of(place);
   std::vector<float> state(sizes_.state());
-  state_.read(place, state, stream_->get());
+  state_.read(place, state, urgent_->get());
   for (std::uint32_t i = 0; i < positions.size(); ++i) positions[i] = vector_at(state, order.slot_of(i), field_x);
   for (std::uint32_t i = 0; i < velocities.size(); ++i) velocities[i] = vector_at(state, order.slot_of(i), field_v);
 }
@@ -326,12 +333,12 @@ void SizeClass::write(std::uint32_t place, std::span<const Vec3> positions, std:
     put_vector(state, order.slot_of(i), field_x, positions[i]);
     put_vector(state, order.slot_of(i), field_v, velocities[i]);
   }
-  state_.write(place, state, stream_->get());
+  state_.write(place, state, urgent_->get());
 }
 
 void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* const> robots,
                             std::span<const float> lifts) {
-  const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, (std::size_t{16} << 20) / (4 * stride));
+  const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, portion_bytes / (4 * stride));
   const PinnedBuffer memory(4 * stride * std::min(most, robots.size()));
   for (std::size_t first = 0; first < robots.size(); first += most) {
     const std::size_t count = std::min(most, robots.size() - first);
@@ -340,23 +347,39 @@ void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* co
       const auto place = first_place + static_cast<std::uint32_t>(first + k);
       fill_state(states.subspan(k * stride, stride), *robots[first + k], order_of(place), lifts[first + k]);
     });
-    state_.write(first_place + first, states, stream_->get());
+    state_.write(first_place + first, states, urgent_->get());
   }
-  statuses_.write(first_place, std::vector<DeviceStatus>(robots.size(), DeviceStatus{-1, no_mass}), stream_->get());
+  statuses_.write(first_place, std::vector<DeviceStatus>(robots.size(), DeviceStatus{-1, no_mass}), urgent_->get());
+}
+
+void SizeClass::read_all(Field first_field, std::span<Vec3> out) const {
+  const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, portion_bytes / (4 * stride));
+  const PinnedBuffer memory(4 * stride * std::min<std::size_t>(most, size()));
+  for (std::size_t first = 0; first < size(); first += most) {
+    const std::size_t count = std::min(most, size() - first);
+    const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
+    state_.read(first, states, urgent_->get());
+    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      const SlotOrder& order = order_of(static_cast<std::uint32_t>(first + k));
+      Vec3* const to = &out[first_mass_[first + k]];
+      for (std::uint32_t mass = 0; mass < headers_[first + k].masses; ++mass)
+        to[mass] = vector_at(states.subspan(k * stride, stride), order.slot_of(mass), first_field);
+    });
+  }
 }
 
 DeviceStatus SizeClass::status(std::uint32_t place) const {
   DeviceStatus status{};
-  statuses_.read(place, std::span(&status, 1), stream_->get());
+  statuses_.read(place, std::span(&status, 1), urgent_->get());
   return status;
 }
 std::vector<DeviceStatus> SizeClass::statuses() const {
   std::vector<DeviceStatus> all(size());
-  statuses_.read(0, all, stream_->get());
+  statuses_.read(0, all, urgent_->get());
   return all;
 }
 void SizeClass::set_status(std::uint32_t place, DeviceStatus status) {
-  statuses_.write(place, std::span(&status, 1), stream_->get());
+  statuses_.write(place, std::span(&status, 1), urgent_->get());
 }
 
 void SizeClass::gather(float* device_out, Field first_field, cudaStream_t stream) const {

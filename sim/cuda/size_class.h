@@ -47,8 +47,8 @@ class SizeClass {
   // Safe to call for several places at once.
   void set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
                  const Arrangement& arrangement);
-  // Queues the copies to the chunks of consecutive places.
-  void write_chunks(std::uint32_t first_place, const Chunks& chunks, cudaStream_t stream);
+  // Queues the copies to the chunks of consecutive places in urgent().
+  void write_chunks(std::uint32_t first_place, const Chunks& chunks);
   // Uploads what set_robot() took, from `first_place` on. The robots have not exploded.
   void publish(std::uint32_t first_place, const Configuration& configuration);
   // Gives up all places from `first_place` on.
@@ -56,7 +56,7 @@ class SizeClass {
   // Gives up the places for which `keep` is false. Returns the new place of each of the others, by its old one.
   std::vector<std::uint32_t> compact(const std::vector<bool>& keep);
   // For each place, the index of the robot's first mass among those of the batch.
-  void set_first_masses(std::span<const std::uint64_t> first_masses);
+  void set_first_masses(std::vector<std::uint64_t> first_masses);
 
   // Updates the scales of the fixed-point sums.
   void configure(const Configuration& configuration);
@@ -79,14 +79,20 @@ class SizeClass {
   void write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   // Puts the robots of consecutive places at rest where they began, but lifts[i] [m] higher. They have not exploded.
   void put_at_rest(std::uint32_t first_place, std::span<const Robot* const> robots, std::span<const float> lifts);
+  // Writes one vector per mass of all robots to their parts of `out`. Copies whole states, because a kernel would wait
+  // for a multiprocessor that other simulations leave free. `first_field` = field_x or field_v.
+  void read_all(Field first_field, std::span<Vec3> out) const;
   DeviceStatus status(std::uint32_t place) const;
   std::vector<DeviceStatus> statuses() const;
   void set_status(std::uint32_t place, DeviceStatus status);
-  // Writes three floats per mass to its robot's part of `device_out`. `first_field` = field_x or field_v.
+  // Queues a kernel that writes three floats per mass to its robot's part of `device_out`. `first_field` = field_x or
+  // field_v.
   void gather(float* device_out, Field first_field, cudaStream_t stream) const;
 
-  // Orders the launches of this class among those of other streams.
+  // For launches of the step kernel.
   const Stream& stream() const { return *stream_; }
+  // For all else. What the functions above queue there is done when they return, except for write_chunks().
+  const Stream& urgent() const { return *urgent_; }
   Event& done() const { return *done_; }
 
  private:
@@ -105,7 +111,8 @@ class SizeClass {
   std::vector<RobotHeader> headers_;
   std::vector<RobotMeasures> measures_;
   std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
-  std::vector<Material> materials_;  // [place][max_materials]
+  std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
+  std::vector<Material> materials_;        // [place][max_materials]
   LaunchConfiguration launch_;
   std::uint32_t partner_fields_ = 0;  // by which the partners of all spring records are addressed; 0 = slots
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
@@ -124,7 +131,7 @@ class SizeClass {
   ChunkedArray<std::uint64_t> first_masses_;
   DeviceArray<DevicePerturbation> perturbations_;
   DeviceArray<char> workspace_;
-  std::unique_ptr<Stream> stream_ = std::make_unique<Stream>();
+  std::unique_ptr<Stream> stream_ = std::make_unique<Stream>(), urgent_ = std::make_unique<Stream>(true);
   std::unique_ptr<Event> done_ = std::make_unique<Event>();
 };
 
