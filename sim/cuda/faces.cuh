@@ -23,7 +23,7 @@ class FacePass {
     for (std::uint32_t p = first_pair(robot); p < robot.header().face_pairs; p += robot.threads()) {
       const ushort4 corners = next;
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
-      if (corners.x == corners.y) continue;  // padding
+      if (corners.x == corners.z) continue;  // padding; a single face may have a = b or a = d
       if (!add_pair(robot, model, corners)) failure.report(step, phase_environment, lowest_mass(robot, corners));
     }
   }

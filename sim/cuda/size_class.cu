@@ -353,6 +353,7 @@ void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* co
 }
 
 void SizeClass::read_all(Field first_field, std::span<Vec3> out) const {
+  if (size() == 0) return;
   const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, portion_bytes / (4 * stride));
   const PinnedBuffer memory(4 * stride * std::min<std::size_t>(most, size()));
   for (std::size_t first = 0; first < size(); first += most) {
