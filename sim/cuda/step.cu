@@ -39,7 +39,8 @@ __global__ void __maxnreg__(72)
       if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
     stepper.add_environment(step);
     if constexpr (solver == Solver::xpbd) {
-      if constexpr (EnvironmentModel::has_faces || EnvironmentModel::has_contacts) __syncthreads();
+      if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
+        __syncthreads();
       stepper.predict(step);
       __syncthreads();
     }

@@ -49,6 +49,26 @@ Vector mean_velocity(const Simulation& simulation, std::size_t robot) {
   return sum / static_cast<double>(velocities.size());
 }
 
+// A triangle of its own on three masses, moving along its normal: F = rho A C_D |v|^2 / 2, a third to each mass.
+TEST_P(Water, EachOfManyLooseTrianglesFeelsItsDrag) {
+  Robot robot;
+  for (int i = 0; i < 500; ++i) {
+    const auto first = static_cast<std::uint16_t>(robot.masses.size());
+    const float x = 0.5f * static_cast<float>(i % 25), y = 0.5f * static_cast<float>(i / 25);
+    for (const Vec3 corner : {Vec3{0, 0, 0}, Vec3{0.4f, 0, 0}, Vec3{0, 0.4f, 0}})
+      robot.masses.push_back(corner + Vec3{x, y, 0});
+    robot.faces.push_back({first, static_cast<std::uint16_t>(first + 1), static_cast<std::uint16_t>(first + 2)});
+  }
+  constexpr double dt = 1e-3, area = 0.08;
+  Simulation simulation(water({.drag_coefficient = 1, .lift_coefficient = 0}, dt), std::span(&robot, 1));
+  const State start = bodies::moving(robot, {0, 0, -2});
+  simulation.set_state(0, start.positions, start.velocities);
+  simulation.step();
+  const double expected = -2 + dt * (1000 * area * 1 * 4 / 2) / 3;
+  const std::vector<Vec3> velocities = simulation.state(0).velocities;
+  for (std::size_t i = 0; i < velocities.size(); ++i) ASSERT_NEAR(velocities[i].z, expected, 1e-5) << "mass " << i;
+}
+
 // Over a body that moves rigidly, the sum of F.u is rho C_D |u|^3 times the shadow. C_L does not matter: lift is
 // perpendicular to u.
 TEST_P(Water, DragOnATowedCubeTakesThePowerOfItsShadowAtAnyLift) {
