@@ -19,9 +19,10 @@ constexpr int cuda_workers = 4, cpu_workers = 1;
 constexpr std::size_t cpu_robots_per_thread = 512;
 // Robots that the maker makes before it hands them on, if a device waits for them and if none does.
 constexpr std::size_t smallest_piece = 128, usual_piece = 512;
-// Robots per portion on CUDA: the first, then twice as many, and so on. If more wait when the device starts, the first
-// portions share them evenly.
+// Robots per portion on CUDA: the first, then twice as many, and so on. If more wait when the device starts, one
+// portion takes them all, or a few share them evenly: stepping begins earlier than if one took more bytes than these.
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
+constexpr std::size_t usual_portion_bytes = std::size_t{64} << 20;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 3, waiting_at_start = 16384;
 
@@ -84,7 +85,9 @@ std::size_t Evaluator::Parts::largest_portion_of(const DeviceParts& device) cons
   const std::size_t growing = first_portion << std::min<std::size_t>(device.portions_taken, 10);
   std::size_t most = std::min(growing, largest_portion);
   if (device.portions_taken < portions_at_start) {
-    const std::size_t sharing = (portions_at_start - device.portions_taken) * std::max<std::size_t>(1, devices.size());
+    const std::size_t portions =
+        std::clamp<std::size_t>(memory_in_use / usual_portion_bytes, 1, portions_at_start - device.portions_taken);
+    const std::size_t sharing = portions * std::max<std::size_t>(1, devices.size());
     most = std::clamp((waiting_robots + sharing - 1) / sharing, most, largest_portion);
   }
   if (device.robots_at_once > 0) most = std::min(most, std::max(usual_piece, device.robots_at_once));

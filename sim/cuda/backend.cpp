@@ -25,7 +25,7 @@ using namespace cuda;
 // Keeps launches so short that the same GPU can serve a display.
 constexpr std::int64_t max_steps_per_launch = 2000;
 
-// Reports that step_and_report() keeps in pinned memory.
+// Reports that step_and_report() makes before it reads them.
 constexpr std::size_t most_reports = std::size_t{1} << 19;
 
 class CudaBackend final : public Backend {
@@ -135,13 +135,17 @@ class CudaBackend final : public Backend {
     report_valid_ = false;
     const std::size_t robots = places_.size(), most = std::max(std::size_t{1}, most_reports / robots);
     const auto all = static_cast<std::size_t>(steps / every);
-    const MappedArray<DeviceTelemetry> reports(std::min(most, all) * robots);
+    DeviceArray<DeviceTelemetry>& on_device = owned_->samples;
+    const std::size_t largest = std::min(most, all) * robots;
+    if (on_device.size() < largest) on_device = DeviceArray<DeviceTelemetry>(largest);
+    const auto reports = std::make_unique_for_overwrite<DeviceTelemetry[]>(largest);
     Clock now = clock;
     for (std::size_t first = 0; first < all; first += most) {
       const std::size_t count = std::min(most, all - first);
       begin_launches(now);
-      for (std::size_t k = 0; k < count; ++k, now.step += every) launch(now, every, reports.on_device() + k * robots);
+      for (std::size_t k = 0; k < count; ++k, now.step += every) launch(now, every, on_device.data() + k * robots);
       end_launches(owned_->sleepy_end);
+      on_device.read(0, std::span(reports.get(), count * robots), main().get());
       oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
         const std::size_t at = (first + k) * robots;
         copy_reports([&](std::size_t i) -> const DeviceTelemetry& { return reports[k * robots + i]; },
@@ -260,6 +264,7 @@ class CudaBackend final : public Backend {
     SizeClasses classes;
     Event start, end, sleepy_end{true}, gathered;
     MappedArray<DeviceTelemetry> reports;  // of the present state if report_valid_
+    DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
   };
 
   const SizeClasses& classes() const { return owned_->classes; }

@@ -13,7 +13,8 @@
 namespace mercury::cuda {
 namespace {
 
-constexpr std::size_t portion_bytes = std::size_t{16} << 20, max_portion = 4096;
+// Pinned memory takes long to make, so a portion is small; but not so small that it leaves cores idle.
+constexpr std::size_t portion_bytes = std::size_t{4} << 20, min_portion = 256, max_portion = 4096;
 
 // The largest number of tiles in the class of robots with this many: classes of 1, 2, ... 8, 10, ... 16, 20, ... tiles.
 std::uint32_t class_limit(std::uint32_t tiles) {
@@ -86,7 +87,8 @@ class Intake {
   // About as many robots as fit into a portion.
   std::size_t end_of_portion(std::size_t first) const {
     std::size_t bytes = 0, last = first;
-    while (last < order_.size() && last - first < max_portion && (last == first || bytes < portion_bytes)) {
+    const auto most_bytes = [&] { return last - first < min_portion ? 16 * portion_bytes : portion_bytes; };
+    while (last < order_.size() && last - first < max_portion && (last == first || bytes < most_bytes())) {
       const Robot& robot = *new_robots_[order_[last++]].robot;
       bytes += 40 * robot.masses.size() + 6 * robot.springs.size() + 4 * robot.faces.size();
     }

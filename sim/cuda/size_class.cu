@@ -12,8 +12,8 @@ namespace {
 
 constexpr unsigned threads = 256;
 
-// Of pinned memory for states on their way.
-constexpr std::size_t portion_bytes = std::size_t{16} << 20;
+// Of pinned memory for states on their way. Always the same size, so that the memory is used again.
+constexpr std::size_t portion_bytes = std::size_t{4} << 20;
 
 // Rewrites the partners of records for tiles of another number of fields.
 __global__ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
@@ -339,7 +339,7 @@ void SizeClass::write(std::uint32_t place, std::span<const Vec3> positions, std:
 void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* const> robots,
                             std::span<const float> lifts) {
   const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, portion_bytes / (4 * stride));
-  const PinnedBuffer memory(4 * stride * std::min(most, robots.size()));
+  const PinnedBuffer memory(std::max(portion_bytes, 4 * stride));
   for (std::size_t first = 0; first < robots.size(); first += most) {
     const std::size_t count = std::min(most, robots.size() - first);
     const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
@@ -355,7 +355,7 @@ void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* co
 void SizeClass::read_all(Field first_field, std::span<Vec3> out) const {
   if (size() == 0) return;
   const std::size_t stride = sizes_.state(), most = std::max<std::size_t>(1, portion_bytes / (4 * stride));
-  const PinnedBuffer memory(4 * stride * std::min<std::size_t>(most, size()));
+  const PinnedBuffer memory(std::max(portion_bytes, 4 * stride));
   for (std::size_t first = 0; first < size(); first += most) {
     const std::size_t count = std::min(most, size() - first);
     const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
