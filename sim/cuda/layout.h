@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The buffers of a batch in device memory. Each robot has a chunk of each buffer, sized by the largest robot (paper,
-// II.D):
+// The buffers of a size class (size_class.h) in device memory. Each robot has a chunk of each buffer, sized by the
+// largest robot of the class (paper, II.D):
 //
 //   state        | robot 0: tile 0, tile 1, ...        | robot 1: tile 0, ...   | ...
 //   springs      | robot 0: row 0, row 1, ...          | robot 1: row 0, ...    | ...
@@ -15,8 +15,8 @@
 //   +------------------+--------------+--------------+
 //
 // 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion.
-// 2. If each robot of the batch has at most 256 different rest lengths, the robots keep them in tables, the key has
-//    the index, and a record is one word, the key. In other batches a record is two words, the key (with length index
+// 2. If each robot of the class has at most 256 different rest lengths, the robots keep them in tables, the key has
+//    the index, and a record is one word, the key. In other classes a record is two words, the key (with length index
 //    0) and the rest length.
 #pragma once
 
@@ -58,8 +58,8 @@ struct DevicePerturbation {
   float stiffness;
 };
 
-// Pointers and strides of a batch in device memory. A stride is the length of one robot's chunk, in units of what it
-// counts.
+// Pointers and strides of a size class in device memory. A stride is the length of one robot's chunk, in units of what
+// it counts.
 struct BatchView {
   const RobotHeader* robots;
   DeviceStatus* statuses;

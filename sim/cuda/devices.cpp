@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CUDA devices of this machine.
+#include "mercury/cuda_devices.h"
+
+#include "sim/cuda/device_limits.h"
+#include "sim/cuda/memory.h"
+#include "sim/cuda/rest_lengths.h"
+#include "sim/cuda/step.h"
+
+namespace mercury {
+
+using namespace cuda;
+
+ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int device) {
+  if (device < 0 || device >= cuda_device_count())
+    throw DeviceError("CUDA device " + std::to_string(device) + " is not there");
+  check(cudaSetDevice(device), "choosing the device");
+  constexpr std::uint32_t many_robots = 1u << 20;
+  BatchView batch{};
+  batch.robot_count = many_robots;
+  batch.tile_stride = tiles_for(robot.masses.size());
+  batch.record_words = record_words_for(robot);
+  const LaunchConfiguration launch =
+      choose_launch_configuration(configuration.solver, configuration.environment, batch, true, many_robots);
+  const AnyEnvironmentModel model = solver_model_of(configuration.environment);
+  return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
+          robots_in_flight(configuration.solver, model, launch)};
+}
+
+int cuda_device_count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess) {
+    (void)cudaGetLastError();
+    return 0;
+  }
+  return count;
+}
+
+std::string cuda_device_name(int index) {
+  cudaDeviceProp properties{};
+  check(cudaGetDeviceProperties(&properties, index), "querying a device's name");
+  return properties.name;
+}
+
+std::size_t free_cuda_memory(int index) {
+  check(cudaSetDevice(index), "choosing the device");
+  std::size_t free = 0, total = 0;
+  check(cudaMemGetInfo(&free, &total), "asking for free memory");
+  return free;
+}
+
+bool built_with_cuda() { return true; }
+
+}  // namespace mercury
