@@ -60,6 +60,20 @@ std::filesystem::path follow_links(std::filesystem::path path) {
   return path;
 }
 
+// A device, a pipe or a socket: it takes what is written, and must not be replaced by a file.
+bool is_special(const std::filesystem::path& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+void write_into(const std::filesystem::path& path, std::string_view content) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.is_open()) fail(path, errno);
+  int error = write_all(file.get(), content);
+  if (const int at_close = file.close(); error == 0) error = at_close;
+  if (error != 0) fail(path, error);
+}
+
 // A name in the folder of `path` that no other writer uses.
 std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt) {
   std::string name(".");
@@ -93,6 +107,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {
   const std::filesystem::path target = follow_links(path);
+  if (is_special(target)) return write_into(path, content);
   std::filesystem::path temporary;
   int descriptor = -1;
   for (int attempt = 0; descriptor < 0; ++attempt) {

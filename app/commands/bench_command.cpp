@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
-#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {
@@ -180,13 +180,15 @@ std::vector<Measurement> sweep(const BenchOptions& options, const Configuration&
 int bench(const BenchOptions& options) {
   const Configuration configuration = options.simulation.configuration();
   require_positive("--least-seconds", options.least_seconds, "s");
+  if (!options.csv.empty()) require_writable("--csv", options.csv);
   const std::vector<Measurement> all =
       options.sweep ? sweep(options, configuration)
                     : std::vector{measure(options, configuration, choose_count(options, configuration))};
   std::string csv = csv_head;
   for (const Measurement& m : all) csv += csv_row(m);
-  if (!options.csv.empty()) write_whole_file(options.csv, csv);
-  if (options.json) {
+  if (is_standard_output(options.csv)) {
+    fmt::print("{}", csv);
+  } else if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Measurement& m : all) json.push_back(json_of(m));
     fmt::print("{}\n", (options.sweep ? json : json.front()).dump(2));
@@ -195,6 +197,7 @@ int bench(const BenchOptions& options) {
   } else {
     fmt::print("{}", table_of(all.front()));
   }
+  if (!options.csv.empty() && !is_standard_output(options.csv)) write_results(options.csv, csv);
   return 0;
 }
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury run: simulates without pictures.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,6 +12,7 @@
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/commands/commands.h"
+#include "app/commands/results_file.h"
 #include "app/commands/run_evaluation.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_options.h"
@@ -23,7 +21,6 @@
 #include "app/recording/report.h"
 #include "app/recording/repro.h"
 #include "mercury/simulation.h"
-#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {
@@ -130,16 +127,10 @@ RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recor
           .robots = observer.results()};
 }
 
-// Fails before a long simulation rather than after it.
-void require_writable(const std::string& option, const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(option, file.string() + " cannot be written: " + std::strerror(errno));
-}
-
 int report_results(const RunOptions& options, const RunReport& report) {
-  if (!options.csv.empty()) write_whole_file(options.csv, csv_of(report));
-  fmt::print("{}", options.json ? json_of(report) : table_of(report));
+  // What can be printed is printed, even if the file then cannot be written.
+  if (!is_standard_output(options.csv)) fmt::print("{}", options.json ? json_of(report) : table_of(report));
+  if (!options.csv.empty()) write_results(options.csv, csv_of(report));
 
   const auto exploded = std::count_if(report.robots.begin(), report.robots.end(), [](auto& r) { return r.exploded; });
   if (exploded > 0)
@@ -212,7 +203,8 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(*command);
-  add_text(*command, "--csv", options->csv, "Also write one line per robot to this file", "FILE");
+  add_text(*command, "--csv", options->csv,
+           "Also write one line per robot to this file; - prints it instead of the table", "FILE");
   add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
            "FILE.h5");
   add_number(*command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");

@@ -11,6 +11,8 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <iterator>
 #include <sstream>
 
 #include "mercury/error.h"
@@ -179,6 +181,19 @@ TEST_F(RobotFiles, ALinkIsFollowed) {
   save_robot(folder / "link.json", robot);
   EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
   EXPECT_EQ(load_robot(folder / "real" / "eel.json"), robot);
+}
+
+TEST_F(RobotFiles, APipeTakesWhatIsWrittenAndStaysAPipe) {
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  auto reading = std::async(std::launch::async, [&] {
+    std::ifstream file(pipe);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  });
+  write_whole_file(pipe, "some text");
+  EXPECT_EQ(reading.get(), "some text");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_THAT(names_in_folder(), testing::ElementsAre("pipe"));
 }
 
 TEST_F(RobotFiles, WhatCannotBeSavedLeavesNoFile) {

@@ -128,6 +128,26 @@ TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
             "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
 }
 
+TEST_F(RunCommand, CsvGoesToAFolderNever) {
+  const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_EQ(outcome.messages, "mercury: --csv: " + path("") + " is a folder; give a file\n");
+}
+
+TEST_F(RunCommand, CsvOnStandardOutputReplacesTheTable) {
+  const std::vector<std::string> run{"run", "--random", "voxel:2", "--seconds", "0.1", "--csv"};
+  const auto with = [&](const std::string& file) {
+    std::vector<std::string> arguments = run;
+    arguments.push_back(file);
+    return mercury(arguments);
+  };
+  ASSERT_EQ(with(path("a.csv")).status, 0);
+  EXPECT_EQ(with("-").output, read("a.csv"));
+  EXPECT_EQ(with("/dev/stdout").output, read("a.csv"));
+  EXPECT_EQ(listing(), std::vector<std::string>{"a.csv"});
+}
+
 // A robot file can name its environment.
 TEST_F(RunCommand, RobotsUseTheEnvironmentOfTheirFile) {
   const auto robot = [](const std::string& environment) {
