@@ -108,7 +108,7 @@ void Evaluator::Parts::work(DeviceParts& device) {
     Simulation simulation(request.configuration, std::span<const Robot>(), device.make_backend());
     interval.reset();
     device_started(device, simulation);
-    StepPace pace;
+    StepPace pace(simulation.cuda_device() >= 0);
     while (std::optional<Portion> portion = take(device)) {
       first = portion->first;
       evaluate(device, simulation, *std::move(portion), pace);

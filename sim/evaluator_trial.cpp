@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/evaluator_trial.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -88,9 +90,7 @@ void Trial::step(std::int64_t steps) {
 void Trial::step_and_observe(std::int64_t steps, std::int64_t sample_every) {
   std::vector<Telemetry> samples;
   timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every); });
-  const std::size_t robots = simulation_.size();
-  for (std::size_t first = 0; first < samples.size(); first += robots)
-    observe(std::span(samples).subspan(first, robots));
+  observe(samples);
 }
 
 template <class Call>
@@ -115,12 +115,15 @@ std::int64_t Trial::steps_per_call() const {
   return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, most));
 }
 
-void Trial::observe(std::span<const Telemetry> now) {
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    path_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
-    strain_[i] = std::max(strain_[i], static_cast<double>(now[i].largest_strain));
-  }
-  last_.assign(now.begin(), now.end());
+void Trial::observe(std::span<const Telemetry> samples) {
+  const std::size_t robots = last_.size();
+  oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
+    for (std::size_t at = i; at < samples.size(); at += robots) {
+      path_[i] += distance(samples[at].center_of_mass, last_[i].center_of_mass);
+      strain_[i] = std::max(strain_[i], static_cast<double>(samples[at].largest_strain));
+      last_[i] = samples[at];
+    }
+  });
 }
 
 std::vector<Evaluation> Trial::results(const Portion& portion) const {

@@ -31,7 +31,8 @@ struct TrialContext {
 // Work per call of step(), so that a call takes a tenth of a second on the CPU and a third on a GPU. It adapts to the
 // device from call to call, and a worker keeps it from trial to trial.
 struct StepPace {
-  double springs_and_masses = 2e7;
+  explicit StepPace(bool on_gpu) : springs_and_masses(on_gpu ? 2e9 : 2e7) {}
+  double springs_and_masses;
 };
 
 class Trial {
@@ -49,7 +50,7 @@ class Trial {
   void step_and_observe(std::int64_t steps, std::int64_t sample_every);
   template <class Call>
   void timed(std::int64_t steps, Call call);
-  void observe(std::span<const Telemetry> now);
+  void observe(std::span<const Telemetry> samples);  // [sample][robot]
   std::int64_t steps_per_call() const;
 
   Simulation& simulation_;
