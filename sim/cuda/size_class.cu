@@ -151,15 +151,12 @@ void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks) {
 void SizeClass::publish(std::uint32_t first_place, const Configuration& configuration) {
   const std::size_t count = size() - first_place;
   if (count == 0) return;
-  same_materials_ = first_place == 0 || same_materials_;
-  for (std::uint32_t place = first_place; same_materials_ && place < size(); ++place)
-    same_materials_ = has_first_table(place);
+  find_same_materials(first_place);
   oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
   const cudaStream_t stream = urgent_->get();
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
   statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
   device_materials_.write(first_place, std::span(materials_).subspan(std::size_t{first_place} * max_materials), stream);
-  phases_stale_ = true;
   address_partners(first_place, 0, partner_fields_);
 }
 
@@ -223,7 +220,12 @@ void SizeClass::update_scales(std::uint32_t place, const Configuration& configur
   headers_[place].correction_scale = scale.correction;
 }
 
-bool SizeClass::has_first_table(std::uint32_t place) { return std::ranges::equal(table(place), table(0)); }
+void SizeClass::find_same_materials(std::uint32_t first_changed) {
+  same_materials_ = first_changed == 0 || same_materials_;
+  for (std::uint32_t place = first_changed; same_materials_ && place < size(); ++place)
+    same_materials_ = std::ranges::equal(table(place), table(0));
+  phases_stale_ = true;
+}
 
 void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
   const std::size_t count = (size() - first_place) * sizes_.springs() / sizes_.record_words;
@@ -246,17 +248,13 @@ void SizeClass::publish_materials(std::uint32_t place, const Configuration& conf
   update_scales(place, configuration);
   device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
   device_materials_.write(place, table(place), urgent_->get());
-  same_materials_ = true;
-  for (std::uint32_t other = 0; same_materials_ && other < size(); ++other) same_materials_ = has_first_table(other);
-  phases_stale_ = true;
+  find_same_materials(0);
 }
 
 void SizeClass::publish_all_materials(const Configuration& configuration) {
   configure(configuration);
   device_materials_.write(0, materials_, urgent_->get());
-  same_materials_ = true;
-  for (std::uint32_t place = 0; same_materials_ && place < size(); ++place) same_materials_ = has_first_table(place);
-  phases_stale_ = true;
+  find_same_materials(0);
 }
 
 void SizeClass::update_phases(const Clock& clock) {

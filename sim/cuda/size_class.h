@@ -97,7 +97,8 @@ class SizeClass {
 
  private:
   void update_scales(std::uint32_t place, const Configuration& configuration);
-  bool has_first_table(std::uint32_t place);
+  // To be called when tables from a place on have changed.
+  void find_same_materials(std::uint32_t first_changed);
   // Rewrites the partners of the spring records from `first_place` on: offsets in working memory with this many fields
   // per tile, or slots (0).
   void address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);

@@ -11,6 +11,7 @@
 #include "bodies.h"
 #include "mercury/error.h"
 #include "plain_backend.h"
+#include "same_telemetry.h"
 
 namespace mercury {
 namespace {
@@ -232,17 +233,6 @@ TEST_P(BatchEdits, ExplosionsSurvive) {
   EXPECT_EQ(after[1].exploded_at, before.exploded_at);
   EXPECT_EQ(after[1].culprit_spring, before.culprit_spring);
   for (const std::size_t i : {0u, 2u, 3u}) EXPECT_FALSE(after[i].exploded) << i;
-}
-
-void expect_equal(const Telemetry& a, const Telemetry& b) {
-  EXPECT_EQ(a.center_of_mass, b.center_of_mass);
-  EXPECT_EQ(a.velocity, b.velocity);
-  EXPECT_EQ(a.kinetic_energy, b.kinetic_energy);
-  EXPECT_EQ(a.elastic_energy, b.elastic_energy);
-  EXPECT_EQ(a.largest_strain, b.largest_strain);
-  EXPECT_EQ(a.exploded, b.exploded);
-  EXPECT_EQ(a.exploded_at, b.exploded_at);
-  EXPECT_EQ(a.culprit_spring, b.culprit_spring);
 }
 
 TEST_P(BatchEdits, SamplesAreThoseOfStepAndTelemetryInTurn) {

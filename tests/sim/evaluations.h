@@ -12,6 +12,7 @@
 #include "bodies.h"
 #include "mercury/evaluator.h"
 #include "mercury/simulation.h"
+#include "same_telemetry.h"
 
 namespace mercury {
 
@@ -42,17 +43,6 @@ inline std::vector<Evaluation> evaluate(const EvaluationRequest& request, const 
 
 inline std::vector<Evaluator::MakeBackend> cpus(std::size_t count) {
   return std::vector<Evaluator::MakeBackend>(count, [] { return make_cpu_backend({.threads = 1}); });
-}
-
-inline void expect_equal(const Telemetry& a, const Telemetry& b) {
-  EXPECT_EQ(a.center_of_mass, b.center_of_mass);
-  EXPECT_EQ(a.velocity, b.velocity);
-  EXPECT_EQ(a.kinetic_energy, b.kinetic_energy);
-  EXPECT_EQ(a.elastic_energy, b.elastic_energy);
-  EXPECT_EQ(a.largest_strain, b.largest_strain);
-  EXPECT_EQ(a.exploded, b.exploded);
-  EXPECT_EQ(a.exploded_at, b.exploded_at);
-  EXPECT_EQ(a.culprit_spring, b.culprit_spring);
 }
 
 inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Evaluation>& b) {
