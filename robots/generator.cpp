@@ -131,11 +131,29 @@ std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<F
       failed);
 }
 
+void validate(const MutationRequest& request) {
+  for (const auto& [name, strength] : {std::pair("strength", request.strength), std::pair("muscles", request.muscles)})
+    if (!(std::isfinite(strength) && strength >= 0))
+      throw ParameterError(name, text_of(strength) + " is not accepted; give 0 or more");
+}
+
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
   const Generator* generator = generator_of(parent);
   if (!generator)
     throw InputError(parent.name, "cannot be mutated; only " + generator_kinds() + " robots know how they were made");
   return generator->mutate(parent, request, name);
+}
+
+Robot cross_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+  const Generator *generator = generator_of(a), *other = generator_of(b);
+  for (const auto& [robot, its_own] : {std::pair(&a, generator), std::pair(&b, other)})
+    if (!its_own)
+      throw InputError(robot->name, "cannot be crossed; only " + generator_kinds() + " robots know how they were made");
+  if (generator != other)
+    throw InputError(a.name + " and " + b.name,
+                     "cannot be crossed, " + generator->noun + " and " + other->noun + "; give two robots of one kind");
+  if (!generator->cross) throw InputError(a.name, "cannot be crossed, " + generator->noun + " has no crossover");
+  return generator->cross(a, b, seed, name);
 }
 
 }  // namespace mercury

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/nn_robot.h"
+#include "mercury/random.h"
 #include "robots/parameter_table.h"
 
 namespace mercury {
@@ -40,11 +42,29 @@ NnGenome genome_in(const Robot& robot) {
   return *std::move(genome);
 }
 
-Robot regrow(const Robot& robot) { return grow(genome_in(robot), robot.name); }
+// The robot of a genome with the materials of another, as its parent or the robot itself.
+Robot grown(const NnGenome& genome, const Robot& owner, const std::string& name) {
+  if (!owner.materials.empty() && owner.materials.size() < default_material_count)
+    throw InputError("/materials",
+                     "a network robot's table needs the base materials and their pairs, 254 in all, not " +
+                         std::to_string(owner.materials.size()));
+  Robot robot = grow(genome, name);
+  robot.materials = owner.materials;
+  robot.material_names = owner.material_names;
+  return robot;
+}
+
+Robot regrow(const Robot& robot) { return grown(genome_in(robot), robot, robot.name); }
 
 Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
+  validate(request);
   const double rate = 0.1, size = 0.3 * request.strength;
-  return grow(mutate(genome_in(parent), rate, size, request.seed), name);
+  return with_mutated_muscles(grown(mutate(genome_in(parent), rate, size, request.seed), parent, name), request.muscles,
+                              seed_of(request.seed, 0));
+}
+
+Robot crossed(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+  return with_crossed_muscles(grown(crossover(genome_in(a), genome_in(b), seed), a, name), b, seed_of(seed, 0));
 }
 
 }  // namespace
@@ -60,7 +80,8 @@ Generator nn_generator() {
                .smooth = true,
                .example = {.name = "blob", .seed = 4, .values = {{"points", "1000"}}},
                .regrow = regrow,
-               .mutate = mutant};
+               .mutate = mutant,
+               .cross = crossed};
   return with_parameters(std::move(nn), table(), random_nn_robot);
 }
 

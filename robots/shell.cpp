@@ -14,6 +14,7 @@
 #include "mercury/random.h"
 #include "robots/parameter_table.h"
 #include "robots/revolved_mesh.h"
+#include "robots/shell_evolution.h"
 
 namespace mercury {
 namespace {
@@ -236,35 +237,6 @@ class Builder {
   Robot robot_;
 };
 
-const std::vector<std::string> form_names{"bell", "tube", "ring", "pod"};
-
-// The numbers of a genome: what validate() accepts, the origin keeps and mutate() changes.
-const ParameterTable<ShellGenome>& genome_table() {
-  using G = ShellGenome;
-  const auto number = [](auto member, const char* name, double lowest, double highest) {
-    return parameter(member, {.name = name, .lowest = lowest, .highest = highest});
-  };
-  static const ParameterTable<G> rows{parameter(&G::form, {.name = "form", .words = form_names}),
-                                      number(&G::segments, "segments", 12, 128),
-                                      number(&G::lobes, "lobes", 3, 16),
-                                      number(&G::waves_around, "waves_around", -4, 4),
-                                      number(&G::diameter, "diameter", 0.2, 20),
-                                      number(&G::thickness, "thickness", 0.01, 5),
-                                      number(&G::height, "height", 0.2, 3),
-                                      number(&G::opening, "opening", 0, 1),
-                                      number(&G::squareness, "squareness", -0.1, 0.15),
-                                      number(&G::flare, "flare", 0, 0.5),
-                                      number(&G::lobe_depth, "lobe_depth", 0, 0.3),
-                                      number(&G::lappets, "lappets", 0, 0.4),
-                                      number(&G::twist, "twist", -0.5, 0.5),
-                                      number(&G::active, "active", 0, 1),
-                                      number(&G::contraction, "contraction", -0.4, 0.4),
-                                      number(&G::bending, "bending", -0.4, 0.4),
-                                      number(&G::frequency, "frequency", 0, 20),
-                                      number(&G::waves_along, "waves_along", -3, 3)};
-  return rows;
-}
-
 void check_thickness(double thickness, double diameter) {
   if (thickness > diameter / 4)
     throw ParameterError("thickness", "more than a quarter of the diameter is not accepted; give less");
@@ -273,7 +245,7 @@ void check_thickness(double thickness, double diameter) {
 std::string origin_of(const ShellGenome& genome) {
   nlohmann::ordered_json origin{{"kind", "shell"}};
   if (!genome.environment.empty()) origin["environment"] = genome.environment;
-  for (const auto& row : genome_table())
+  for (const auto& row : shell_genome_table())
     std::visit(
         [&]<class Value>(const Value& value) {
           if constexpr (!std::is_same_v<Value, SizeRange>) origin[row.description.name] = value;
@@ -292,12 +264,6 @@ ParameterValue read(const nlohmann::json& origin, const GeneratorParameter& desc
   if (std::holds_alternative<std::int64_t>(description.initial) && found->is_number_integer())
     return found->get<std::int64_t>();
   throw InputError(place, "give " + accepted_values(description));
-}
-
-ShellGenome genome_in(const Robot& robot) {
-  std::optional<ShellGenome> genome = shell_genome_of(robot);
-  if (!genome) throw InputError("/origin", "holds no shell");
-  return *std::move(genome);
 }
 
 const ParameterTable<ShellOptions>& option_table() {
@@ -338,7 +304,7 @@ const ParameterTable<ShellOptions>& option_table() {
 }  // namespace
 
 void validate(const ShellGenome& genome) {
-  check_each(genome_table(), genome);
+  check_each(shell_genome_table(), genome);
   check_thickness(genome.thickness, genome.diameter);
 }
 
@@ -359,7 +325,7 @@ std::optional<ShellGenome> shell_genome_of(const Robot& robot) {
   const auto origin = nlohmann::json::parse(robot.origin, nullptr, false);
   ShellGenome genome;
   genome.environment = environment_of(robot);
-  for (const auto& row : genome_table()) {
+  for (const auto& row : shell_genome_table()) {
     const ParameterValue value = read(origin, row.description);
     try {
       check(row.description, value);
@@ -369,22 +335,6 @@ std::optional<ShellGenome> shell_genome_of(const Robot& robot) {
     row.set(genome, value);
   }
   return genome;
-}
-
-ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t seed) {
-  Random random(seed);
-  ShellGenome child = genome;
-  for (const auto& row : genome_table()) {
-    const auto& [name, low, high] = std::tie(row.description.name, row.description.lowest, *row.description.highest);
-    ParameterValue value = row.get(child);
-    const double step = 0.04 * strength * (high - low) * random.normal();
-    if (name == "diameter" || name == "thickness" || name == "segments") continue;
-    if (auto* number = std::get_if<double>(&value)) *number = std::clamp(*number + step, low, high);
-    if (auto* whole = std::get_if<std::int64_t>(&value))
-      *whole = static_cast<std::int64_t>(std::clamp(std::round(static_cast<double>(*whole) + step), low, high));
-    row.set(child, value);
-  }
-  return child;
 }
 
 void validate(const ShellOptions& options) {
@@ -464,11 +414,9 @@ Generator shell_generator() {
                   .environment = "ocean",
                   .smooth = true,
                   .example = {.name = "medusa", .seed = 4, .values = {{"form", "bell"}, {"lobes", "8"}}},
-                  .regrow = [](const Robot& robot) { return grow(genome_in(robot), robot.name); },
-                  .mutate =
-                      [](const Robot& parent, const MutationRequest& request, const std::string& name) {
-                        return grow(mutate(genome_in(parent), request.strength, request.seed), name);
-                      }};
+                  .regrow = [](const Robot& robot) { return grow(shell_genome_in(robot), robot.name); },
+                  .mutate = mutate_shell_robot,
+                  .cross = cross_shell_robots};
   return with_parameters(std::move(shell), option_table(), random_shell_robot);
 }
 

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
+#include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/voxel_evolution.h"
 #include "robots/parameter_table.h"
@@ -57,26 +59,38 @@ const ParameterTable<RandomVoxelOptions>& table() {
   return rows;
 }
 
-Robot regrow(const Robot& robot) {
-  const std::optional<VoxelGrid> grid = voxel_grid_of(robot);
+VoxelGrid grid_in(const Robot& robot) {
+  std::optional<VoxelGrid> grid = voxel_grid_of(robot);
   if (!grid) throw InputError("/origin", "holds no voxel grid");
-  Robot again = make_voxel_robot(*grid, {.name = robot.name,
-                                         .environment = environment_of(robot),
-                                         .materials = robot.materials,
-                                         .material_names = robot.material_names});
+  return *std::move(grid);
+}
+
+Robot regrow(const Robot& robot) {
+  Robot again = make_voxel_robot(grid_in(robot), {.name = robot.name,
+                                                  .environment = environment_of(robot),
+                                                  .materials = robot.materials,
+                                                  .material_names = robot.material_names});
   again.origin = robot.origin;  // seed and index included
   return again;
 }
 
 // A symmetric parent has symmetric children.
 Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
-  const std::optional<VoxelGrid> grid = voxel_grid_of(parent);
-  if (!grid) throw InputError("/origin", "holds no voxel grid");
+  validate(request);
   VoxelMutation mutation;
   mutation.flip = std::min(1.0, request.strength * mutation.flip);
   mutation.swaps = static_cast<int>(std::lround(std::min(1000.0, request.strength * mutation.swaps)));
-  mutation.mirror = mirror_of(*grid);
-  return mutate_voxel_robot(parent, mutation, request.seed, name);
+  mutation.mirror = mirror_of(grid_in(parent));
+  return with_mutated_muscles(mutate_voxel_robot(parent, mutation, request.seed, name), request.muscles,
+                              seed_of(request.seed, 0));
+}
+
+// Two symmetric parents have symmetric children.
+Robot crossed(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+  const Mirror mirror = mirror_of(grid_in(a));
+  const bool alike = mirror == mirror_of(grid_in(b));
+  Robot child = cross_voxel_robots(a, b, seed, name, 2, alike ? mirror : Mirror::none);
+  return with_crossed_muscles(std::move(child), b, seed_of(seed, 0));
 }
 
 }  // namespace
@@ -94,7 +108,8 @@ Generator voxel_generator() {
                   .help = "Random voxel robots",
                   .example = {.name = "eel", .seed = 4, .values = {{"voxels", "12x2x3"}}},
                   .regrow = regrow,
-                  .mutate = mutant};
+                  .mutate = mutant,
+                  .cross = crossed};
   return with_parameters(std::move(voxel), table(), random_voxel_robot);
 }
 

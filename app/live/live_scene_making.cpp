@@ -51,7 +51,8 @@ std::vector<Child> make_children(const std::vector<DocumentRobot>& parents, cons
   for (std::size_t i = 0; i < parents.size() && !control.cancelled(); ++i) {
     try {
       const Robot parent = whole_robot(parents[i]);
-      const MutationRequest own{mutation.strength, seed_of(mutation.seed, i)};
+      MutationRequest own = mutation;
+      own.seed = seed_of(mutation.seed, i);
       children.push_back({parents[i].body.id, mutate_robot(parent, own, parent.name + "-child")});
     } catch (const InputError& error) {
       messages.add(Severity::warning, error.what());

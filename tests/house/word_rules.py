@@ -58,7 +58,7 @@ WORDS = [
 # Where an old word is the right one: (pattern of the path, pattern of the line).
 ALLOWED = [
     (r"^docs/formats\.md", r"first_bad_spring"),
-    ("", r"Hooke's law|muscle law|Coulomb's law|law of|assembly language|the assembler|__asm__|inline assembly"),
+    ("", r"Hooke's law|muscle[ _]law|Coulomb's law|law of|assembly language|the assembler|__asm__|inline assembly"),
     ("", r"third[- ]part(y|ies)"),
     (r"\.py$", r"file\.tell\(\)"),
     ("", r"culprit_?(spring|mass)|CulpritSpring|culprit spring"),

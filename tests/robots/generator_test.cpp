@@ -4,11 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "mercury/configuration.h"
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
 
 namespace mercury {
@@ -95,6 +97,49 @@ TEST_P(EveryGenerator, MutatesARobotIntoAnotherOfItsKind) {
   EXPECT_EQ(child, mutate_robot(parent, {.strength = 5, .seed = 9}, "child"));
 }
 
+TEST_P(EveryGenerator, MutatesMusclesAlone) {
+  const Robot parent = made(GetParam(), 4, 1);
+  const MutationRequest request{.strength = 0, .seed = 9, .muscles = 2};
+  const Robot child = GetParam().mutate(parent, request, "child");
+  EXPECT_NO_THROW(validate(child));
+  EXPECT_EQ(child.masses, parent.masses);
+  EXPECT_EQ(child.faces, parent.faces);
+  EXPECT_FALSE(std::ranges::equal(materials_of(child), materials_of(parent)));
+  EXPECT_EQ(child, GetParam().mutate(parent, request, "child"));
+  EXPECT_EQ(GetParam().regrow(child), child);
+  // Changed muscles are inherited.
+  if (!has_base_materials(child)) return;  // a shell's follow from its numbers
+  EXPECT_EQ(GetParam().mutate(child, {.seed = 3}, "grandchild").materials, child.materials);
+}
+
+TEST_P(EveryGenerator, RefusesMutationsThatAreNone) {
+  const Robot parent = made(GetParam(), 4, 1);
+  EXPECT_EQ(refusal([&] { mutate_robot(parent, {.strength = -1}, "child"); }),
+            "strength: -1 is not accepted; give 0 or more");
+  EXPECT_EQ(refusal([&] { mutate_robot(parent, {.muscles = std::nan("")}, "child"); }),
+            "muscles: nan is not accepted; give 0 or more");
+}
+
+TEST_P(EveryGenerator, CrossesTwoRobotsIntoAnotherOfTheirKind) {
+  const Robot a = made(GetParam(), 4, 1), b = made(GetParam(), 5, 1);
+  const Robot child = GetParam().cross(a, b, 9, "child");
+  EXPECT_EQ(child.name, "child");
+  EXPECT_NO_THROW(validate(child));
+  EXPECT_EQ(kind_of(child), GetParam().kind);
+  EXPECT_EQ(environment_of(child), "land");
+  EXPECT_NE(child.springs, a.springs);
+  EXPECT_NE(child.springs, b.springs);
+  EXPECT_EQ(child, cross_robots(a, b, 9, "child"));
+  EXPECT_EQ(GetParam().regrow(child), child);
+}
+
+TEST_P(EveryGenerator, CrossesARobotWithItselfIntoTheSameBody) {
+  const Robot a = made(GetParam(), 4, 1), child = cross_robots(a, a, 9, "child");
+  EXPECT_EQ(child.masses, a.masses);
+  EXPECT_EQ(child.springs, a.springs);
+  EXPECT_TRUE(std::ranges::equal(materials_of(child), materials_of(a)));
+}
+
 TEST_P(EveryGenerator, AcceptsItsDefaultsAndRefusesWhatIsOutOfRange) {
   EXPECT_NO_THROW(GetParam().validate({}));
   for (const GeneratorParameter& parameter : GetParam().parameters) {
@@ -146,6 +191,10 @@ TEST(Generators, HaveNamesOfTheirOwnForThemselvesAndTheirParameters) {
             "kind: \"fish\" is not a kind of robot; give " + generator_kinds());
   EXPECT_THAT(generator_kinds(":N"), HasSubstr(":N or "));
   EXPECT_THAT(refusal([] { mutate_robot({.name = "eel"}, {}, "child"); }), HasSubstr("eel: cannot be mutated"));
+  const Robot voxel = made(generator_named("voxel"), 1), shell = made(generator_named("shell"), 1);
+  EXPECT_THAT(refusal([&] { cross_robots(voxel, {.name = "eel"}, 1, "child"); }), HasSubstr("eel: cannot be crossed"));
+  EXPECT_EQ(refusal([&] { cross_robots(voxel, shell, 1, "child"); }),
+            "voxel-1-0 and shell-1-0: cannot be crossed, a voxel robot and a shell robot; give two robots of one kind");
 }
 
 TEST(Generators, LeaveOutRobotsThatCannotBeMadeWhereTheCallerAsksForThem) {

@@ -61,9 +61,13 @@ std::string accepted_values(const GeneratorParameter& parameter);
 
 // How a mutant differs from its parent: 1 = a little, as in a search; 0 = not at all.
 struct MutationRequest {
-  double strength = 1;
+  double strength = 1;  // of changes of the body
   std::uint64_t seed = 1;
+  double muscles = 0;  // of changes of the muscle laws (muscle_laws.h); a shell's numbers say both
 };
+
+// Throws ParameterError("strength", ...) unless both strengths are finite and at least 0.
+void validate(const MutationRequest& request);
 
 struct Generator {
   std::string kind;         // "voxel": names the generator in programs, and in the "kind" of its robots' origins
@@ -92,8 +96,13 @@ struct Generator {
   // A robot of this generator once more from its origin alone, bit for bit. Throws InputError("/origin/...") if the
   // origin does not hold one.
   std::function<Robot(const Robot& robot)> regrow;
-  // A changed copy, named `name`. Depends on the arguments alone. Throws InputError as regrow and make.
+  // A changed copy, named `name`. Depends on the arguments alone, bit for bit on every machine. Throws InputError as
+  // regrow and make, and for a request that validate() refuses.
   std::function<Robot(const Robot& parent, const MutationRequest& request, const std::string& name)> mutate;
+  // A child of two robots of this generator, named `name`; body and muscle laws are mixed. It is a's where the parents
+  // cannot be mixed: sizes, environment, a table without base materials. Depends on the arguments alone. Throws
+  // InputError as regrow and make, and for parents that are too different.
+  std::function<Robot(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name)> cross;
 };
 
 // All generators; the first one is the default.
@@ -133,5 +142,8 @@ std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<F
 
 // A changed copy of a robot that one of the generators made, named `name`. Throws InputError if none did.
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name);
+
+// A child of two robots that one generator made, named `name`. Throws InputError if none did, or two different ones.
+Robot cross_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name);
 
 }  // namespace mercury

@@ -70,6 +70,12 @@ std::optional<ShellGenome> shell_genome_of(const Robot& robot);
 // The genome with each number moved by a normal number times `strength` times 4 % of its range, and kept in its range.
 // The form, the segments, the diameter and the thickness stay. Depends on the arguments alone.
 ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t seed);
+// The same for the numbers of its muscles alone: waves, share, amplitudes and frequency.
+ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed);
+
+// A child of two shells: each number from either with probability 1/2, the form and the segments of the first. A shell
+// that would be too thick is as thick as its diameter allows. Depends on the arguments alone.
+ShellGenome crossover(const ShellGenome& a, const ShellGenome& b, std::uint64_t seed);
 
 // How random shells are drawn.
 struct ShellOptions {
