@@ -17,7 +17,7 @@ endif()
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 set(mercury_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mercury)
-install(TARGETS mercury_sim mercury_robots EXPORT mercury
+install(TARGETS mercury_sim mercury_robots mercury_evolution EXPORT mercury
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT mercury NAMESPACE mercury:: FILE mercury-targets.cmake DESTINATION ${mercury_package_dir})

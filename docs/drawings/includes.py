@@ -35,6 +35,8 @@ PLACES = {
     "sim": (366, 8, 92, CORAL, "Simulation"),
     "robots": (560, 8, 104, TEAL, "files, generators"),
     "robots/library": (680, 8, 108, TEAL, "sample robots"),
+    "evolution": (836, 7, 170, TEAL, "genomes, algorithms, runs"),
+    "evolution/api": (836, 8, 170, TEAL, "public headers"),
     "sim/physics": (225, 9, 374, CORAL, "the equations, one source for host and device"),
     "robots/api": (650, 9, 294, TEAL, "public headers: <mercury/voxel.h>, ..."),
     "sim/api": (418, 10, 776, CORAL, "public headers: <mercury/simulation.h>, <mercury/robot.h>, ..."),

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 # The public headers. Everyone includes them as "mercury/x.h", users as <mercury/x.h>.
-API = {"sim/api": "sim/include", "robots/api": "robots/include"}
+API = {"sim/api": "sim/include", "robots/api": "robots/include", "evolution/api": "evolution/include"}
 
 # Which folders the files of a folder may include, besides their own. A folder that is not listed belongs to the nearest
 # listed folder above it. "*" = all.
@@ -29,6 +29,8 @@ ALLOWED = {
     "robots/api": "sim/api",
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",
+    "evolution/api": "sim/api robots/api",
+    "evolution": "sim/api robots/api evolution/api",
     "render": "",
     "app/base": "sim/api",
     "app/recording": "sim/api robots/api robots app/base",
@@ -41,10 +43,10 @@ ALLOWED = {
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
     "app/window/panels": "sim/api robots/api app/options app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
-    "app/commands": "sim/api robots/api robots render app/base app/recording app/video app/options app/window/toolkit app/window",
+    "app/commands": "sim/api robots/api evolution/api robots render app/base app/recording app/video app/options app/window/toolkit app/window",
     "bench": "*",
     "tests": "*",
-    "examples": "sim/api robots/api",
+    "examples": "sim/api robots/api evolution/api",
 }
 
 # The plain data of sim. It includes only itself, and robots/ includes nothing else of sim: it makes robots and does not
@@ -59,7 +61,7 @@ SUBJECTS = {
     "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app", "bench"}),
     "CUDA-OpenGL interop": (r"cuda_gl_interop|cuda_egl_interop|cudaGL|cudaEGL", {"app"}),
     "CUDA": (r"cuda|cooperative_groups|cub/|thrust/|nvrtc|device_launch", {"sim", "app", "bench"}),
-    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "render", "app", "bench"}),
+    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "evolution", "render", "app", "bench"}),
     "CGAL": (r"CGAL/", {"robots"}),
 }
 FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbours without their folder

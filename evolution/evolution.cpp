@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/evolution.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <unordered_set>
+#include <utility>
+
+#include "mercury/error.h"
+#include "mercury/random.h"
+
+namespace mercury {
+namespace {
+
+constexpr int tries_for_a_new_genome = 16;
+constexpr double interim_quantile = 0.25;  // of the living: who is behind these at a check of racing is stopped
+
+std::uint64_t seed_of_generation(std::uint64_t run, int generation) {
+  return seed_of(run, static_cast<std::uint64_t>(generation));
+}
+std::uint64_t seed_of_plan(std::uint64_t run, int generation) {
+  return seed_of(seed_of_generation(run, generation), 0);
+}
+std::uint64_t seed_of_child(std::uint64_t run, int generation, std::size_t child, int attempt) {
+  return seed_of(seed_of(seed_of_generation(run, generation), child + 1), static_cast<std::uint64_t>(attempt));
+}
+
+std::size_t children_per_generation(const EvolutionSettings& settings) {
+  return settings.children > 0 ? settings.children : settings.algorithm.population;
+}
+
+}  // namespace
+
+bool operator==(const Generation& a, const Generation& b) {
+  const auto same = [](const Individual& x, const Individual& y) {
+    return x.id == y.id && x.parents == y.parents && x.generation == y.generation && x.line_began == y.line_began &&
+           x.seed == y.seed && x.assessment == y.assessment;
+  };
+  return a.number == b.number && a.living == b.living && std::ranges::equal(a.born, b.born, same);
+}
+
+Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space)
+    : settings_(settings), space_(space), algorithm_(make_algorithm(settings.algorithm)) {
+  validate(settings);
+}
+
+void Evolution::restore(int generation, std::vector<Individual> living, std::uint64_t next_id) {
+  next_generation_ = generation + 1;
+  living_ = std::move(living);
+  next_id_ = next_id;
+}
+
+namespace {
+
+// Makes the children of a generation on all cores, and makes those again that are not new.
+class Nursery {
+ public:
+  Nursery(const EvolutionSettings& settings, const GenomeSpace& space, std::span<const Individual> living,
+          int generation, std::vector<ChildPlan> plans)
+      : settings_(settings), space_(space), living_(living), generation_(generation), plans_(std::move(plans)),
+        seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
+
+  std::vector<Individual> children() {
+    std::unordered_set<std::uint64_t> known;
+    for (const Individual& individual : living_) known.insert(individual.genome->identity());
+    std::vector<std::size_t> missing(plans_.size());
+    std::iota(missing.begin(), missing.end(), std::size_t{0});
+    for (int attempt = 0; !missing.empty() && attempt < tries_for_a_new_genome; ++attempt) {
+      oneapi::tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t k) { make(missing[k], attempt); });
+      std::erase_if(missing, [&](std::size_t i) { return genomes_[i] && known.insert(identities_[i]).second; });
+    }
+    return individuals();
+  }
+
+ private:
+  void make(std::size_t i, int attempt) {
+    seeds_[i] = seed_of_child(settings_.seed, generation_, i, attempt);
+    try {
+      genomes_[i] = make_genome(i, attempt);
+      identities_[i] = genomes_[i]->identity();
+    } catch (const InputError&) {
+      genomes_[i] = nullptr;
+    }
+  }
+
+  GenomePointer make_genome(std::size_t i, int attempt) const {
+    const std::vector<std::size_t>& parents = plans_[i].parents;
+    if (parents.empty()) {
+      const bool may_be_founder = generation_ == 0 && attempt == 0;
+      return space_.random(seeds_[i], may_be_founder ? i : space_.founders() + i);
+    }
+    const double strength = settings_.mutation * (1 + attempt / 4.0);  // each further try changes a little more
+    GenomePointer genome = living_[parents[0]].genome;
+    if (parents.size() > 1) genome = genome->cross(*living_[parents[1]].genome, seed_of(seeds_[i], 0));
+    return genome->mutate(strength, seeds_[i]);
+  }
+
+  std::vector<Individual> individuals() {
+    std::vector<Individual> children;
+    for (std::size_t i = 0; i < plans_.size(); ++i) {
+      if (!genomes_[i]) continue;
+      Individual& child = children.emplace_back();
+      child.generation = child.line_began = generation_;
+      child.seed = seeds_[i];
+      child.genome = std::move(genomes_[i]);
+      for (const std::size_t parent : plans_[i].parents) {
+        child.parents.push_back(living_[parent].id);
+        child.line_began = std::min(child.line_began, living_[parent].line_began);
+      }
+    }
+    return children;
+  }
+
+  const EvolutionSettings& settings_;
+  const GenomeSpace& space_;
+  const std::span<const Individual> living_;
+  const int generation_;
+  const std::vector<ChildPlan> plans_;
+  std::vector<std::uint64_t> seeds_;
+  std::vector<GenomePointer> genomes_;  // nullptr = could not be made
+  std::vector<std::uint64_t> identities_;
+};
+
+}  // namespace
+
+std::vector<Individual> Evolution::children() const {
+  std::vector<ChildPlan> plans;
+  if (next_generation_ == 0) {
+    plans.resize(std::max(settings_.algorithm.population, space_.founders()));
+  } else {
+    Random random(seed_of_plan(settings_.seed, next_generation_));
+    plans = algorithm_->plan(living_, children_per_generation(settings_), random);
+  }
+  std::vector<Individual> children = Nursery(settings_, space_, living_, next_generation_, std::move(plans)).children();
+  for (std::size_t i = 0; i < children.size(); ++i) children[i].id = next_id_ + i;
+  return children;
+}
+
+std::vector<double> Evolution::interim_limits() const {
+  std::vector<double> limits;
+  if (!settings_.trials.racing || living_.empty()) return limits;
+  const auto passed_all = [](const Individual& individual) { return individual.assessment.fate == Fate::sound; };
+  for (std::size_t check = 0; check < racing_checks; ++check) {
+    std::vector<double> scores;
+    for (const Individual& individual : living_)
+      if (passed_all(individual)) scores.push_back(individual.assessment.interim_scores.at(check));
+    if (scores.empty()) return {};
+    const auto rank = static_cast<std::ptrdiff_t>(interim_quantile * static_cast<double>(scores.size() - 1));
+    std::nth_element(scores.begin(), scores.begin() + rank, scores.end());
+    limits.push_back(scores[static_cast<std::size_t>(rank)]);
+  }
+  return limits;
+}
+
+Generation Evolution::select(std::vector<Individual> children) {
+  Generation generation{.number = next_generation_, .born = children};
+  for (Individual& born : generation.born) born.genome = nullptr;
+  const std::size_t before = living_.size();
+  std::vector<Individual> pool = std::move(living_);
+  next_id_ += children.size();
+  std::ranges::move(children, std::back_inserter(pool));
+  living_.clear();
+  for (const std::size_t i : algorithm_->survivors(pool, before)) living_.push_back(std::move(pool.at(i)));
+  for (const Individual& individual : living_) generation.living.push_back(individual.id);
+  ++next_generation_;
+  return generation;
+}
+
+std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& watch) {
+  if (is_over()) return std::nullopt;
+  std::vector<Individual> born = children();
+  if (born.empty()) throw InputError("generation " + std::to_string(next_generation_), "no robot could be made");
+  std::vector<GenomePointer> genomes;
+  for (const Individual& child : born) genomes.push_back(child.genome);
+  std::optional<std::vector<Assessment>> assessments = assessor.assess(genomes, interim_limits(), watch);
+  if (!assessments) return std::nullopt;
+  for (std::size_t i = 0; i < born.size(); ++i) born[i].assessment = std::move((*assessments)[i]);
+  return select(std::move(born));
+}
+
+std::string_view name_of(Fate fate) {
+  constexpr std::string_view names[] = {"sound", "stopped", "exploded", "overstretched", "failed"};
+  return names[static_cast<std::size_t>(fate)];
+}
+
+}  // namespace mercury

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithms of evolution. An algorithm keeps no state: it sees the living individuals, says what children to make, and
+// then who lives on. So a run can be continued from its living individuals alone.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/individual.h"
+#include "mercury/random.h"
+
+namespace mercury {
+
+// One axis of a map of elites: a quantity, cut into equal cells between two values. What lies outside counts to the
+// cell at that end.
+struct MapAxis {
+  std::string quantity;
+  double lowest = 0, highest = 1;
+  int cells = 10;
+  friend bool operator==(const MapAxis&, const MapAxis&) = default;
+};
+
+struct AlgorithmSettings {
+  std::string name = "afpo";
+  std::size_t population = 128;  // that lives on after each generation (for map-elites: children per generation)
+  int tournament = 4;            // individuals among which the best becomes a parent
+  double elites = 0.1;           // ga: share of the population that lives on unconditionally
+  double crossover = 0.25;       // share of the children that have two parents
+  std::vector<MapAxis> axes;     // map-elites: one or more
+};
+
+// What a child is made from: indices of its parents among the living. None = a new random genome.
+struct ChildPlan {
+  std::vector<std::size_t> parents;
+};
+
+class Algorithm {
+ public:
+  virtual ~Algorithm() = default;
+
+  // The children of the next generation. Depends on the arguments alone.
+  virtual std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children,
+                                      Random& random) const = 0;
+  // Who lives on: indices in `pool`, which holds the living (the first `living` of it) and then their children, all
+  // assessed; the best first. In generation 0, `living` is 0. The order of equal ones is that of their ids.
+  virtual std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const = 0;
+};
+
+struct AlgorithmDescription {
+  std::string_view name, help;
+  bool many_objectives = false;  // whether it takes more than one
+  std::unique_ptr<Algorithm> (*make)(const AlgorithmSettings& settings) = nullptr;
+};
+// ga, afpo, nsga2, map-elites, random.
+std::span<const AlgorithmDescription> algorithms();
+// Throws ParameterError("algorithm", ...) for an unknown name, or ("population", ...), ("axes", ...) and so on for
+// settings out of range.
+std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);
+
+// The cell of an individual in a map of elites, counted with the first axis fastest; `values` as in Assessment.
+std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values);
+
+}  // namespace mercury

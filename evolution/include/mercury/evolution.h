@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// An evolution: generation after generation, children of the living are made, tried and selected.
+//
+//     const auto space = mercury::make_genome_space({.kind = "voxel"});
+//     const mercury::EvolutionSettings settings{.generations = 20};
+//     const auto assessor = make_assessor(settings);
+//     mercury::Evolution evolution(settings, *space);
+//     while (const auto generation = evolution.advance(*assessor, watch)) use(generation->living.front());
+//
+// Everything depends on the settings alone, bit for bit: each generation draws from a seed of its own, so an evolution
+// that is restored from its living individuals goes on as if it had never stopped.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mercury/algorithm.h"
+#include "mercury/assessor.h"
+#include "mercury/configuration.h"
+#include "mercury/genome.h"
+#include "mercury/individual.h"
+
+namespace mercury {
+
+struct EvolutionSettings {
+  AlgorithmSettings algorithm;
+  std::vector<std::string> objectives{"distance"};
+  TrialSettings trials;
+  Configuration configuration;
+  std::size_t children = 0;  // per generation; 0 = as many as the population
+  int generations = 100;     // after generation 0, which is random
+  double mutation = 1;       // strength
+  std::uint64_t seed = 1;
+};
+
+// Throws ParameterError for settings out of range or that do not go together.
+void validate(const EvolutionSettings& settings);
+
+std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings);
+
+// One generation after its selection.
+struct Generation {
+  int number = 0;
+  std::vector<Individual> born;       // in it, by id
+  std::vector<std::uint64_t> living;  // ids of those who live on, the best first
+  friend bool operator==(const Generation&, const Generation&);
+};
+
+class Evolution {
+ public:
+  // The space must outlive it. Throws as validate().
+  Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
+
+  // Continues after a generation: `living` as it left them, `next_id` = the number of individuals born so far.
+  void restore(int generation, std::vector<Individual> living, std::uint64_t next_id);
+
+  const EvolutionSettings& settings() const { return settings_; }
+  int next_generation() const { return next_generation_; }
+  bool is_over() const { return next_generation_ > settings_.generations; }
+  const std::vector<Individual>& living() const { return living_; }  // the best first
+
+  // The children of the next generation, not yet assessed. Children differ in Genome::identity() from each other and
+  // from the living, wherever that is possible within a bounded number of tries.
+  std::vector<Individual> children() const;
+  // Scores that its robots must reach at the checks of racing; empty without racing.
+  std::vector<double> interim_limits() const;
+  // Selects among the living and these children, which are assessed.
+  Generation select(std::vector<Individual> children);
+
+  // All of it: one generation. Nothing if it is over, or if `watch` said to stop; then nothing has changed.
+  std::optional<Generation> advance(Assessor& assessor, const Watch& watch = {});
+
+ private:
+  EvolutionSettings settings_;
+  const GenomeSpace& space_;
+  std::unique_ptr<Algorithm> algorithm_;
+  int next_generation_ = 0;
+  std::uint64_t next_id_ = 0;
+  std::vector<Individual> living_;
+};
+
+}  // namespace mercury

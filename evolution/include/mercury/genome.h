@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Genomes: what evolution changes. A robot is grown from a genome.
+//
+// Mercury brings genomes of voxel grids, painted grids, networks, shells, and of the muscles of a given body
+// (make_genome_space below). A program may bring its own: it derives from Genome and GenomeSpace.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/generator.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+class Genome;
+using GenomePointer = std::shared_ptr<const Genome>;
+
+// A genome does not change. All functions depend on the arguments alone, bit for bit on every machine, and may be
+// called from several threads at the same time.
+class Genome {
+ public:
+  virtual ~Genome() = default;
+
+  // The robot. Its origin holds what generators know of it. Throws InputError if this genome has no robot.
+  virtual Robot grow(const std::string& name) const = 0;
+  // A changed copy; `strength` 1 changes a little, as in a search.
+  virtual GenomePointer mutate(double strength, std::uint64_t seed) const = 0;
+  // A child of this genome and another one of its space.
+  virtual GenomePointer cross(const Genome& other, std::uint64_t seed) const = 0;
+  // Equal for genomes that grow the same robot, as far as that is known without growing it; otherwise almost always
+  // different.
+  virtual std::uint64_t identity() const = 0;
+  // The genome as bytes that its space decodes, as few as is easy. Genomes that differ in little should have encodings
+  // of the same length that differ in few bytes: a run folder stores what differs from the parent.
+  virtual std::string encode() const = 0;
+};
+
+// The genomes among which a run searches.
+class GenomeSpace {
+ public:
+  virtual ~GenomeSpace() = default;
+
+  // The index-th random genome of a seed; depends on both alone. The first founders() of them do not depend on the
+  // seed: they are those that the user gave. Throws InputError if there is no such genome.
+  virtual GenomePointer random(std::uint64_t seed, std::uint64_t index) const = 0;
+  virtual std::size_t founders() const { return 0; }
+  // The reverse of Genome::encode(). Throws InputError for bytes that are no genome of this space, before memory is
+  // allocated from their numbers.
+  virtual GenomePointer decode(std::string_view bytes) const = 0;
+};
+
+// What may change in a body that has muscles.
+enum class Genes {
+  body,     // the form and where which material is; the muscle laws stay
+  muscles,  // amplitude, frequency and phase of each base muscle; the body stays
+  both
+};
+std::string_view name_of(Genes genes);     // "body", "muscles", "both"
+Genes genes_named(std::string_view name);  // throws ParameterError("genes", ...)
+
+// Which of Mercury's genome spaces.
+struct GenomeSpaceRequest {
+  std::string kind = "voxel";  // of a generator; ignored if there are founders
+  ParameterValues values{};    // of that generator
+  std::string environment{};   // for the origins of the robots; empty = none is named
+  Genes genes = Genes::body;
+  std::vector<Robot> founders;  // robots to start from, all of one kind; for Genes::muscles robots of any kind
+};
+
+// Throws InputError or ParameterError for a request that cannot be used: an unknown kind, values out of range, founders
+// of several kinds, founders of a kind that no generator knows and whose body should change.
+std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request);
+
+}  // namespace mercury

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// One robot of an evolution: where it comes from and how it did.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/genome.h"
+
+namespace mercury {
+
+inline constexpr double worst_score = -std::numeric_limits<double>::infinity();
+
+// How the trials of an individual ended. Only `sound` individuals have scores above the worst; those `stopped` early by
+// racing have the score that they had when they were stopped.
+enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed };
+std::string_view name_of(Fate fate);  // "sound", ...
+
+// What the trials of one individual gave.
+struct Assessment {
+  Fate fate = Fate::failed;
+  std::string problem;                 // why it failed: its robot could not be grown or breaks a rule
+  std::vector<double> scores;          // per objective, the mean of all trials; worst_score unless sound or stopped
+  std::vector<double> values;          // per quantity (quantity.h), the mean of all trials; empty if it failed
+  std::vector<double> interim_scores;  // of the first objective at the checks of racing that it passed or lost
+  std::uint64_t hash = 0;              // of the final states of all trials
+  friend bool operator==(const Assessment&, const Assessment&) = default;
+};
+
+struct Individual {
+  std::uint64_t id = 0;                // in the order of birth, from 0
+  std::vector<std::uint64_t> parents;  // ids; none = drawn at random, or given by the user; two after a crossover
+  int generation = 0;                  // in which it was born
+  int line_began = 0;                  // generation in which its oldest ancestor was drawn (the age of AFPO)
+  std::uint64_t seed = 0;              // of its mutation and crossover, or of the random genome
+  GenomePointer genome;
+  Assessment assessment;
+
+  // The only or first score; worst_score before it was assessed.
+  double score() const { return assessment.scores.empty() ? worst_score : assessment.scores.front(); }
+};
+
+}  // namespace mercury

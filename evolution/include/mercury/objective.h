@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an evolution looks for: formulas of the quantities of a trial. More is better.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace mercury {
+
+// A formula such as "distance - 0.1 * work". Copies share the parsed formula; several threads may use one objective.
+class Objective {
+ public:
+  // Throws ParameterError("objective", ...) that says where the formula is wrong and, for an unknown name, which names
+  // there are or which one was meant.
+  explicit Objective(const std::string& formula);
+
+  const std::string& formula() const { return formula_; }
+  // Its value; `values` has one number per quantity, in the order of quantities(). NaN becomes the lowest score.
+  double score(std::span<const double> values) const;
+
+ private:
+  struct Parsed;
+  std::string formula_;
+  std::shared_ptr<const Parsed> parsed_;
+};
+
+}  // namespace mercury

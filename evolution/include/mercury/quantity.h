@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quantities of a robot's trial, each described once, as data. Objectives are formulas of them, the axes of a map of
+// elites are two of them, and tables have a column for each.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mercury/configuration.h"
+#include "mercury/evaluator.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// One robot after one trial.
+struct Trial {
+  const Robot& robot;
+  const Evaluation& evaluation;  // its robot was stepped: no failure
+  const Configuration& configuration;
+};
+
+struct Quantity {
+  std::string_view name;  // "distance": in formulas, options and tables
+  std::string_view unit;  // "m"; empty = none
+  std::string_view help;  // one line, without a full stop
+  bool of_body = false;   // known from the robot alone, so it may be a descriptor of an unborn robot as well
+  double usual_lowest = 0, usual_highest = 1;  // ends of an axis, unless the user gives others
+  double (*value)(const Trial& trial) = nullptr;
+};
+
+// All quantities. Their order is that of Assessment::values.
+std::span<const Quantity> quantities();
+
+// Index in quantities(); nothing if there is none of that name.
+std::optional<std::size_t> find_quantity(std::string_view name);
+
+// The values of all quantities after one trial.
+std::vector<double> quantities_of(const Trial& trial);
+
+}  // namespace mercury

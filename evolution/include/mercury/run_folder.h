@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Run folders: an evolution on disk (docs/evolution.md).
+//
+//     run.toml         the settings: everything that is needed to repeat the run
+//     founders/        the robots that the user gave, if any
+//     genomes          the journal: one record per generation, appended whole; all that follows derives from it
+//     lineage.csv      every individual, in the ALife data standard for phylogenies
+//     generations.csv  one line per generation
+//     best/            champions as robot files
+//     progress.svg     scores over time, or the map of elites
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mercury/evolution.h"
+#include "mercury/genome.h"
+#include "mercury/individual.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+struct RunSettings {
+  EvolutionSettings evolution;
+  GenomeSpaceRequest space;
+  std::string program;  // and version that made the run: "Mercury 0.3.0"
+};
+
+// What is known of a generation beside its individuals. It differs from run to run.
+struct GenerationTimes {
+  double seconds = 0;  // that it took [s]
+  std::string device;  // what stepped its robots
+};
+
+// A summary of a generation, computed from its individuals.
+struct GenerationSummary {
+  int number = 0;
+  std::size_t born = 0, living = 0;
+  std::size_t exploded = 0, overstretched = 0, stopped = 0, failed = 0;  // of those born in it
+  std::uint64_t best = 0;                                                // id of the best living individual
+  std::vector<double> best_scores;                                       // its scores
+  double median_score = 0;                                               // of the living, first objective
+  GenerationTimes times;
+};
+
+// Reads a run folder, also while another process appends to it. Never writes.
+class RunHistory {
+ public:
+  // Throws InputError in one line for a folder that is no run, is damaged, or is of a newer version.
+  explicit RunHistory(const std::filesystem::path& folder);
+  ~RunHistory();
+  RunHistory(RunHistory&&) noexcept;
+  RunHistory& operator=(RunHistory&&) noexcept;
+
+  // Reads generations that were appended since. Returns whether there were any.
+  bool refresh();
+
+  const std::filesystem::path& folder() const;
+  const RunSettings& settings() const;
+  std::span<const GenerationSummary> generations() const;
+  // Every individual that was ever born, by id, without its genome (nullptr).
+  std::span<const Individual> individuals() const;
+  // The generation after which it no longer lived; nothing if it lives.
+  std::optional<int> died(std::uint64_t id) const;
+  std::span<const std::uint64_t> living() const;  // after the last generation, the best first
+
+  GenomePointer genome(std::uint64_t id) const;  // read from disk
+  // Its robot, "RUN-ID", with its ancestry in the origin. Throws InputError if it cannot be grown.
+  Robot grow(std::uint64_t id) const;
+  // The line of first parents, from the oldest ancestor to the individual itself.
+  std::vector<std::uint64_t> line_of(std::uint64_t id) const;
+  // The best of those who lived after that generation.
+  std::uint64_t champion(int generation) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+// Whether the folder looks like a run: it has a run.toml.
+bool is_run_folder(const std::filesystem::path& folder);
+
+// The one process that writes a run folder.
+class RunFolder {
+ public:
+  // Makes a new run. Throws InputError if the folder exists and is not empty; with `force` a run folder (nothing else)
+  // is replaced.
+  static RunFolder create(const std::filesystem::path& folder, const RunSettings& settings, bool force = false);
+  // Opens a run to go on. A record that was cut off is removed. Throws InputError as RunHistory, and if another process
+  // has the folder open.
+  static RunFolder open(const std::filesystem::path& folder);
+  ~RunFolder();
+  RunFolder(RunFolder&&) noexcept;
+  RunFolder& operator=(RunFolder&&) noexcept;
+
+  const RunHistory& history() const;
+  const GenomeSpace& space() const;
+  // The number of generations may be raised after the fact; run.toml is written again.
+  void set_generations(int generations);
+  // Puts the evolution where the journal ends.
+  void restore(Evolution& evolution) const;
+
+  // Appends a generation to the journal; it is on the disk when this returns. `living` = the evolution's individuals
+  // with their genomes. The other files follow now and then, so that they take a small share of the time.
+  void append(const Generation& generation, const GenerationTimes& times, std::span<const Individual> living);
+  // Writes all other files.
+  void write_all();
+
+ private:
+  struct Parts;
+  explicit RunFolder(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury

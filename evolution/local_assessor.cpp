@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tries candidates on the devices of this process, by an Evaluator: it grows them while others are stepped.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "evolution/trial_robot.h"
+#include "mercury/assessor.h"
+#include "mercury/error.h"
+#include "mercury/evaluator.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+constexpr double sample_period = 0.05;  // of the telemetry [s]
+constexpr std::chrono::milliseconds watch_period(100);
+
+std::int64_t steps_in(double seconds, const Configuration& configuration) {
+  return static_cast<std::int64_t>(std::llround(seconds / configuration.dt));
+}
+
+// The robots of all trials: those of candidate 0, then those of candidate 1, ... Each candidate is grown once.
+class Cast {
+ public:
+  Cast(std::span<const GenomePointer> candidates, const TrialSettings& settings, std::uint64_t seed)
+      : candidates_(candidates), settings_(settings), seed_(seed), grown_(candidates.size()) {}
+
+  std::shared_ptr<const Robot> operator()(std::size_t index) {
+    const auto trials = static_cast<std::size_t>(settings_.trials);
+    const std::size_t i = index / trials;
+    const std::shared_ptr<const Robot> robot = grown(i);
+    if (trials_are_alike(settings_)) return robot;
+    return std::make_shared<const Robot>(trial_robot(*robot, settings_, seed_, static_cast<int>(index % trials)));
+  }
+
+ private:
+  struct Grown {
+    std::mutex mutex;
+    std::shared_ptr<const Robot> robot;
+    int uses = 0;
+  };
+
+  std::shared_ptr<const Robot> grown(std::size_t i) {
+    Grown& grown = grown_[i];
+    const std::lock_guard lock(grown.mutex);
+    if (!grown.robot) grown.robot = std::make_shared<const Robot>(candidates_[i]->grow("candidate"));
+    return ++grown.uses == settings_.trials ? std::exchange(grown.robot, nullptr) : grown.robot;
+  }
+
+  const std::span<const GenomePointer> candidates_;
+  const TrialSettings& settings_;
+  const std::uint64_t seed_;
+  std::vector<Grown> grown_;
+};
+
+// Adds the trials of one candidate up.
+class Tally {
+ public:
+  Tally(const Configuration& configuration, const TrialSettings& settings, std::span<const Objective> objectives)
+      : configuration_(configuration), settings_(settings), objectives_(objectives) {}
+
+  void add(const Evaluation& evaluation) {
+    assessment_.fate = worse(assessment_.fate, fate_of(evaluation));
+    ++trials_;
+    if (!evaluation.failure.empty()) {
+      if (assessment_.problem.empty()) assessment_.problem = evaluation.failure;
+      return;
+    }
+    add_hash(evaluation.hash);
+    const std::vector<double> values =
+        quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = configuration_});
+    values_.resize(values.size());
+    for (std::size_t q = 0; q < values.size(); ++q) values_[q] += values[q];
+    scores_.resize(objectives_.size());
+    for (std::size_t o = 0; o < objectives_.size(); ++o) scores_[o] += objectives_[o].score(values);
+  }
+
+  Assessment result(std::vector<double> interim_scores) {
+    const auto mean = [&](std::vector<double>& sums) {
+      for (double& sum : sums) sum /= trials_;
+    };
+    mean(values_);
+    mean(scores_);
+    const bool counts = assessment_.fate == Fate::sound || assessment_.fate == Fate::stopped;
+    if (!counts) scores_.assign(objectives_.size(), worst_score);
+    if (assessment_.fate == Fate::failed) values_.clear();
+    assessment_.values = std::move(values_);
+    assessment_.scores = std::move(scores_);
+    assessment_.interim_scores = std::move(interim_scores);
+    return std::move(assessment_);
+  }
+
+ private:
+  Fate fate_of(const Evaluation& evaluation) const {
+    if (!evaluation.failure.empty()) return Fate::failed;
+    if (evaluation.end.exploded) return Fate::exploded;
+    if (!(evaluation.largest_strain <= settings_.strain_limit)) return Fate::overstretched;
+    const std::int64_t steps = steps_in(settings_.seconds, configuration_) - steps_in(settings_.settle, configuration_);
+    return evaluation.steps < steps ? Fate::stopped : Fate::sound;
+  }
+  static Fate worse(Fate a, Fate b) { return std::max(a, b); }
+
+  void add_hash(std::uint64_t hash) {
+    // FNV-1a over the trials' hashes.
+    for (int byte = 0; byte < 8; ++byte)
+      assessment_.hash = (assessment_.hash ^ (hash >> (8 * byte) & 0xff)) * 0x100000001b3u;
+  }
+
+  const Configuration& configuration_;
+  const TrialSettings& settings_;
+  const std::span<const Objective> objectives_;
+  Assessment assessment_{.fate = Fate::sound, .hash = 0xcbf29ce484222325u};
+  std::vector<double> values_, scores_;  // sums
+  double trials_ = 0;
+};
+
+class LocalAssessor : public Assessor {
+ public:
+  LocalAssessor(const Configuration& configuration, const TrialSettings& settings, std::vector<Objective> objectives,
+                std::uint64_t seed)
+      : configuration_(configuration), settings_(settings), objectives_(std::move(objectives)), seed_(seed) {}
+
+  std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
+                                                std::span<const double> interim_limits, const Watch& watch) override {
+    (void)interim_limits;
+    const auto trials = static_cast<std::size_t>(settings_.trials);
+    const std::size_t all = candidates.size() * trials;
+    Cast cast(candidates, settings_, seed_);
+    EvaluationRequest request{
+        .configuration = configuration_,
+        .settling = steps_in(settings_.settle, configuration_),
+        .steps = steps_in(settings_.seconds, configuration_) - steps_in(settings_.settle, configuration_),
+        .sample_every = std::max<std::int64_t>(1, steps_in(sample_period, configuration_)),
+        .hashes = true};
+    Evaluator evaluator(request, std::ref(cast), all);
+    std::vector<Assessment> assessments;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      Tally tally(configuration_, settings_, objectives_);
+      for (std::size_t t = 0; t < trials; ++t) {
+        while (!evaluator.wait_for(watch_period))
+          if (watch && !watch(evaluator.progress().done, all)) return std::nullopt;
+        tally.add(evaluator.next().value());
+      }
+      assessments.push_back(tally.result({}));
+    }
+    if (watch && !watch(all, all)) return std::nullopt;
+    if (device_name_.empty()) device_name_ = evaluator.device_name();
+    return assessments;
+  }
+
+  std::string device_name() const override { return device_name_; }
+
+ private:
+  const Configuration configuration_;
+  const TrialSettings settings_;
+  const std::vector<Objective> objectives_;
+  const std::uint64_t seed_;
+  std::string device_name_;
+};
+
+}  // namespace
+
+std::unique_ptr<Assessor> make_local_assessor(const Configuration& configuration, const TrialSettings& trials,
+                                              std::vector<Objective> objectives, std::uint64_t seed) {
+  return std::make_unique<LocalAssessor>(configuration, trials, std::move(objectives), seed);
+}
+
+}  // namespace mercury
