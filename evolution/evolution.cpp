@@ -157,7 +157,6 @@ std::vector<double> Evolution::interim_limits() const {
 
 Generation Evolution::select(std::vector<Individual> children) {
   Generation generation{.number = next_generation_, .born = children};
-  for (Individual& born : generation.born) born.genome = nullptr;
   const std::size_t before = living_.size();
   std::vector<Individual> pool = std::move(living_);
   next_id_ += children.size();

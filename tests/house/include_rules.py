@@ -30,7 +30,7 @@ ALLOWED = {
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",
     "evolution/api": "sim/api robots/api",
-    "evolution": "sim/api robots/api evolution/api",
+    "evolution": "sim/api robots/api robots evolution/api",
     "render": "",
     "app/base": "sim/api",
     "app/recording": "sim/api robots/api robots app/base",

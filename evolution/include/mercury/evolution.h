@@ -44,9 +44,9 @@ std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings);
 // One generation after its selection.
 struct Generation {
   int number = 0;
-  std::vector<Individual> born;       // in it, by id
-  std::vector<std::uint64_t> living;  // ids of those who live on, the best first
-  friend bool operator==(const Generation&, const Generation&);
+  std::vector<Individual> born;                                  // in it, by id, with their genomes
+  std::vector<std::uint64_t> living;                             // ids of those who live on, the best first
+  friend bool operator==(const Generation&, const Generation&);  // genomes are not compared
 };
 
 class Evolution {
