@@ -9,6 +9,24 @@
 #include "robots/perceptron.h"
 
 namespace mercury {
+namespace {
+
+Network disturbed(const Network& network, double rate, double size, std::uint64_t seed) {
+  Random random(seed);
+  Network mutant = network;
+  const auto disturb = [&](std::vector<float>& values) {
+    for (float& value : values)
+      if (random.chance(rate)) value = static_cast<float>(value + size * random.normal());
+  };
+  for (Layer& layer : mutant.layers) {
+    disturb(layer.weights);
+    disturb(layer.biases);
+  }
+  return mutant;
+}
+
+}  // namespace
+
 std::vector<int> sizes_of(const Network& network) {
   std::vector<int> sizes;
   if (network.layers.empty()) return sizes;
@@ -68,16 +86,17 @@ std::size_t most_probable(std::span<const float> scores) {
 Network mutate(const Network& network, double rate, double size, std::uint64_t seed) {
   if (!(rate >= 0 && rate <= 1)) throw InputError("mutation rate", "a number from 0 to 1 is accepted");
   if (!(size >= 0 && std::isfinite(size))) throw InputError("mutation size", "a finite number >= 0 is accepted");
-  Random random(seed);
-  Network mutant = network;
-  const auto disturb = [&](std::vector<float>& values) {
-    for (float& value : values)
-      if (random.chance(rate)) value = static_cast<float>(value + size * random.normal());
-  };
-  for (Layer& layer : mutant.layers) {
-    disturb(layer.weights);
-    disturb(layer.biases);
+  if (rate == 0 || size == 0) return network;
+  constexpr std::uint64_t attempts = 30;
+  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
+    Network mutant = disturbed(network, rate, size, attempt == 0 ? seed : seed_of(seed, attempt));
+    if (mutant != network) return mutant;
   }
+  Network mutant = network;
+  if (mutant.layers.empty() || mutant.layers.front().weights.empty()) return mutant;
+  std::vector<float>& weights = mutant.layers.front().weights;
+  float& weight = weights[Random(seed).below(weights.size())];
+  weight = std::nextafter(weight, weight > 0 ? 0.f : 1.f);
   return mutant;
 }
 

@@ -34,6 +34,22 @@ ShellGenome moved(const ShellGenome& genome, double strength, std::uint64_t seed
   return child;
 }
 
+// moved(), drawn again where it changes nothing; at last the number `nudged` moves by a millionth of its range, towards
+// the middle.
+template <class Chosen>
+ShellGenome surely_moved(const ShellGenome& genome, double strength, std::uint64_t seed, Chosen chosen,
+                         double ShellGenome::*nudged, double lowest, double highest) {
+  if (strength == 0) return genome;
+  constexpr std::uint64_t attempts = 30;
+  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
+    ShellGenome child = moved(genome, strength, attempt == 0 ? seed : seed_of(seed, attempt), chosen);
+    if (child != genome) return child;
+  }
+  ShellGenome child = genome;
+  child.*nudged += (child.*nudged > (lowest + highest) / 2 ? -1e-6 : 1e-6) * (highest - lowest);
+  return child;
+}
+
 }  // namespace
 
 const ParameterTable<ShellGenome>& shell_genome_table() {
@@ -69,15 +85,18 @@ ShellGenome shell_genome_in(const Robot& robot) {
 }
 
 ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t seed) {
-  return moved(genome, strength, seed,
-               [](const std::string& name) { return name != "diameter" && name != "thickness" && name != "segments"; });
+  const auto chosen = [](const std::string& name) {
+    return name != "diameter" && name != "thickness" && name != "segments";
+  };
+  return surely_moved(genome, strength, seed, chosen, &ShellGenome::height, 0.2, 3);
 }
 
 ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed) {
-  return moved(genome, strength, seed, [](const std::string& name) {
+  const auto chosen = [](const std::string& name) {
     return name == "waves_around" || name == "waves_along" || name == "active" || name == "contraction" ||
            name == "bending" || name == "frequency";
-  });
+  };
+  return surely_moved(genome, strength, seed, chosen, &ShellGenome::frequency, 0, 20);
 }
 
 ShellGenome crossover(const ShellGenome& a, const ShellGenome& b, std::uint64_t seed) {

@@ -43,6 +43,13 @@ class MaterialSource {
     choices_.erase(std::unique(choices_.begin(), choices_.end()), choices_.end());
     std::erase(choices_, air);
   }
+  // Everything but air that a voxel can become.
+  std::vector<MaterialId> all() const {
+    std::vector<MaterialId> materials = choices_;
+    if (!own_alone_)
+      for (MaterialId id = 1; id <= base_material_count; ++id) materials.push_back(id);
+    return materials;
+  }
   MaterialId draw(Random& random) const {
     if (random.chance(air_)) return air;
     if (choices_.empty() || (!own_alone_ && random.chance(0.25)))
@@ -81,6 +88,38 @@ void mirror_halves(VoxelGrid& grid, Mirror mirror) {
 void keep_alive(VoxelGrid& child, const VoxelGrid& parent) {
   if (std::any_of(child.cells.begin(), child.cells.end(), [](MaterialId m) { return m != air; })) return;
   child.cells = parent.cells;
+}
+
+VoxelGrid changed_once(const VoxelGrid& parent, const MaterialSource& source, const VoxelMutation& mutation,
+                       std::uint64_t seed) {
+  Random random(seed);
+  VoxelGrid child = parent;
+  for (MaterialId& material : child.cells)
+    if (random.chance(mutation.flip)) material = source.draw(random);
+  for (int i = 0; i < mutation.swaps; ++i) swap_patches(child, random, mutation.patch);
+  mirror_halves(child, mutation.mirror);
+  keep_alive(child, parent);
+  return child;
+}
+
+// The parent with one voxel of its body (and with a mirror, that voxel's image) of another material; the parent itself
+// if none can be.
+VoxelGrid forced_change(const VoxelGrid& parent, const VoxelGrid& body, const MaterialSource& source, Mirror mirror,
+                        std::uint64_t seed) {
+  Random random(seed);
+  const std::vector<MaterialId> materials = source.all();
+  const std::size_t first_cell = random.below(body.cells.size()), first_material = random.below(materials.size());
+  for (std::size_t i = 0; i < body.cells.size(); ++i) {
+    const std::size_t voxel = (first_cell + i) % body.cells.size();
+    if (body.cells[voxel] == air) continue;
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+      VoxelGrid child = parent;
+      child.cells[voxel] = materials[(first_material + m) % materials.size()];
+      mirror_halves(child, mirror);
+      if (largest_body(child) != body) return child;
+    }
+  }
+  return parent;
 }
 
 VoxelGrid grid_of(const Robot& robot) {
@@ -126,15 +165,15 @@ Mirror mirror_of(const VoxelGrid& grid) {
 VoxelGrid mutate(const VoxelGrid& parent, const VoxelMutation& mutation, std::uint64_t seed) {
   validate(parent);
   validate(mutation);
-  Random random(seed);
-  VoxelGrid child = parent;
   const MaterialSource source(parent, mutation);
-  for (MaterialId& material : child.cells)
-    if (random.chance(mutation.flip)) material = source.draw(random);
-  for (int i = 0; i < mutation.swaps; ++i) swap_patches(child, random, mutation.patch);
-  mirror_halves(child, mutation.mirror);
-  keep_alive(child, parent);
-  return child;
+  const VoxelGrid body = largest_body(parent);
+  if (mutation.flip == 0 && mutation.swaps == 0) return changed_once(parent, source, mutation, seed);
+  constexpr std::uint64_t attempts = 30;
+  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
+    VoxelGrid child = changed_once(parent, source, mutation, attempt == 0 ? seed : seed_of(seed, attempt));
+    if (largest_body(child) != body) return child;
+  }
+  return forced_change(parent, body, source, mutation.mirror, seed);
 }
 
 VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int patch, Mirror mirror) {

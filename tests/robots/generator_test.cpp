@@ -97,6 +97,15 @@ TEST_P(EveryGenerator, MutatesARobotIntoAnotherOfItsKind) {
   EXPECT_EQ(child, mutate_robot(parent, {.strength = 5, .seed = 9}, "child"));
 }
 
+TEST_P(EveryGenerator, MutantsDifferFromTheirParent) {
+  const Robot parent = made(GetParam(), 4, 1);
+  for (const double strength : {0.01, 1.})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Robot child = GetParam().mutate(parent, {.strength = strength, .seed = seed}, parent.name);
+      EXPECT_TRUE(child.masses != parent.masses || child.springs != parent.springs) << strength << ' ' << seed;
+    }
+}
+
 TEST_P(EveryGenerator, MutatesMusclesAlone) {
   const Robot parent = made(GetParam(), 4, 1);
   const MutationRequest request{.strength = 0, .seed = 9, .muscles = 2};

@@ -177,6 +177,15 @@ TEST(Mutation, OfRateOrSizeZeroChangesNothing) {
   EXPECT_EQ(mutate(network, 1, 0, 12), network);
 }
 
+TEST(Mutation, ChangesAtLeastOneWeight) {
+  const Network network = random_network({3, 25}, 11);  // 100 numbers
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    EXPECT_NE(mutate(network, 0.01, 1, seed), network);
+    EXPECT_NE(mutate(network, 1e-12, 1, seed), network);
+    EXPECT_NE(mutate(network, 1, 1e-30, seed), network);  // steps far below the precision of a float
+  }
+}
+
 TEST(Mutation, DependsOnItsSeedAlone) {
   const Network network = random_network({3, 8, 25}, 13);
   EXPECT_EQ(mutate(network, 0.5, 1, 14), mutate(network, 0.5, 1, 14));

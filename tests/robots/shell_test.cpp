@@ -177,5 +177,46 @@ TEST(Shells, ManyAreSoundWithAnyOptions) {
   }
 }
 
+TEST(ShellMutation, ChangesAtLeastOneNumber) {
+  for (const double strength : {1e-30, 1e-3, 1.})
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      const ShellGenome parent = random_shell_genome({}, seed), child = mutate(parent, strength, seed);
+      ASSERT_NE(child, parent);
+      ASSERT_NO_THROW(validate(child));
+      const ShellGenome pulsing = mutate_muscles(parent, strength, seed);
+      ASSERT_NE(pulsing, parent);
+      ASSERT_NO_THROW(validate(pulsing));
+    }
+  EXPECT_EQ(mutate(ShellGenome{}, 0, 1), ShellGenome{});
+}
+
+TEST(ShellMutation, OfMusclesKeepsTheForm) {
+  const ShellGenome parent = random_shell_genome({}, 3), child = mutate_muscles(parent, 3, 1);
+  ShellGenome with_its_muscles = parent;
+  with_its_muscles.waves_around = child.waves_around;
+  with_its_muscles.waves_along = child.waves_along;
+  with_its_muscles.active = child.active;
+  with_its_muscles.contraction = child.contraction;
+  with_its_muscles.bending = child.bending;
+  with_its_muscles.frequency = child.frequency;
+  EXPECT_EQ(child, with_its_muscles);
+}
+
+TEST(ShellCrossover, TakesEachNumberFromAParentAndTheFormFromTheFirst) {
+  const ShellGenome a = random_shell_genome({.segments = 20}, 1);
+  const ShellGenome b = random_shell_genome({.diameter = 0.4f, .segments = 30}, 2);
+  int heights_of_b = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const ShellGenome child = crossover(a, b, seed);
+    ASSERT_NO_THROW(validate(child));  // thickness and diameter may come from different parents
+    EXPECT_EQ(child.form, a.form);
+    EXPECT_EQ(child.segments, a.segments);
+    ASSERT_TRUE(child.height == a.height || child.height == b.height);
+    ASSERT_TRUE(child.frequency == a.frequency || child.frequency == b.frequency);
+    heights_of_b += child.height == b.height ? 1 : 0;
+  }
+  EXPECT_NEAR(heights_of_b, 200, 50);  // five standard deviations
+}
+
 }  // namespace
 }  // namespace mercury

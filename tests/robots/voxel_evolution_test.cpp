@@ -63,11 +63,30 @@ TEST(VoxelMutation, ASwapMovesVoxelsButMakesNone) {
   }
 }
 
-TEST(VoxelMutation, SwapsChangeGrids) {
-  int changed = 0;
-  for (std::uint64_t seed = 0; seed < 100; ++seed)
-    changed += mutate(parent_of(seed), {.flip = 0, .swaps = 1}, seed) != parent_of(seed) ? 1 : 0;
-  EXPECT_GT(changed, 50);
+TEST(VoxelMutation, AlwaysChangesTheBody) {
+  // By few flips, by a swap alone, and where a draw hardly ever changes anything.
+  for (const VoxelMutation& mutation :
+       {VoxelMutation{}, VoxelMutation{.flip = 0, .swaps = 1}, VoxelMutation{.flip = 1e-9, .swaps = 0},
+        VoxelMutation{.flip = 1e-9, .swaps = 0, .mirror = Mirror::y}})
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      const VoxelGrid parent = parent_of(seed), child = mutate(parent, mutation, seed);
+      ASSERT_NE(largest_body(child), largest_body(parent)) << seed;
+      ASSERT_EQ(child, mutate(parent, mutation, seed));
+      ASSERT_TRUE(mutation.mirror == Mirror::none || is_mirrored_along_y(child));
+    }
+}
+
+TEST(VoxelMutation, ChangesOneVoxelWhereChanceChangesNone) {
+  const VoxelGrid parent(3, 3, 3, 4);  // swaps leave it alone
+  const VoxelGrid child = mutate(parent, {.flip = 0, .swaps = 2}, 5);
+  EXPECT_EQ(differences(parent, child), 1u);
+  EXPECT_EQ(std::count(child.cells.begin(), child.cells.end(), air), 0);
+}
+
+TEST(VoxelMutation, KeepsTheResultOfASeedThatChangesTheBody) {
+  // Computed by version 0.2.0.
+  const VoxelGrid child = mutate(VoxelGrid(4, 2, 2, 1), {.flip = 0.5, .swaps = 1}, 3);
+  EXPECT_THAT(child.cells, testing::ElementsAre(1, 15, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
 }
 
 TEST(VoxelMutation, KeepsTheHalvesAlikeOnRequest) {
@@ -76,7 +95,15 @@ TEST(VoxelMutation, KeepsTheHalvesAlikeOnRequest) {
 }
 
 TEST(VoxelMutation, LeavesABody) {
-  EXPECT_EQ(mutate(VoxelGrid(2, 2, 2, 3), {.flip = 1, .air = 1}, 1), VoxelGrid(2, 2, 2, 3));
+  // Every draw turns all voxels to air.
+  const VoxelGrid child = mutate(VoxelGrid(2, 2, 2, 3), {.flip = 1, .air = 1}, 1);
+  EXPECT_EQ(differences(child, VoxelGrid(2, 2, 2, 3)), 1u);
+  EXPECT_EQ(std::count(child.cells.begin(), child.cells.end(), air), 0);
+}
+
+TEST(VoxelMutation, CopiesABodyThatCannotChange) {
+  const VoxelGrid only(1, 1, 1, 3);
+  EXPECT_EQ(mutate(only, {.flip = 1, .materials = {3}}, 1), only);
 }
 
 TEST(VoxelCrossover, EveryVoxelComesFromAParent) {

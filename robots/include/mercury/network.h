@@ -53,7 +53,9 @@ std::vector<double> softmax(std::span<const float> scores);
 std::size_t most_probable(std::span<const float> scores);
 
 // A changed network: each weight and bias changes with probability `rate`, by a normal number times `size`. The same
-// seed gives the same change. Throws InputError unless 0 <= rate <= 1 and size is finite and at least 0.
+// seed gives the same change. Unless rate or size is 0, at least one weight changes: a draw without a change is
+// repeated up to 30 times, then one weight moves by one unit in its last place. Throws InputError unless 0 <= rate <= 1
+// and size is finite and at least 0.
 Network mutate(const Network& network, double rate, double size, std::uint64_t seed);
 
 // A child of two networks of equal sizes. It inherits each neuron whole, its bias and all weights into it, from either

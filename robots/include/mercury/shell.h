@@ -68,7 +68,9 @@ Robot grow(const ShellGenome& genome, const std::string& name = {});
 std::optional<ShellGenome> shell_genome_of(const Robot& robot);
 
 // The genome with each number moved by a normal number times `strength` times 4 % of its range, and kept in its range.
-// The form, the segments, the diameter and the thickness stay. Depends on the arguments alone.
+// The form, the segments, the diameter and the thickness stay. With a strength above 0 at least one number changes: a
+// draw without a change is repeated up to 30 times, then one number moves by a millionth of its range. Depends on the
+// arguments alone.
 ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t seed);
 // The same for the numbers of its muscles alone: waves, share, amplitudes and frequency.
 ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed);

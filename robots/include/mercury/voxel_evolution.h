@@ -28,8 +28,10 @@ void validate(const VoxelMutation& mutation);
 Mirror mirror_of(const VoxelGrid& grid);
 
 // The parent with some voxels flipped, then some patches swapped. Depends on its arguments alone, bit for bit on every
-// machine. A child that would be all air is a copy of its parent. Throws InputError for a grid or a mutation that is
-// not valid.
+// machine. Unless flip and swaps are both 0, the child's largest body is another one than its parent's: a draw that
+// changes nothing there, or leaves only air, is repeated up to 30 times; then one voxel of the body gets another
+// material. (A body that cannot change, such as a grid of one voxel with one material to draw from, is copied.) Throws
+// InputError for a grid or a mutation that is not valid.
 VoxelGrid mutate(const VoxelGrid& parent, const VoxelMutation& mutation, std::uint64_t seed);
 
 // A child of a's size and edge, in blocks of `patch` voxels, each from a or b with probability 1/2. b is centred in a;
