@@ -37,22 +37,24 @@ std::vector<Material> moved(std::span<const Material> bases, double strength, st
     const bool moves = random.chance(chance);
     return moves ? strength * size * random.normal() : 0;
   };
-  std::vector<Material> laws(bases.begin(), bases.end());
+  std::vector<Material> materials(bases.begin(), bases.end());
   std::map<float, double> together;  // steps by frequency
-  for (Material& law : laws) {
-    if (!is_muscle(law)) continue;
-    const auto [frequency_step, is_first] = together.try_emplace(law.frequency, 0);
+  for (Material& material : materials) {
+    if (!is_muscle(material)) continue;
+    const auto [frequency_step, is_first] = together.try_emplace(material.frequency, 0);
     if (is_first) frequency_step->second = step(share, 0.5);
     const double by_frequency = frequency_step->second + step(own_share, 0.5);
     const double by_amplitude = step(share, 0.04), by_phase = step(share, 0.4);
-    const double strongest = std::max(max_muscle_amplitude, std::abs(law.amplitude));
-    const double fastest = std::max(max_muscle_frequency, law.frequency), slowest = std::min(0.f, law.frequency);
+    const double strongest = std::max(max_muscle_amplitude, std::abs(material.amplitude));
+    const double fastest = std::max(max_muscle_frequency, material.frequency),
+                 slowest = std::min(0.f, material.frequency);
     if (by_amplitude != 0)
-      law.amplitude = static_cast<float>(folded(law.amplitude + by_amplitude, -strongest, strongest));
-    if (by_frequency != 0) law.frequency = static_cast<float>(folded(law.frequency + by_frequency, slowest, fastest));
-    if (by_phase != 0) law.phase = wrapped_phase(law.phase + by_phase);
+      material.amplitude = static_cast<float>(folded(material.amplitude + by_amplitude, -strongest, strongest));
+    if (by_frequency != 0)
+      material.frequency = static_cast<float>(folded(material.frequency + by_frequency, slowest, fastest));
+    if (by_phase != 0) material.phase = wrapped_phase(material.phase + by_phase);
   }
-  return laws;
+  return materials;
 }
 
 }  // namespace
@@ -103,28 +105,28 @@ Robot with_base_materials(Robot robot, std::span<const Material> bases) {
 std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double strength, std::uint64_t seed,
                                          const std::vector<bool>& in_use) {
   if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("muscles", "give a strength of 0 or more");
-  std::vector<Material> laws(bases.begin(), bases.end());
+  std::vector<Material> materials(bases.begin(), bases.end());
   const auto counts = [&](std::size_t i) {
     return is_muscle(bases[i]) && (in_use.empty() || (i < in_use.size() && in_use[i]));
   };
   const auto changed = [&] {
-    for (std::size_t i = 0; i < laws.size(); ++i)
-      if (counts(i) && laws[i] != bases[i]) return true;
+    for (std::size_t i = 0; i < materials.size(); ++i)
+      if (counts(i) && materials[i] != bases[i]) return true;
     return false;
   };
   std::vector<std::size_t> muscles;
   for (std::size_t i = 0; i < bases.size(); ++i)
     if (counts(i)) muscles.push_back(i);
-  if (strength == 0) return laws;
+  if (strength == 0) return materials;
   constexpr int attempts = 100;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    laws = moved(bases, strength, attempt == 0 ? seed : seed_of(seed, static_cast<std::uint64_t>(attempt)));
-    if (muscles.empty() || changed()) return laws;
+    materials = moved(bases, strength, attempt == 0 ? seed : seed_of(seed, static_cast<std::uint64_t>(attempt)));
+    if (muscles.empty() || changed()) return materials;
   }
   // Steps below the precision of a float.
-  Material& law = laws[muscles[Random(seed).below(muscles.size())]];
-  law.amplitude = std::nextafter(law.amplitude, 0.f);
-  return laws;
+  Material& material = materials[muscles[Random(seed).below(muscles.size())]];
+  material.amplitude = std::nextafter(material.amplitude, 0.f);
+  return materials;
 }
 
 std::vector<Material> cross_muscle_laws(std::span<const Material> a, std::span<const Material> b, std::uint64_t seed) {
@@ -132,22 +134,22 @@ std::vector<Material> cross_muscle_laws(std::span<const Material> a, std::span<c
     throw InputError("crossover", "two robots with the same number of materials are needed, not " +
                                       std::to_string(a.size()) + " and " + std::to_string(b.size()));
   Random random(seed);
-  std::vector<Material> laws(a.begin(), a.end());
-  for (std::size_t i = 0; i < laws.size(); ++i)
-    if (random.chance(0.5)) laws[i] = b[i];
-  return laws;
+  std::vector<Material> materials(a.begin(), a.end());
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    if (random.chance(0.5)) materials[i] = b[i];
+  return materials;
 }
 
 Robot with_mutated_muscles(Robot robot, double strength, std::uint64_t seed) {
-  const std::vector<Material> laws =
+  const std::vector<Material> materials =
       mutate_muscle_laws(base_materials_of(robot), strength, seed, base_materials_in_use(robot));
-  return with_base_materials(std::move(robot), laws);
+  return with_base_materials(std::move(robot), materials);
 }
 
 Robot with_crossed_muscles(Robot a, const Robot& b, std::uint64_t seed) {
   if (!has_base_materials(a) || !has_base_materials(b)) return a;
-  const std::vector<Material> laws = cross_muscle_laws(base_materials_of(a), base_materials_of(b), seed);
-  return with_base_materials(std::move(a), laws);
+  const std::vector<Material> materials = cross_muscle_laws(base_materials_of(a), base_materials_of(b), seed);
+  return with_base_materials(std::move(a), materials);
 }
 
 }  // namespace mercury

@@ -88,18 +88,18 @@ TEST(BaseMaterials, OfAnotherNumberOrNotValidAreRefused) {
 TEST(MuscleMutation, KeepsItsRangesWhateverItsStrength) {
   for (const double strength : {0.1, 1., 10., 1000.})
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
-      const std::vector<Material> bases = own_bases(), laws = mutate_muscle_laws(bases, strength, seed);
-      ASSERT_EQ(laws.size(), bases.size());
-      for (std::size_t i = 0; i < laws.size(); ++i) {
-        ASSERT_EQ(laws[i].stiffness, bases[i].stiffness);
+      const std::vector<Material> bases = own_bases(), materials = mutate_muscle_laws(bases, strength, seed);
+      ASSERT_EQ(materials.size(), bases.size());
+      for (std::size_t i = 0; i < materials.size(); ++i) {
+        ASSERT_EQ(materials[i].stiffness, bases[i].stiffness);
         if (bases[i].amplitude == 0) {
-          ASSERT_EQ(laws[i], bases[i]);
+          ASSERT_EQ(materials[i], bases[i]);
         }
-        ASSERT_LE(std::abs(laws[i].amplitude), 0.4f);
-        ASSERT_GE(laws[i].frequency, 0);
-        ASSERT_LE(laws[i].frequency, 20);
-        ASSERT_GE(laws[i].phase, 0);
-        ASSERT_LT(laws[i].phase, 2 * std::numbers::pi);
+        ASSERT_LE(std::abs(materials[i].amplitude), 0.4f);
+        ASSERT_GE(materials[i].frequency, 0);
+        ASSERT_LE(materials[i].frequency, 20);
+        ASSERT_GE(materials[i].phase, 0);
+        ASSERT_LT(materials[i].phase, 2 * std::numbers::pi);
       }
     }
 }
@@ -108,10 +108,10 @@ TEST(MuscleMutation, DoesNotWeakenMusclesBeyondItsRanges) {
   const std::vector<Material> strong{{50, 0.9f, 35, 0}};
   bool stays_beyond = false;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Material law = mutate_muscle_laws(strong, 1, seed)[0];
-    EXPECT_LE(law.amplitude, 0.9f);
-    EXPECT_LE(law.frequency, 35);
-    stays_beyond = stays_beyond || (law.amplitude > 0.5f && law.frequency > 25);
+    const Material material = mutate_muscle_laws(strong, 1, seed)[0];
+    EXPECT_LE(material.amplitude, 0.9f);
+    EXPECT_LE(material.frequency, 35);
+    stays_beyond = stays_beyond || (material.amplitude > 0.5f && material.frequency > 25);
   }
   EXPECT_TRUE(stays_beyond);
 }
@@ -121,15 +121,15 @@ TEST(MuscleMutation, MovesAsManyNumbersAsItSays) {
   // deviation 0.003), of a size of 0.04 and 0.4 rad (1 %).
   double amplitudes = 0, phases = 0, amplitude_squares = 0, phase_squares = 0, together = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    const std::vector<Material> bases = own_bases(), laws = mutate_muscle_laws(bases, 0.5, seed);
+    const std::vector<Material> bases = own_bases(), materials = mutate_muscle_laws(bases, 0.5, seed);
     for (std::size_t i = 0; i < muscle_count; ++i) {
-      const double by_amplitude = laws[i].amplitude - bases[i].amplitude;
-      const double by_phase = std::remainder(laws[i].phase - bases[i].phase, 2 * std::numbers::pi);
+      const double by_amplitude = materials[i].amplitude - bases[i].amplitude;
+      const double by_phase = std::remainder(materials[i].phase - bases[i].phase, 2 * std::numbers::pi);
       amplitudes += by_amplitude != 0 ? 1 : 0;
       phases += by_phase != 0 ? 1 : 0;
       amplitude_squares += by_amplitude * by_amplitude;
       phase_squares += by_phase * by_phase;
-      together += laws[i].frequency == laws[i / 4 * 4].frequency ? 1 : 0;
+      together += materials[i].frequency == materials[i / 4 * 4].frequency ? 1 : 0;
     }
   }
   EXPECT_NEAR(amplitudes / 20000, 0.25, 0.015);
