@@ -63,6 +63,7 @@ SUBJECTS = {
     "CUDA": (r"cuda|cooperative_groups|cub/|thrust/|nvrtc|device_launch", {"sim", "app", "bench"}),
     "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "evolution", "render", "app", "bench"}),
     "CGAL": (r"CGAL/", {"robots"}),
+    "muParser": (r"muParser", {"evolution"}),
 }
 FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbours without their folder
 

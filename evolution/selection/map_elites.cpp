@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// MAP-Elites (Mouret and Clune 2015, "Illuminating search spaces by mapping elites", figure 2): the space of some
+// quantities is cut into cells; the best robot of each cell lives on, and every elite is as likely a parent.
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "evolution/selection/order.h"
+#include "evolution/selection/registry.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+std::size_t cell_on(const MapAxis& axis, double value) {
+  const double place = (value - axis.lowest) / (axis.highest - axis.lowest) * axis.cells;
+  if (!(place > 0)) return 0;  // NaN as well
+  return static_cast<std::size_t>(std::min<double>(place, axis.cells - 1));
+}
+
+class MapElites : public Algorithm {
+ public:
+  explicit MapElites(const AlgorithmSettings& settings) : settings_(settings) {}
+
+  std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
+    std::vector<ChildPlan> plans;
+    for (std::size_t i = 0; i < children; ++i)
+      plans.push_back(
+          plan_child(living.size(), settings_.crossover, random, [&] { return random.below(living.size()); }));
+    return plans;
+  }
+
+  // Robots of the worst score get no cell: what they measured may be the numbers of an explosion. If all have it, the
+  // first one lives on, so that a run has always somebody.
+  std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t) const override {
+    const std::vector<std::size_t> order = best_first(pool);
+    std::unordered_set<std::size_t> filled;
+    std::vector<std::size_t> elites;
+    for (const std::size_t i : order) {
+      if (comparable(pool[i].score()) == worst_score) break;
+      if (filled.insert(map_cell(settings_.axes, pool[i].assessment.values)).second) elites.push_back(i);
+    }
+    if (elites.empty() && !order.empty()) elites.push_back(order.front());
+    return elites;
+  }
+
+ private:
+  const AlgorithmSettings settings_;
+};
+
+}  // namespace
+
+std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values) {
+  std::size_t cell = 0, stride = 1;
+  for (const MapAxis& axis : axes) {
+    cell += stride * cell_on(axis, values[find_quantity(axis.quantity).value()]);
+    stride *= static_cast<std::size_t>(axis.cells);
+  }
+  return cell;
+}
+
+AlgorithmDescription map_elites() {
+  return {.name = "map-elites",
+          .help = "MAP-Elites: the best robot for each cell of a map of their properties",
+          .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
+            return std::make_unique<MapElites>(settings);
+          }};
+}
+
+}  // namespace mercury

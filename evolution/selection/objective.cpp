@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas are parsed by muParser. Its messages do not know our names, so names are checked before it sees a formula.
+#include "mercury/objective.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mercury/error.h"
+#include "mercury/individual.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t longest_formula = 1000;  // characters
+constexpr std::string_view operators = " .,+-*/^()<>=!&|?:";
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool continues_name(char c) { return begins_name(c) || is_digit(c); }
+
+[[noreturn]] void refuse(const std::string& formula, const std::string& problem) {
+  constexpr std::size_t shown = 80;
+  const std::string quoted = formula.size() <= shown ? formula : formula.substr(0, shown) + "...";
+  throw ParameterError("objective", "\"" + quoted + "\": " + problem);
+}
+
+void check_characters(const std::string& formula) {
+  if (formula.size() > longest_formula)
+    refuse(formula, std::to_string(formula.size()) + " characters; give at most " + std::to_string(longest_formula));
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (continues_name(formula[i]) || operators.find(formula[i]) != std::string_view::npos) continue;
+    const bool printable = formula[i] > ' ' && formula[i] <= '~';
+    throw ParameterError("objective", "character " + std::to_string(i + 1) +
+                                          (printable ? std::string(", ") + formula[i] + "," : std::string()) +
+                                          " does not belong into a formula; give letters, digits and" +
+                                          std::string(operators));
+  }
+}
+
+// muParser takes = for an assignment.
+void check_comparisons(const std::string& formula) {
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (formula[i] != '=') continue;
+    const char before = i > 0 ? formula[i - 1] : ' ';
+    if (before == '<' || before == '>' || before == '!') continue;
+    if (i + 1 < formula.size() && formula[i + 1] == '=') {
+      ++i;
+      continue;
+    }
+    refuse(formula, "= at character " + std::to_string(i + 1) + " sets a value; to compare, write ==");
+  }
+}
+
+// End of the number that begins at i: "12", "0.5", "1e-3".
+std::size_t end_of_number(const std::string& formula, std::size_t i) {
+  const auto skip_digits = [&] {
+    while (i < formula.size() && is_digit(formula[i])) ++i;
+  };
+  skip_digits();
+  if (i < formula.size() && formula[i] == '.') ++i;
+  skip_digits();
+  if (i < formula.size() && (formula[i] == 'e' || formula[i] == 'E')) {
+    std::size_t exponent = i + 1;
+    if (exponent < formula.size() && (formula[exponent] == '-' || formula[exponent] == '+')) ++exponent;
+    if (exponent < formula.size() && is_digit(formula[exponent])) {
+      i = exponent;
+      skip_digits();
+    }
+  }
+  return i;
+}
+
+// Insertions, deletions and replacements that turn one word into the other (Levenshtein 1966).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+[[noreturn]] void refuse_name(const std::string& formula, const std::string& name, const char* noun,
+                              const std::vector<std::string>& names) {
+  const auto distance = [&](const std::string& known) { return edit_distance(name, known); };
+  const std::string& nearest = *std::ranges::min_element(names, {}, distance);
+  const bool is_near = distance(nearest) <= std::max<std::size_t>(1, name.size() / 3);
+  refuse(formula, "there is no " + std::string(noun) + " " + name +
+                      (is_near ? "; did you mean " + nearest + "?" : "; give one of " + list_of(names)));
+}
+
+std::vector<std::string> names_of_quantities() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) names.emplace_back(quantity.name);
+  return names;
+}
+
+void check_names(const std::string& formula, const mu::Parser& parser) {
+  for (std::size_t i = 0; i < formula.size();) {
+    if (is_digit(formula[i]) || formula[i] == '.') {
+      i = end_of_number(formula, i);
+    } else if (begins_name(formula[i])) {
+      const auto end = static_cast<std::size_t>(
+          std::find_if_not(formula.begin() + static_cast<std::ptrdiff_t>(i), formula.end(), continues_name) -
+          formula.begin());
+      const std::string name = formula.substr(i, end - i);
+      const std::size_t next = formula.find_first_not_of(' ', end);
+      i = end;
+      if (next != std::string::npos && formula[next] == '(') {
+        std::vector<std::string> functions;
+        for (const auto& [function, callback] : parser.GetFunDef()) functions.push_back(function);
+        if (!parser.GetFunDef().contains(name)) refuse_name(formula, name, "function", functions);
+      } else if (!find_quantity(name) && !parser.GetConst().contains(name)) {
+        refuse_name(formula, name, "quantity", names_of_quantities());
+      }
+    } else {
+      ++i;
+    }
+  }
+}
+
+// muParser's message without its capital letter and full stop, and with a place that is counted from 1.
+std::string message_of(const mu::ParserError& error, const std::string& formula) {
+  std::string message = error.GetMsg();
+  if (!message.empty() && message.back() == '.') message.pop_back();
+  if (!message.empty() && message[0] >= 'A' && message[0] <= 'Z')
+    message[0] = static_cast<char>(message[0] - 'A' + 'a');
+  for (const char* place : {" found at position", " at expression position", " at position"})
+    if (const std::size_t cut = message.rfind(place); cut != std::string::npos) {
+      message.erase(cut);
+      if (const std::size_t at = error.GetPos(); at < formula.size())
+        message += " at character " + std::to_string(at + 1);
+    }
+  return message;
+}
+
+}  // namespace
+
+// A parser evaluates on a stack of its own, one thread at a time.
+struct Objective::Parsed {
+  explicit Parsed(const std::string& formula) : variables(quantities().size()) {
+    check_characters(formula);
+    check_comparisons(formula);
+    try {
+      check_names(formula, parser);
+      for (std::size_t q = 0; q < variables.size(); ++q)
+        parser.DefineVar(std::string(quantities()[q].name), &variables[q]);
+      parser.SetExpr(formula);
+      parser.Eval();  // parses
+      if (parser.GetNumResults() != 1) refuse(formula, "is several formulas; give one, or several objectives");
+    } catch (const mu::ParserError& error) {
+      refuse(formula, message_of(error, formula));
+    }
+  }
+
+  mutable std::mutex mutex;
+  mutable std::vector<double> variables;
+  mutable mu::Parser parser;
+};
+
+Objective::Objective(const std::string& formula)
+    : formula_(formula), parsed_(std::make_shared<const Parsed>(formula)) {}
+
+double Objective::score(std::span<const double> values) const {
+  if (values.size() != parsed_->variables.size()) throw std::invalid_argument("an objective needs all quantities");
+  const std::lock_guard lock(parsed_->mutex);
+  std::ranges::copy(values, parsed_->variables.begin());
+  const double score = parsed_->parser.Eval();
+  return std::isfinite(score) ? score : worst_score;
+}
+
+}  // namespace mercury

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "evolution/selection/body.h"
+#include "mercury/muscle_laws.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+double seconds(const Trial& trial) { return static_cast<double>(trial.evaluation.steps) * trial.configuration.dt; }
+
+Vec3 displacement(const Trial& trial) {
+  return trial.evaluation.end.center_of_mass - trial.evaluation.start.center_of_mass;
+}
+
+double distance(const Trial& trial) {
+  const Vec3 d = displacement(trial);
+  const double x = d.x, y = d.y, z = std::holds_alternative<Land>(trial.configuration.environment) ? 0 : d.z;
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+template <float Vec3::*axis>
+double speed_along(const Trial& trial) {
+  return ratio(displacement(trial).*axis, seconds(trial));
+}
+
+double straightness(const Trial& trial) {
+  return std::min(1.0, ratio(distance(trial), trial.evaluation.path));  // both are rounded
+}
+
+double direction(const Trial& trial) {
+  constexpr double degrees = 180 / 3.14159265358979323846;
+  const Vec3 d = displacement(trial);
+  return std::atan2(static_cast<double>(d.y), static_cast<double>(d.x)) * degrees;
+}
+
+double length_at_rest(const Trial& trial) {
+  const Vec3 box = box_of(trial.robot);
+  return std::max({box.x, box.y, box.z});
+}
+
+double muscle_share(const Trial& trial) {
+  const std::span<const Material> materials = materials_of(trial.robot);
+  const auto moves = [&](const Spring& spring) { return materials[spring.material].amplitude != 0; };
+  return ratio(static_cast<double>(std::ranges::count_if(trial.robot.springs, moves)),
+               static_cast<double>(trial.robot.springs.size()));
+}
+
+double materials_in_use(const Trial& trial) {
+  const std::vector<bool> used = base_materials_in_use(trial.robot);
+  return static_cast<double>(std::ranges::count(used, true));
+}
+
+// name, unit, help, of the body alone, usual range, value
+constexpr Quantity table[] = {
+    {"distance", "m", "how far the center of mass went from start to end; on land along the ground", false, 0, 5,
+     distance},
+    {"speed", "m/s", "distance per time of the trial", false, 0, 0.5,
+     [](const Trial& trial) { return ratio(distance(trial), seconds(trial)); }},
+    {"speed_x", "m/s", "displacement along x per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::x>},
+    {"speed_y", "m/s", "displacement along y per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::y>},
+    {"speed_z", "m/s", "displacement along z per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::z>},
+    {"path", "m", "length of the path of the center of mass", false, 0, 5,
+     [](const Trial& trial) { return trial.evaluation.path; }},
+    {"straightness", "", "distance per path: 1 = along a line", false, 0, 1, straightness},
+    {"direction", "degrees", "of the displacement in the x-y plane: 0 = along x, 90 = along y", false, -180, 180,
+     direction},
+    {"strain", "", "largest strain of a spring", false, 0, 2,
+     [](const Trial& trial) { return trial.evaluation.largest_strain; }},
+    {"seconds", "s", "time of the trial", false, 0, 10, seconds},
+    {"body_lengths", "", "distance per length", false, 0, 5,
+     [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }},
+    {"masses", "", "number of masses", true, 0, 200,
+     [](const Trial& trial) { return static_cast<double>(trial.robot.masses.size()); }},
+    {"springs", "", "number of springs", true, 0, 2000,
+     [](const Trial& trial) { return static_cast<double>(trial.robot.springs.size()); }},
+    {"length", "m", "longest side of the box around the body at rest", true, 0, 1, length_at_rest},
+    {"body_height", "m", "height of the body at rest", true, 0, 1,
+     [](const Trial& trial) { return static_cast<double>(box_of(trial.robot).z); }},
+    {"size", "m3", "volume inside the skin at rest", true, 0, 0.1,
+     [](const Trial& trial) { return volume_of(trial.robot); }},
+    {"muscle_share", "", "share of the springs that are muscles", true, 0, 1, muscle_share},
+    {"symmetry", "", "how well the body equals its mirror image in y", true, 0, 1,
+     [](const Trial& trial) { return mirror_symmetry(trial.robot); }},
+    {"materials", "", "number of base materials in use", true, 0, 22, materials_in_use},
+};
+
+}  // namespace
+
+std::span<const Quantity> quantities() { return table; }
+
+std::optional<std::size_t> find_quantity(std::string_view name) {
+  const auto* found = std::ranges::find(table, name, &Quantity::name);
+  if (found == std::end(table)) return std::nullopt;
+  return static_cast<std::size_t>(found - std::begin(table));
+}
+
+std::vector<double> quantities_of(const Trial& trial) {
+  std::vector<double> values;
+  for (const Quantity& quantity : table) values.push_back(quantity.value(trial));
+  return values;
+}
+
+}  // namespace mercury

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The algorithms that registry.cpp lists. Each file of an algorithm describes it.
+#pragma once
+
+#include "mercury/algorithm.h"
+
+namespace mercury {
+
+AlgorithmDescription ga();
+AlgorithmDescription afpo();
+AlgorithmDescription nsga2();
+AlgorithmDescription map_elites();
+AlgorithmDescription random_search();
+
+}  // namespace mercury
