@@ -81,8 +81,8 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
   for (const RobotId id : robots) {
     const DocumentRobot* robot = parts_->document.find(id);
     if (!robot) continue;
-    for (const QuantityName& quantity : quantities())
-      header.append(",").append(csv_field(fmt::format("{} {} [{}]", robot->body.name, quantity.name, quantity.unit)));
+    for (const MeasureName& measure : measures())
+      header.append(",").append(csv_field(fmt::format("{} {} [{}]", robot->body.name, measure.name, measure.unit)));
     all.push_back(series(id));
     for (const double time : all.back().times) rows.emplace(time, 0);
   }
@@ -96,11 +96,11 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
     for (std::size_t i = 0; i < series.times.size(); ++i) {
       const std::size_t row = rows.at(series.times[i]);
       filled[row] = true;
-      for (const QuantityName& quantity : quantities())
-        lines[row] += fmt::format(",{}", series.samples[i].of(quantity.quantity));
+      for (const MeasureName& measure : measures())
+        lines[row] += fmt::format(",{}", series.samples[i].of(measure.measure));
     }
     for (std::size_t row = 0; row < lines.size(); ++row)
-      if (!filled[row]) lines[row].append(quantities().size(), ',');
+      if (!filled[row]) lines[row].append(measures().size(), ',');
   }
   std::string text = header + "\n";
   for (const std::string& line : lines) text += line + "\n";

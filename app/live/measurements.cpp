@@ -10,12 +10,12 @@ namespace {
 
 constexpr double sample_period = 0.02;  // the first interval [s]
 
-constexpr std::array<QuantityName, 5> names{{
-    {Quantity::speed, "speed", "m/s"},
-    {Quantity::distance, "distance", "m"},
-    {Quantity::kinetic_energy, "kinetic energy", "J"},
-    {Quantity::elastic_energy, "elastic energy", "J"},
-    {Quantity::strain, "largest strain", "1"},
+constexpr std::array<MeasureName, 5> names{{
+    {Measure::speed, "speed", "m/s"},
+    {Measure::distance, "distance", "m"},
+    {Measure::kinetic_energy, "kinetic energy", "J"},
+    {Measure::elastic_energy, "elastic energy", "J"},
+    {Measure::strain, "largest strain", "1"},
 }};
 
 Sample sample_of(const RankingRow& row, const Telemetry& telemetry) {
@@ -35,19 +35,19 @@ void keep_every_second(std::vector<T>& values, std::size_t first) {
 
 }  // namespace
 
-std::span<const QuantityName> quantities() { return names; }
+std::span<const MeasureName> measures() { return names; }
 
-float Sample::of(Quantity quantity) const {
-  switch (quantity) {
-    case Quantity::speed:
+float Sample::of(Measure measure) const {
+  switch (measure) {
+    case Measure::speed:
       return speed;
-    case Quantity::distance:
+    case Measure::distance:
       return distance;
-    case Quantity::kinetic_energy:
+    case Measure::kinetic_energy:
       return kinetic_energy;
-    case Quantity::elastic_energy:
+    case Measure::elastic_energy:
       return elastic_energy;
-    case Quantity::strain:
+    case Measure::strain:
       break;
   }
   return strain;

@@ -14,14 +14,14 @@
 namespace mercury {
 
 // What the measure panel plots.
-enum class Quantity { speed, distance, kinetic_energy, elastic_energy, strain };
+enum class Measure { speed, distance, kinetic_energy, elastic_energy, strain };
 
-struct QuantityName {
-  Quantity quantity;
+struct MeasureName {
+  Measure measure;
   const char* name;  // "distance"
   const char* unit;  // "m"
 };
-std::span<const QuantityName> quantities();
+std::span<const MeasureName> measures();
 
 struct Sample {
   float speed = 0;           // of the centre of mass [m/s]
@@ -29,7 +29,7 @@ struct Sample {
   float kinetic_energy = 0;  // [J]
   float elastic_energy = 0;  // [J]
   float strain = 0;          // largest of any spring [1]
-  float of(Quantity quantity) const;
+  float of(Measure measure) const;
 };
 
 // The samples of one robot, from the time it was added.

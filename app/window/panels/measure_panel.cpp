@@ -27,7 +27,7 @@ struct Curve {
 void MeasurePanel::draw(PanelContext& context) {
   heading("Plots");
   for (std::size_t i = 0; i < shown_.size(); ++i) {
-    const QuantityName& name = quantities()[i];
+    const MeasureName& name = measures()[i];
     if (i != 0) {
       ImGui::SameLine();
       if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(name.name).x + 1.5f * ImGui::GetFontSize())
@@ -51,15 +51,15 @@ void MeasurePanel::draw_plots(PanelContext& context) {
     curves.push_back({name_of_robot(context.scene, robot), context.scene.series(robot)});
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (!shown_[i]) continue;
-    const QuantityName& quantity = quantities()[i];
+    const MeasureName& measure = measures()[i];
     std::vector<std::vector<double>> values(curves.size());
     std::vector<PlotLine> lines;
     for (std::size_t k = 0; k < curves.size(); ++k) {
       for (const Sample& sample : curves[k].series.samples)
-        values[k].push_back(static_cast<double>(sample.of(quantity.quantity)));
+        values[k].push_back(static_cast<double>(sample.of(measure.measure)));
       lines.push_back({curves[k].name, render::category_color(static_cast<int>(k)), curves[k].series.times, values[k]});
     }
-    plot(quantity.name, {.title = quantity.name, .unit = quantity.unit, .height = 9 * ImGui::GetFontSize()}, lines);
+    plot(measure.name, {.title = measure.name, .unit = measure.unit, .height = 9 * ImGui::GetFontSize()}, lines);
   }
   std::vector<PlotLine> names;
   for (std::size_t k = 0; k < curves.size(); ++k)

@@ -16,7 +16,7 @@ class MeasurePanel : public Panel {
   void draw_plots(PanelContext& context);
   void draw_exports(PanelContext& context);
 
-  std::array<bool, 5> shown_{true, true, false, false, false};  // by Quantity
+  std::array<bool, 5> shown_{true, true, false, false, false};  // by Measure
 };
 
 }  // namespace mercury::window
