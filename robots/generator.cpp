@@ -17,8 +17,43 @@ Generator voxel_generator();
 Generator nn_generator();
 Generator shell_generator();
 
+namespace {
+
+// What holds for all of them: children name their parents, and a robot that is grown again keeps its origin.
+Generator with_records(Generator generator) {
+  generator.regrow = [regrow = std::move(generator.regrow)](const Robot& robot) {
+    Robot again = regrow(robot);
+    again.origin = robot.origin;
+    return again;
+  };
+  generator.mutate = [mutate = std::move(generator.mutate)](const Robot& parent, const MutationRequest& request,
+                                                            const std::string& name) {
+    validate(request);
+    Robot child = mutate(parent, request, name);
+    child.origin = with_ancestry(child.origin, {.parents = {parent.name},
+                                                .mutation_seed = request.seed,
+                                                .strength = request.strength,
+                                                .muscles = request.muscles});
+    return child;
+  };
+  if (generator.cross)
+    generator.cross = [cross = std::move(generator.cross)](const Robot& a, const Robot& b, std::uint64_t seed,
+                                                           const std::string& name) {
+      Robot child = cross(a, b, seed, name);
+      child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
+      return child;
+    };
+  return generator;
+}
+
+}  // namespace
+
 const std::vector<Generator>& generators() {
-  static const std::vector<Generator> all{voxel_generator(), nn_generator(), shell_generator()};
+  static const std::vector<Generator> all = [] {
+    std::vector<Generator> made{voxel_generator(), nn_generator(), shell_generator()};
+    for (Generator& generator : made) generator = with_records(std::move(generator));
+    return made;
+  }();
   return all;
 }
 

@@ -57,7 +57,6 @@ Robot grown(const NnGenome& genome, const Robot& owner, const std::string& name)
 Robot regrow(const Robot& robot) { return grown(genome_in(robot), robot, robot.name); }
 
 Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
-  validate(request);
   const double rate = 0.1, size = 0.3 * request.strength;
   return with_mutated_muscles(grown(mutate(genome_in(parent), rate, size, request.seed), parent, name), request.muscles,
                               seed_of(request.seed, 0));

@@ -112,7 +112,6 @@ ShellGenome crossover(const ShellGenome& a, const ShellGenome& b, std::uint64_t 
 }
 
 Robot mutate_shell_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
-  validate(request);
   ShellGenome genome = mutate(shell_genome_in(parent), request.strength, request.seed);
   if (request.muscles > 0) genome = mutate_muscles(genome, request.muscles, seed_of(request.seed, 0));
   return grow(genome, name);

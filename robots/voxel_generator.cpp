@@ -66,17 +66,14 @@ VoxelGrid grid_in(const Robot& robot) {
 }
 
 Robot regrow(const Robot& robot) {
-  Robot again = make_voxel_robot(grid_in(robot), {.name = robot.name,
-                                                  .environment = environment_of(robot),
-                                                  .materials = robot.materials,
-                                                  .material_names = robot.material_names});
-  again.origin = robot.origin;  // seed and index included
-  return again;
+  return make_voxel_robot(grid_in(robot), {.name = robot.name,
+                                           .environment = environment_of(robot),
+                                           .materials = robot.materials,
+                                           .material_names = robot.material_names});
 }
 
 // A symmetric parent has symmetric children.
 Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
-  validate(request);
   VoxelMutation mutation;
   mutation.flip = std::min(1.0, request.strength * mutation.flip);
   mutation.swaps = static_cast<int>(std::lround(std::min(1000.0, request.strength * mutation.swaps)));

@@ -149,6 +149,21 @@ TEST_P(EveryGenerator, CrossesARobotWithItselfIntoTheSameBody) {
   EXPECT_TRUE(std::ranges::equal(materials_of(child), materials_of(a)));
 }
 
+TEST_P(EveryGenerator, ChildrenNameTheirParents) {
+  const Robot a = made(GetParam(), 4, 1), b = made(GetParam(), 5, 1);
+  EXPECT_EQ(ancestry_of(a), std::nullopt);
+  const Robot mutant = mutate_robot(a, {.strength = 2, .seed = 9, .muscles = 0.5}, "mutant");
+  EXPECT_EQ(ancestry_of(mutant), (Ancestry{.parents = {a.name}, .mutation_seed = 9, .strength = 2, .muscles = 0.5}));
+  EXPECT_EQ(ancestry_of(cross_robots(a, b, 8, "child")), (Ancestry{.parents = {a.name, b.name}, .crossover_seed = 8}));
+  EXPECT_EQ(ancestry_of(mutate_robot(mutant, {.seed = 3}, "grandchild"))->parents, std::vector{mutant.name});
+}
+
+TEST_P(EveryGenerator, RegrowingKeepsTheWholeOrigin) {
+  Robot robot = mutate_robot(made(GetParam(), 4, 1), {}, "mutant");
+  robot.origin.insert(1, R"("note": "mine" ,)");
+  EXPECT_EQ(GetParam().regrow(robot), robot);
+}
+
 TEST_P(EveryGenerator, AcceptsItsDefaultsAndRefusesWhatIsOutOfRange) {
   EXPECT_NO_THROW(GetParam().validate({}));
   for (const GeneratorParameter& parameter : GetParam().parameters) {

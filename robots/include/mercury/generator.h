@@ -93,15 +93,15 @@ struct Generator {
   std::function<Robot(const ParameterValues& values, const std::string& environment, std::uint64_t seed,
                       std::uint64_t index)>
       make;
-  // A robot of this generator once more from its origin alone, bit for bit. Throws InputError("/origin/...") if the
-  // origin does not hold one.
+  // A robot of this generator once more from its origin (which it keeps, with what nobody knows in it) and its own
+  // materials, bit for bit. Throws InputError("/origin/...") if the origin does not hold one.
   std::function<Robot(const Robot& robot)> regrow;
   // A changed copy, named `name`. Depends on the arguments alone, bit for bit on every machine. Throws InputError as
-  // regrow and make, and for a request that validate() refuses.
+  // regrow and make, and for a request that validate() refuses. Its origin names the parent (origin.h).
   std::function<Robot(const Robot& parent, const MutationRequest& request, const std::string& name)> mutate;
   // A child of two robots of this generator, named `name`; body and muscle laws are mixed. It is a's where the parents
   // cannot be mixed: sizes, environment, a table without base materials. Depends on the arguments alone. Throws
-  // InputError as regrow and make, and for parents that are too different.
+  // InputError as regrow and make, and for parents that are too different. Its origin names both.
   std::function<Robot(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name)> cross;
 };
 
