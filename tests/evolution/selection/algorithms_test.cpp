@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithms against what their papers say, computed the long way.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "mercury/algorithm.h"
+#include "mercury/error.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Le;
+using testing::UnorderedElementsAre;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Individual individual(std::uint64_t id, std::vector<double> scores, int line_began = 0) {
+  Individual one{.id = id, .line_began = line_began};
+  one.assessment = {.fate = Fate::sound, .scores = std::move(scores)};
+  one.assessment.values.assign(quantities().size(), 0.0);
+  return one;
+}
+
+// Ids that do not follow the places; equal scores, and some robots that came to grief.
+std::vector<Individual> random_pool(std::size_t count, std::size_t objectives, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::uint64_t> ids(count);
+  for (std::size_t i = 0; i < count; ++i) ids[i] = i + 100;
+  for (std::size_t i = count; i > 1; --i) std::swap(ids[i - 1], ids[random.below(i)]);
+  std::vector<Individual> pool;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> scores(objectives);
+    for (double& score : scores) score = static_cast<double>(random.below(12));
+    pool.push_back(individual(ids[i], scores, static_cast<int>(random.below(8))));
+    for (double& value : pool.back().assessment.values) value = random.uniform();
+    if (random.chance(0.1)) {
+      pool.back().assessment.scores.assign(objectives, worst_score);
+      pool.back().assessment.fate = Fate::exploded;
+    }
+    if (random.chance(0.05)) {
+      pool.back().assessment.scores.assign(objectives, worst_score);
+      pool.back().assessment.values.clear();
+      pool.back().assessment.fate = Fate::failed;
+    }
+  }
+  return pool;
+}
+
+AlgorithmSettings settings_of(std::string_view name, std::size_t population) {
+  AlgorithmSettings settings{.name = std::string(name), .population = population};
+  if (name == "map-elites")
+    settings.axes = {{.quantity = "size", .lowest = 0, .highest = 1, .cells = 4},
+                     {.quantity = "symmetry", .lowest = 0, .highest = 1, .cells = 5}};
+  return settings;
+}
+
+std::vector<std::uint64_t> ids_of(std::span<const Individual> pool, std::span<const std::size_t> indices) {
+  std::vector<std::uint64_t> ids;
+  for (const std::size_t i : indices) ids.push_back(pool[i].id);
+  return ids;
+}
+
+bool scores_before(const Individual& a, const Individual& b) {
+  return a.score() != b.score() ? a.score() > b.score() : a.id < b.id;
+}
+
+class EveryAlgorithm : public testing::TestWithParam<std::string_view> {
+ protected:
+  std::unique_ptr<Algorithm> make(std::size_t population) const {
+    return make_algorithm(settings_of(GetParam(), population));
+  }
+};
+
+std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
+  return test.param == "map-elites" ? "map_elites" : std::string(test.param);
+}
+INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm, testing::Values("ga", "afpo", "nsga2", "map-elites", "random"),
+                         suite_name);
+
+TEST_P(EveryAlgorithm, SurvivorsAreDifferentMembersOfThePoolTheBestFirst) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const std::size_t count = seed * 3;
+    const std::vector<Individual> pool = random_pool(count, 1, seed);
+    const std::vector<std::size_t> chosen = make(20)->survivors(pool, count / 2);
+    EXPECT_THAT(chosen, testing::Each(testing::Lt(count)));
+    EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());
+    ASSERT_THAT(chosen, testing::Not(IsEmpty()));
+    if (GetParam() != "map-elites") {
+      EXPECT_EQ(chosen.size(), std::min<std::size_t>(count, 20));
+    }
+    for (std::size_t k = 1; k < chosen.size(); ++k)
+      EXPECT_GE(pool[chosen[k - 1]].score(), pool[chosen[k]].score()) << seed;
+  }
+}
+
+TEST_P(EveryAlgorithm, TheBestOfThePoolLivesOn) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const std::vector<Individual> pool = random_pool(60, 1, seed);
+    const double best = std::ranges::max_element(pool, {}, &Individual::score)->score();
+    EXPECT_EQ(pool[make(20)->survivors(pool, 30).front()].score(), best);
+  }
+}
+
+TEST_P(EveryAlgorithm, WhoLivesOnDoesNotDependOnTheOrderOfThePool) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::vector<Individual> pool = random_pool(50, 1, seed);
+    const auto algorithm = make(15);
+    const std::vector<std::uint64_t> before = ids_of(pool, algorithm->survivors(pool, 25));
+    std::reverse(pool.begin(), pool.begin() + 25);
+    std::reverse(pool.begin() + 25, pool.end());
+    EXPECT_EQ(ids_of(pool, algorithm->survivors(pool, 25)), before);
+  }
+}
+
+TEST_P(EveryAlgorithm, PoolsWithoutAnySoundRobotAreSurvived) {
+  std::vector<Individual> pool;
+  for (std::uint64_t id = 0; id < 10; ++id) {
+    pool.push_back(individual(id, {worst_score}));
+    pool.back().assessment.values.clear();
+  }
+  pool[3].assessment.scores.clear();  // of an assessor of another kind
+  pool[4].assessment.scores = {std::nan("")};
+  const std::vector<std::size_t> chosen = make(4)->survivors(pool, 5);
+  EXPECT_THAT(chosen.size(), AllOf(Ge(1u), Le(4u)));
+  Random random(1);
+  EXPECT_EQ(make(4)->plan(pool, 6, random).size(), 6u);
+}
+
+TEST_P(EveryAlgorithm, AnEmptyPoolLeavesNobodyAndThenAllIsRandom) {
+  Random random(1);
+  EXPECT_THAT(make(4)->survivors({}, 0), IsEmpty());
+  for (const ChildPlan& plan : make(4)->plan({}, 6, random)) EXPECT_THAT(plan.parents, IsEmpty());
+}
+
+TEST_P(EveryAlgorithm, PlansDependOnTheirArgumentsAlone) {
+  const std::vector<Individual> living = random_pool(30, 1, 1);
+  const auto parents = [&](std::uint64_t seed) {
+    Random random(seed);
+    std::vector<std::vector<std::size_t>> all;
+    for (const ChildPlan& plan : make(30)->plan(living, 40, random)) all.push_back(plan.parents);
+    return all;
+  };
+  EXPECT_EQ(parents(1), parents(1));
+  if (GetParam() != "random") {
+    EXPECT_NE(parents(1), parents(2));
+  }
+}
+
+TEST_P(EveryAlgorithm, TheShareOfCrossoversIsAsSet) {
+  if (GetParam() == "random") GTEST_SKIP() << "makes no children of parents";
+  const std::vector<Individual> living = random_pool(30, 1, 1);
+  AlgorithmSettings settings = settings_of(GetParam(), 30);
+  for (const double share : {0.0, 0.3, 1.0}) {
+    settings.crossover = share;
+    Random random(1);
+    const double children = 10'000;
+    double crossed = 0;
+    for (const ChildPlan& plan : make_algorithm(settings)->plan(living, 10'000, random)) {
+      EXPECT_THAT(plan.parents, testing::Each(testing::Lt(living.size())));
+      EXPECT_LE(plan.parents.size(), 2u);
+      if (plan.parents.size() < 2) continue;
+      ++crossed;
+      EXPECT_NE(plan.parents[0], plan.parents[1]);
+    }
+    // Five standard deviations of the binomial distribution; one child of afpo is random.
+    EXPECT_NEAR(crossed, share * children, 5 * std::sqrt(share * (1 - share) * children) + 1);
+  }
+}
+
+TEST_P(EveryAlgorithm, OneParentIsEnough) {
+  const std::vector<Individual> living = random_pool(1, 1, 1);
+  AlgorithmSettings settings = settings_of(GetParam(), 30);
+  settings.crossover = 1;
+  Random random(1);
+  for (const ChildPlan& plan : make_algorithm(settings)->plan(living, 10, random)) EXPECT_LE(plan.parents.size(), 1u);
+}
+
+TEST(GeneticAlgorithm, KeepsItsEliteAndTheBestChildren) {
+  AlgorithmSettings settings{.name = "ga", .population = 4, .elites = 0.5};
+  const std::vector<Individual> pool{individual(0, {9}), individual(1, {8}), individual(2, {7}), individual(3, {6}),
+                                     individual(4, {1}), individual(5, {3}), individual(6, {2}), individual(7, {0})};
+  EXPECT_THAT(make_algorithm(settings)->survivors(pool, 4), ElementsAre(0, 1, 5, 6));
+  settings.elites = 0;
+  EXPECT_THAT(make_algorithm(settings)->survivors(pool, 4), ElementsAre(5, 6, 4, 7));
+  settings.elites = 1;
+  EXPECT_THAT(make_algorithm(settings)->survivors(pool, 4), ElementsAre(0, 1, 2, 3));
+  settings.elites = 0.5;
+  EXPECT_THAT(make_algorithm(settings)->survivors(std::span(pool).first(5), 4), ElementsAre(0, 1, 2, 4));
+}
+
+// Of n, the best of k drawn with replacement is the one of rank r (from 0) with probability
+// ((n - r)^k - (n - r - 1)^k) / n^k.
+TEST(GeneticAlgorithm, ParentsWinTournamentsAsOftenAsTheorySays) {
+  const std::size_t n = 10;
+  std::vector<Individual> living;
+  for (std::size_t i = 0; i < n; ++i) living.push_back(individual(i, {-static_cast<double>(i)}));
+  for (const int k : {1, 2, 4}) {
+    Random random(1);
+    const double children = 100'000;
+    std::vector<double> counts(n);
+    const auto algorithm = make_algorithm({.name = "ga", .population = n, .tournament = k, .crossover = 0});
+    for (const ChildPlan& plan : algorithm->plan(living, 100'000, random)) ++counts[plan.parents.at(0)];
+    for (std::size_t r = 0; r < n; ++r) {
+      const double size = static_cast<double>(n), rank = static_cast<double>(r);
+      const double p = (std::pow(size - rank, k) - std::pow(size - rank - 1, k)) / std::pow(size, k);
+      EXPECT_NEAR(counts[r], p * children, 5 * std::sqrt(p * (1 - p) * children) + 1) << k << " " << r;
+    }
+  }
+}
+
+// (age, score) by definition: younger is better, and of equal ones the lower id.
+bool afpo_dominates(const Individual& a, const Individual& b) {
+  if (a.line_began == b.line_began && a.score() == b.score()) return a.id < b.id;
+  return a.line_began >= b.line_began && scores_before(a, b);
+}
+
+TEST(AgeFitnessPareto, FrontsOfAgeAndScoreLiveOn) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const std::vector<Individual> pool = random_pool(60, 1, seed);
+    std::vector<const Individual*> left;
+    for (const Individual& one : pool) left.push_back(&one);
+    std::vector<std::uint64_t> expected;
+    const std::size_t population = 25;
+    while (expected.size() < population) {
+      std::vector<const Individual*> front, rest;
+      for (const Individual* one : left) {
+        const bool goes = std::ranges::any_of(left, [&](const auto* other) { return afpo_dominates(*other, *one); });
+        (goes ? rest : front).push_back(one);
+      }
+      std::ranges::sort(front, [](const auto* a, const auto* b) { return scores_before(*a, *b); });
+      for (const Individual* one : front)
+        if (expected.size() < population) expected.push_back(one->id);
+      left = rest;
+    }
+    const auto algorithm = make_algorithm({.name = "afpo", .population = population});
+    EXPECT_THAT(ids_of(pool, algorithm->survivors(pool, 30)), testing::UnorderedElementsAreArray(expected));
+  }
+}
+
+TEST(AgeFitnessPareto, OneChildIsRandomAndLivesOnHoweverBad) {
+  const auto algorithm = make_algorithm({.name = "afpo", .population = 10});
+  std::vector<Individual> pool;
+  for (std::uint64_t id = 0; id < 10; ++id) pool.push_back(individual(id, {100.0 + static_cast<double>(id)}));
+  Random random(1);
+  const std::vector<ChildPlan> plans = algorithm->plan(pool, 10, random);
+  EXPECT_EQ(std::ranges::count_if(plans, [](const ChildPlan& plan) { return plan.parents.empty(); }), 1);
+  for (const ChildPlan& plan : plans)
+    pool.push_back(individual(pool.size(), {plan.parents.empty() ? -5.0 : 50.0}, plan.parents.empty() ? 1 : 0));
+  EXPECT_THAT(ids_of(pool, algorithm->survivors(pool, 10)), testing::Contains(19));
+}
+
+TEST(Nsga2, FrontsThenCrowdingDecide) {
+  // Front 0 is (0, 4), (1, 3), (3, 1), (4, 0); front 1 is (0, 3), (2, 1), (3, 0) and (1, 2). Three of front 1 fit:
+  // both ends, and then the one whose neighbours are further apart. (1, 2): (2 + 2) / 3; (2, 1): (2 + 2) / 3, the same;
+  // the better first score wins.
+  const std::vector<Individual> pool{individual(0, {0, 4}), individual(1, {0, 3}), individual(2, {1, 3}),
+                                     individual(3, {1, 2}), individual(4, {2, 1}), individual(5, {3, 1}),
+                                     individual(6, {3, 0}), individual(7, {4, 0}), individual(8, {-1, -1})};
+  EXPECT_THAT(make_algorithm({.name = "nsga2", .population = 7})->survivors(pool, 4), ElementsAre(7, 0, 5, 2, 6, 1, 4));
+}
+
+// By definition: the rank of a point is the length of the longest chain of points that dominate each other down to it.
+TEST(Nsga2, LowerFrontsGoFirstAndWholeFrontsStay) {
+  const auto beats = [](const Individual& a, const Individual& b) {
+    const auto& x = a.assessment.scores;
+    const auto& y = b.assessment.scores;
+    return x != y && std::ranges::equal(x, y, std::ranges::greater_equal());
+  };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Individual> pool = random_pool(60, 1 + seed % 3, seed);
+    std::vector<int> rank(pool.size(), 0);
+    for (std::size_t pass = 0; pass < pool.size(); ++pass)
+      for (std::size_t a = 0; a < pool.size(); ++a)
+        for (std::size_t b = 0; b < pool.size(); ++b)
+          if (beats(pool[a], pool[b])) rank[b] = std::max(rank[b], rank[a] + 1);
+    const std::vector<std::size_t> chosen = make_algorithm({.name = "nsga2", .population = 30})->survivors(pool, 30);
+    EXPECT_TRUE(std::ranges::is_sorted(chosen, {}, [&](std::size_t i) { return rank[i]; }));
+    const int last = rank[chosen.back()];
+    for (std::size_t i = 0; i < pool.size(); ++i)
+      EXPECT_EQ(std::ranges::count(chosen, i), rank[i] < last ? 1 : rank[i] > last ? 0 : std::ranges::count(chosen, i));
+  }
+}
+
+TEST(Nsga2, EndsOfTheFirstFrontAreParentsMoreOftenThanTheRest) {
+  std::vector<Individual> living;
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    const auto x = static_cast<double>(i);
+    living.push_back(individual(i, {x, 9 - x}));
+    living.push_back(individual(10 + i, {x - 20, -11 - x}));
+  }
+  Random random(1);
+  std::map<std::size_t, int> count;
+  const auto algorithm = make_algorithm({.name = "nsga2", .population = 20, .crossover = 0});
+  for (const ChildPlan& plan : algorithm->plan(living, 40'000, random)) ++count[plan.parents[0]];
+  // A binary tournament over 20: whoever beats all of them wins 39/400 of them, the next one 37/400.
+  EXPECT_NEAR(count[0], 3900, 5 * std::sqrt(3900));
+  EXPECT_NEAR(count[18], 3700, 5 * std::sqrt(3700));
+  // All of the first front together: 3/4.
+  int first_front = 0;
+  for (const auto& [i, n] : count)
+    if (i % 2 == 0) first_front += n;
+  EXPECT_NEAR(first_front, 30'000, 5 * std::sqrt(40'000 * 0.75 * 0.25));
+}
+
+TEST(MapElites, KeepsTheBestOfEachCell) {
+  const AlgorithmSettings settings = settings_of("map-elites", 10);
+  const std::size_t size = find_quantity("size").value(), symmetry = find_quantity("symmetry").value();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Individual> pool = random_pool(80, 1, seed);
+    std::map<std::pair<int, int>, const Individual*> best;
+    for (const Individual& one : pool) {
+      if (one.score() == worst_score) continue;
+      const auto& values = one.assessment.values;
+      const Individual*& elite = best[{static_cast<int>(values[size] * 4), static_cast<int>(values[symmetry] * 5)}];
+      if (!elite || scores_before(one, *elite)) elite = &one;
+    }
+    std::vector<std::uint64_t> expected;
+    for (const auto& [cell, elite] : best) expected.push_back(elite->id);
+    EXPECT_THAT(ids_of(pool, make_algorithm(settings)->survivors(pool, 40)),
+                testing::UnorderedElementsAreArray(expected));
+  }
+}
+
+TEST(MapElites, CellsAreCountedWithTheFirstAxisFastestAndEndAtTheLastOne) {
+  const std::vector<MapAxis> axes{{.quantity = "size", .lowest = -1, .highest = 1, .cells = 4},
+                                  {.quantity = "strain", .lowest = 0, .highest = 2, .cells = 3}};
+  const auto cell = [&](double size, double strain) {
+    std::vector<double> values(quantities().size(), 0);
+    values[find_quantity("size").value()] = size;
+    values[find_quantity("strain").value()] = strain;
+    return map_cell(axes, values);
+  };
+  EXPECT_EQ(cell(-1, 0), 0u);
+  EXPECT_EQ(cell(-0.4, 0), 1u);
+  EXPECT_EQ(cell(0, 0), 2u);
+  EXPECT_EQ(cell(0, 0.7), 6u);
+  EXPECT_EQ(cell(1, 2), 11u);
+  EXPECT_EQ(cell(infinite, 1e300), 11u);
+  EXPECT_EQ(cell(-infinite, -1e300), 0u);
+  EXPECT_EQ(cell(std::nan(""), 2), 8u);
+}
+
+TEST(MapElites, EveryEliteIsAsLikelyAParent) {
+  const std::vector<Individual> living = random_pool(10, 1, 1);
+  AlgorithmSettings settings = settings_of("map-elites", 10);
+  settings.crossover = 0;
+  Random random(1);
+  std::vector<int> count(10);
+  for (const ChildPlan& plan : make_algorithm(settings)->plan(living, 10'000, random)) ++count[plan.parents.at(0)];
+  EXPECT_THAT(count, testing::Each(AllOf(Ge(850), Le(1150))));  // five standard deviations of 30
+}
+
+TEST(RandomSearch, KeepsTheBestAndMakesRandomChildren) {
+  const auto algorithm = make_algorithm({.name = "random", .population = 2});
+  const std::vector<Individual> pool{individual(4, {1}), individual(3, {5}), individual(2, {5}), individual(1, {0})};
+  EXPECT_THAT(algorithm->survivors(pool, 2), ElementsAre(2, 1));
+  Random random(1);
+  for (const ChildPlan& plan : algorithm->plan(pool, 5, random)) EXPECT_THAT(plan.parents, IsEmpty());
+}
+
+TEST(Algorithms, SettingsOutOfRangeAreNamed) {
+  const auto parameter_of = [](AlgorithmSettings settings) -> std::string {
+    try {
+      make_algorithm(settings);
+      return "";
+    } catch (const ParameterError& error) {
+      return error.parameter();
+    }
+  };
+  const MapAxis good{.quantity = "size"};
+  EXPECT_EQ(parameter_of({}), "");
+  EXPECT_EQ(parameter_of({.name = "map-elites", .axes = {good}}), "");
+  EXPECT_EQ(parameter_of({.name = "cma"}), "algorithm");
+  EXPECT_EQ(parameter_of({.population = 0}), "population");
+  EXPECT_EQ(parameter_of({.population = 2'000'000}), "population");
+  EXPECT_EQ(parameter_of({.tournament = 0}), "tournament");
+  EXPECT_EQ(parameter_of({.elites = 1.5}), "elites");
+  EXPECT_EQ(parameter_of({.crossover = -0.1}), "crossover");
+  EXPECT_EQ(parameter_of({.crossover = std::nan("")}), "crossover");
+  EXPECT_EQ(parameter_of({.name = "map-elites"}), "axes");
+  EXPECT_EQ(parameter_of({.axes = {{.quantity = "beauty"}}}), "axes");
+  EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 1, .highest = 1}}}), "axes");
+  EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 0, .highest = infinite}}}), "axes");
+  EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .cells = 0}}}), "axes");
+  EXPECT_EQ(parameter_of({.axes = std::vector<MapAxis>(5, {.quantity = "size", .cells = 2000})}), "axes");
+}
+
+TEST(Algorithms, AnUnknownNameListsAll) {
+  try {
+    make_algorithm({.name = "cma"});
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_THAT(error.problem(), HasSubstr("ga, afpo, nsga2, map-elites, random"));
+  }
+}
+
+TEST(Algorithms, OnlyNsga2TakesSeveralObjectives) {
+  std::vector<std::string_view> several;
+  for (const AlgorithmDescription& algorithm : algorithms())
+    if (algorithm.many_objectives) several.push_back(algorithm.name);
+  EXPECT_THAT(several, UnorderedElementsAre("nsga2"));
+}
+
+}  // namespace
+}  // namespace mercury
