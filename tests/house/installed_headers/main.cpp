@@ -5,7 +5,9 @@
 #include <vector>
 
 #include <mercury/backend.h>
+#include <mercury/objective.h>
 #include <mercury/observables.h>
+#include <mercury/quantity.h>
 #include <mercury/simulation.h>
 #include <mercury/voxel.h>
 
@@ -64,5 +66,8 @@ int main() {
   Simulation drifting(configuration, {&cube, 1}, std::make_unique<Drift>());
   drifting.step(4);
   const float way = drifting.positions(0)[0].x - cube.masses[0].x;
-  return way > 1.99f && way < 2.01f && drifting.telemetry(0).velocity.x == 1 ? 0 : 3;
+  if (!(way > 1.99f && way < 2.01f && drifting.telemetry(0).velocity.x == 1)) return 3;
+
+  const std::vector<double> ones(quantities().size(), 1);
+  return Objective("2 * distance + 1").score(ones) == 3 ? 0 : 4;
 }
