@@ -38,17 +38,22 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
   }
   result.center_of_mass = position.over(masses);
   result.velocity = velocity.over(masses);
-  const float scale = stiffness_scale_of(configuration.environment);
-  std::array<float, max_materials> factor{};
+  std::array<MaterialNow, max_materials> materials;
   for (std::size_t id = 0; id < body.materials.size(); ++id)
-    if (body.measures.used[id]) factor[id] = muscle_factor(body.materials[id], clock);
+    if (body.measures.used[id]) materials[id] = material_at(body.materials[id], configuration.environment, clock);
+  std::uint32_t strained = 0;
   for (const Spring& spring : body.robot->springs) {
+    const MaterialNow& material = materials[spring.material];
     const float distance = length(body.position(spring.b) - body.position(spring.a));
-    const float too_long = stretch(distance, spring.rest_length, factor[spring.material]);
-    result.elastic_energy +=
-        elastic_energy(double{scale * body.materials[spring.material].stiffness}, double{too_long});
-    result.largest_strain = std::max(result.largest_strain, std::abs(strain(distance, spring.rest_length)));
+    const double stiffness{material.stiffness};
+    const double too_long{stretch(distance, spring.rest_length, material.length_factor)};
+    const float relative = strain(distance, spring.rest_length);
+    result.elastic_energy += elastic_energy(stiffness, too_long);
+    result.muscle_power += muscle_power(stiffness, too_long, double{spring.rest_length}, double{material.length_rate});
+    result.largest_strain = std::max(result.largest_strain, std::abs(relative));
+    strained += is_strained(relative) ? 1 : 0;
   }
+  result.strained_share = strained_share(strained, static_cast<std::uint32_t>(body.robot->springs.size()));
   return result;
 }
 

@@ -363,7 +363,9 @@ class CudaBackend final : public Backend {
       to.velocity = from.velocity;
       to.kinetic_energy = from.kinetic_energy;
       to.elastic_energy = from.elastic_energy;
+      to.muscle_power = static_cast<double>(from.muscle_power);
       to.largest_strain = from.largest_strain;
+      to.strained_share = from.strained_share;
       statuses[i] = {from.exploded_step, from.bad_mass};
     }
   }

@@ -2,6 +2,7 @@
 // One robot of a block as one of its threads sees it: its tiles, its masses, and a walk over its springs.
 #pragma once
 
+#include "mercury/observables.h"
 #include "sim/cuda/thread_context.cuh"
 #include "sim/physics/fixed_point.h"
 
@@ -96,9 +97,15 @@ class BlockRobot {
   }
   __device__ static std::uint32_t material_of(const SpringRecord& record) { return record.x & 0xff; }
   __device__ SpringParameters<solver> parameters_of(const SpringRecord& record) const {
-    const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
-    const float2 pair = load_pair(context_.material_table + material_of(record) * bytes_per_material);
+    const float2 pair = table_entry_of(record);
     return {pair.x, pair.y};
+  }
+  // After MaterialTable::write_rates(); `materials` = those of this robot.
+  __device__ MaterialNow material_now_of(const SpringRecord& record, const Material* materials) const {
+    const float2 pair = table_entry_of(record);
+    return {.stiffness = arguments_.stiffness_scale * __ldg(&materials[material_of(record)].stiffness),
+            .length_factor = pair.y,
+            .length_rate = pair.x};
   }
 
   // Visits the springs that this thread's masses own. For each mass it calls
@@ -140,6 +147,11 @@ class BlockRobot {
   }
 
  private:
+  __device__ float2 table_entry_of(const SpringRecord& record) const {
+    const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
+    return load_pair(context_.material_table + material_of(record) * bytes_per_material);
+  }
+
   // Bypasses the L1 cache, which is left to data that is read again.
   __device__ static void load_records(const SpringRecord* from, SpringRecord (&records)[rows_at_once]) {
 #pragma unroll

@@ -27,6 +27,10 @@ class OnChip {
   __device__ static void add(Address at, std::uint32_t offset, int value) {
     asm volatile("red.shared.add.s32 [%0], %1;" ::"r"(at + offset), "r"(value));
   }
+  // Stores the larger of the old and the given value.
+  __device__ static void raise(Address at, std::uint32_t offset, std::uint32_t value) {
+    asm volatile("red.shared.max.u32 [%0], %1;" ::"r"(at + offset), "r"(value));
+  }
 };
 
 // For robots that are too large by this one field: the valences are read from device memory.
@@ -50,6 +54,9 @@ class OffChip {
   }
   __device__ static void add(Address at, std::uint32_t offset, int value) {
     atomicAdd(reinterpret_cast<int*>(at + offset), value);
+  }
+  __device__ static void raise(Address at, std::uint32_t offset, std::uint32_t value) {
+    atomicMax(reinterpret_cast<std::uint32_t*>(at + offset), value);
   }
 };
 

@@ -29,11 +29,11 @@ class MaterialTable {
     for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
       const Material material = materials_[chunk * lanes + lane_];
       const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
-      float coefficient = static_cast<float>(stiffness);
+      float value = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
-        coefficient = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
+        value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       for (std::uint32_t copy = 0; copy < copies_; ++copy)
-        set_coefficient(table_[(chunk * lanes + lane_) * copies_ + copy], coefficient);
+        table_[(chunk * lanes + lane_) * copies_ + copy].*coefficient = value;
     }
     update(arguments, 0);
   }
@@ -44,29 +44,40 @@ class MaterialTable {
       const float amplitude = materials_[chunk * lanes + lane_].amplitude;
       if (step > 0 && !__any_sync(0xffffffffu, amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-      spread(chunk, muscle_factor(amplitude, phase_at(phases_[chunk * lanes + lane_], now)));
+      spread(chunk, &Parameters::length_factor,
+             muscle_factor(amplitude, phase_at(phases_[chunk * lanes + lane_], now)));
+    }
+  }
+
+  // Replaces the coefficients, which are not needed after the launch's last step, by the rates of the length factors at
+  // this many steps after the launch's first [1/s].
+  __device__ void write_rates(const StepArguments& arguments, std::uint32_t step) {
+    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+      const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
+      const std::uint32_t id = chunk * lanes + lane_;
+      spread(chunk, coefficient, muscle_rate(materials_[id], phase_at(phases_[id], now)));
     }
   }
 
  private:
   static constexpr std::uint32_t chunks = max_materials / lanes;
-
-  __device__ static void set_coefficient(Parameters& parameters, float coefficient) {
+  using Parameter = float Parameters::*;
+  static constexpr Parameter coefficient = [] {
     if constexpr (solver == Solver::force)
-      parameters.stiffness = coefficient;
+      return &Parameters::stiffness;
     else
-      parameters.compliance = coefficient;
-  }
+      return &Parameters::compliance;
+  }();
 
-  // Writes each lane's factor to all copies of its material. In a turn the warp writes 32 consecutive entries, which
+  // Writes each lane's value to all copies of its material. In a turn the warp writes 32 consecutive entries, which
   // belong to 32 / copies materials.
-  __device__ void spread(std::uint32_t chunk, float factor) {
+  __device__ void spread(std::uint32_t chunk, Parameter parameter, float value) {
     Parameters* to = table_ + chunk * lanes * copies_ + lane_;
     const std::uint32_t sources_per_turn = lanes >> copy_bits_;
     std::uint32_t source = lane_ >> copy_bits_;
 #pragma unroll 4
     for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_per_turn, to += lanes)
-      to->length_factor = __shfl_sync(0xffffffffu, factor, source);
+      to->*parameter = __shfl_sync(0xffffffffu, value, source);
   }
 
   const std::uint32_t warp_, warps_, lane_, copies_, copy_bits_;

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Telemetry of a robot, computed from the masses in working memory after the last step of a launch.
 //
-//   measure_springs   each lane     energy and largest strain of the springs it owns   -> fields of the masses
+//   begin             each thread   zero, for a word of the staged report
+//   -- barrier --     also behind MaterialTable::write_rates()
+//   measure_springs   each lane     energy and power of the springs it owns            -> fields of the masses
+//                     each warp     their largest strain, the number of strained ones  -> the staged report
 //   -- barrier --
 //   reduce            each warp     some of the quantities, summed over all masses     -> the staged report
 //   -- barrier --
 //   write             each thread   one word of the staged report                      -> host memory
 //
-// 1. The order of every sum depends only on the robot, so telemetry is reproducible too.
-// 2. The sums of fixed point are done with, so their fields hold the results of the first two stages.
+// 1. The order of every sum of floats depends only on the robot, so telemetry is reproducible too. A maximum and a
+//    number of springs are the same in any order.
+// 2. The sums of fixed point are done with, so their fields hold the results of the first stages. The material table
+//    has the rates of the muscles where the steps had the coefficients; stiffnesses are read from device memory.
 // 3. The report lies in mapped host memory. Staging it first lets the threads write it in one transaction.
 #pragma once
 
@@ -24,18 +29,33 @@ namespace mercury::cuda {
 template <class Robot>
 class RobotReporter {
  public:
-  __device__ explicit RobotReporter(const Robot& robot) : robot_(robot) {}
+  // `materials` = the robot's, by id.
+  __device__ RobotReporter(const Robot& robot, const Material* materials) : robot_(robot), materials_(materials) {}
+
+  __device__ void begin() const {
+    if (robot_.thread() < report_words) staged(4 * robot_.thread()).set_value(field_staged, 0);
+  }
 
   __device__ void measure_springs() const {
+    Deformation deformation;
     robot_.walk_springs(
         [](std::uint32_t, const Mass<Memory>& mass, std::uint32_t) {
           return Owner{mass.vector(field_x), 0, 0};
         },
-        [&](auto count, const SpringRecord* records, Owner& owner) { measure<decltype(count)::value>(records, owner); },
+        [&](auto count, const SpringRecord* records, Owner& owner) {
+          measure<decltype(count)::value>(records, owner, deformation);
+        },
         [](const Mass<Memory>& mass, const Owner& owner) {
-          mass.set_value(field_energy, owner.energy);
-          mass.set_value(field_strain, owner.strain);
+          mass.set_value(field_energy, owner.twice_energy);
+          mass.set_value(field_power, owner.power);
         });
+    // Strains are not negative, and such floats have the order of their bits.
+    const std::uint32_t largest = __reduce_max_sync(0xffffffffu, __float_as_uint(deformation.largest_strain));
+    const std::uint32_t strained = __reduce_add_sync(0xffffffffu, deformation.strained);
+    if (robot_.context().lane != 0) return;
+    Memory::raise(staged(offsetof(DeviceTelemetry, largest_strain)).at, field_staged * field_bytes, largest);
+    Memory::add(staged(offsetof(DeviceTelemetry, strained_share)).at, field_staged * field_bytes,
+                static_cast<int>(strained));
   }
 
   __device__ void reduce() const {
@@ -43,78 +63,77 @@ class RobotReporter {
       const DeviceStatus status = robot_.arguments().batch.statuses[robot_.context().robot];
       stage(offsetof(DeviceTelemetry, bad_mass), static_cast<int>(status.bad_mass));
       stage(offsetof(DeviceTelemetry, exploded_step), status.exploded_step);
+      const float strained = staged(offsetof(DeviceTelemetry, strained_share)).value(field_staged);
+      stage(offsetof(DeviceTelemetry, strained_share),
+            __float_as_int(mercury::strained_share(__float_as_uint(strained), robot_.header().springs)));
     }
     const double share = 1.0 / robot_.header().masses;
     for (std::uint32_t quantity = robot_.context().warp; quantity < quantities; quantity += robot_.warps()) {
-      if (quantity == largest_strain)
-        stage(offsetof(DeviceTelemetry, largest_strain), __float_as_int(largest()));
-      else if (quantity == kinetic_energy)
-        stage(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(sum(quantity)));
+      const double total = sum(quantity);
+      if (quantity == kinetic_energy)
+        stage(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(total));
       else if (quantity == elastic_energy)
-        stage(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(energy_unit() * sum(quantity)));
+        stage(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(0.5 * total));
+      else if (quantity == power)
+        stage(offsetof(DeviceTelemetry, muscle_power), __float_as_int(static_cast<float>(total)));
       else  // a component of the center of mass or of the velocity, which is also the number of a field
         stage(offsetof(DeviceTelemetry, center_of_mass) + 4 * quantity,
-              __float_as_int(static_cast<float>(share * sum(quantity))));
+              __float_as_int(static_cast<float>(share * total)));
     }
   }
 
   __device__ void write(DeviceTelemetry& out) const {
-    if (robot_.thread() < sizeof(DeviceTelemetry) / 4)
+    if (robot_.thread() < report_words)
       reinterpret_cast<float*>(&out)[robot_.thread()] = staged(4 * robot_.thread()).value(field_staged);
   }
 
  private:
-  static constexpr Solver solver = Robot::solver;
   using Memory = typename Robot::Memory;
   using SpringRecord = typename Robot::SpringRecord;
 
-  static constexpr std::uint32_t field_energy = field_sum, field_strain = field_sum + 1, field_staged = field_sum + 2;
-  enum Quantity : std::uint32_t { kinetic_energy = 6, elastic_energy = 7, largest_strain = 8, quantities = 9 };
+  static constexpr std::uint32_t report_words = sizeof(DeviceTelemetry) / 4;
+  static constexpr std::uint32_t field_energy = field_sum, field_power = field_sum + 1, field_staged = field_sum + 2;
+  enum Quantity : std::uint32_t { kinetic_energy = 6, elastic_energy = 7, power = 8, quantities = 9 };
 
   // A mass while the springs that it owns are measured.
   struct Owner {
     Vec3 x;
-    float energy;  // in units of energy_unit()
-    float strain;
+    float twice_energy, power;  // [J], [W]
+  };
+  // Of all springs that a thread measures.
+  struct Deformation {
+    float largest_strain = 0;
+    std::uint32_t strained = 0;  // springs
   };
 
   struct LoadedSpring {
     float rest_length;
     Vec3 d;
-    SpringParameters<solver> parameters;
+    MaterialNow material;
   };
 
   template <int count>
-  __device__ void measure(const SpringRecord* records, Owner& owner) const {
+  __device__ void measure(const SpringRecord* records, Owner& owner, Deformation& deformation) const {
     LoadedSpring springs[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       springs[i].rest_length = robot_.scaled_rest_length_of(records[i]) * (1 / robot_.scale());
       springs[i].d = owner.x - robot_.partner_of(records[i]).vector(field_x);
-      springs[i].parameters = robot_.parameters_of(records[i]);
+      springs[i].material = robot_.material_now_of(records[i], materials_);
     }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      const LoadedSpring& spring = springs[i];
-      const float squared = squared_length(spring.d);
+      const auto& [rest_length, d, material] = springs[i];
+      const float squared = squared_length(d);
       const float distance = squared * inverse_sqrt(squared);
-      const float too_long = stretch(distance, spring.rest_length, spring.parameters.length_factor);
-      owner.energy = multiply_add(spring_force(stiffness_of(spring.parameters), too_long), too_long, owner.energy);
-      if (robot_.material_of(records[i]) != air)
-        owner.strain = fmaxf(owner.strain, fabsf(strain(distance, spring.rest_length)));
+      const float too_long = stretch(distance, rest_length, material.length_factor);
+      owner.twice_energy = multiply_add(spring_force(material.stiffness, too_long), too_long, owner.twice_energy);
+      owner.power += muscle_power(material.stiffness, too_long, rest_length, material.length_rate);
+      if (robot_.material_of(records[i]) == air) continue;  // padding
+      const float relative = strain(distance, rest_length);
+      deformation.largest_strain = fmaxf(deformation.largest_strain, fabsf(relative));
+      deformation.strained += is_strained(relative) ? 1 : 0;
     }
-  }
-
-  // In units that make the energy of a spring stiffness * stretch^2 * energy_unit().
-  __device__ static float stiffness_of(const SpringParameters<solver>& parameters) {
-    if constexpr (solver == Solver::force)
-      return parameters.stiffness;
-    else
-      return inverse(parameters.compliance);
-  }
-  __device__ double energy_unit() const {
-    const double dt = robot_.arguments().clock.dt;
-    return solver == Solver::force ? 0.5 : 0.5 / (dt * dt);
   }
 
   // Over all masses. Each lane has eight loads under way at once.
@@ -137,16 +156,10 @@ class RobotReporter {
     return sum;
   }
   __device__ static float value_of(const Mass<Memory>& mass, std::uint32_t quantity) {
-    if (quantity != kinetic_energy) return mass.value(quantity == elastic_energy ? field_energy : quantity);
+    if (quantity != kinetic_energy)
+      return mass.value(quantity == elastic_energy ? field_energy : quantity == power ? field_power : quantity);
     const Vec3 v = mass.vector(field_v);
     return 0.5f * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
-  }
-  __device__ float largest() const {
-    float strain = 0;
-#pragma unroll 8
-    for (std::uint32_t tile = 0; tile < robot_.header().tiles; ++tile)
-      strain = fmaxf(strain, robot_.own_mass(tile).value(field_strain));
-    return __uint_as_float(__reduce_max_sync(0xffffffffu, __float_as_uint(strain)));
   }
 
   // The word of the staged report at this offset [bytes]: word i lies in field_staged of slot i.
@@ -160,12 +173,16 @@ class RobotReporter {
   }
 
   const Robot& robot_;
+  const Material* const materials_;
 };
 
-// All threads of the block must call this, since it has barriers. `out` = null: writes nothing.
+// Needs a barrier before it. All threads of the block must call this, since it has barriers. `out` = null: writes
+// nothing.
 template <class Robot>
-__device__ void report(const Robot& robot, DeviceTelemetry* out) {
-  const RobotReporter<Robot> reporter(robot);
+__device__ void report(const Robot& robot, const Material* materials, DeviceTelemetry* out) {
+  const RobotReporter<Robot> reporter(robot, materials);
+  reporter.begin();
+  __syncthreads();
   reporter.measure_springs();
   __syncthreads();
   reporter.reduce();

@@ -55,7 +55,12 @@ __global__ void __maxnreg__(72)
       __syncthreads();
   }
   if (active) stepper.store_status();
-  if (arguments.report) report(stepper.robot(), context.has_robot ? arguments.report + thread.robot : nullptr);
+  if (arguments.report) {
+    materials.write_rates(arguments, arguments.steps);
+    const std::uint32_t table = shared ? 0 : thread.robot;
+    report(stepper.robot(), arguments.batch.materials + std::size_t{table} * max_materials,
+           context.has_robot ? arguments.report + thread.robot : nullptr);
+  }
   if (active) stepper.store_state();
 }
 

@@ -15,6 +15,9 @@ struct alignas(64) DeviceTelemetry {
   std::uint32_t bad_mass;
   double kinetic_energy, elastic_energy;  // [J]
   long long exploded_step;
+  float muscle_power;  // [W]
+  float strained_share;
 };
+static_assert(sizeof(DeviceTelemetry) == 64);
 
 }  // namespace mercury::cuda

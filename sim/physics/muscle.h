@@ -86,6 +86,10 @@ MERCURY_HOST_DEVICE float muscle_factor(float amplitude, std::uint64_t phase) {
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, const Clock& clock) {
   return muscle_factor(material.amplitude, phase_at(muscle_phase(material, clock), clock.step - clock.base_step));
 }
+// Its rate [1/s]: L(t) / L0 = 1 + dL0 sin(theta) with theta = omega t + phi, so d(L / L0) / dt = dL0 omega cos(theta).
+MERCURY_HOST_DEVICE float muscle_rate(const Material& material, std::uint64_t phase) {
+  return material.amplitude * material.frequency * cosine_of_phase(phase);
+}
 // At t = step dt.
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, double dt, std::int64_t step) {
   return muscle_factor(material, Clock{.dt = dt, .base_time = 0, .base_step = 0, .step = step});

@@ -10,17 +10,18 @@
 
 namespace mercury {
 
+MaterialNow material_at(const Material& material, const Environment& environment, const Clock& clock) {
+  const std::uint64_t phase = phase_at(muscle_phase(material, clock), clock.step - clock.base_step);
+  return {.stiffness = stiffness_scale_of(environment) * material.stiffness,
+          .length_factor = muscle_factor(material.amplitude, phase),
+          .length_rate = muscle_rate(material, phase)};
+}
+
 std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment,
                                       const Clock& clock) {
-  const float scale = stiffness_scale_of(environment);
   std::vector<MaterialNow> now;
   now.reserve(table.size());
-  for (const Material& material : table) {
-    const std::uint64_t phase = phase_at(muscle_phase(material, clock), clock.step - clock.base_step);
-    now.push_back({.stiffness = scale * material.stiffness,
-                   .length_factor = muscle_factor(material.amplitude, phase),
-                   .length_rate = material.amplitude * material.frequency * cosine_of_phase(phase)});
-  }
+  for (const Material& material : table) now.push_back(material_at(material, environment, clock));
   return now;
 }
 

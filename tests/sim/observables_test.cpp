@@ -160,15 +160,17 @@ TEST_P(ObservablesOf, ABatchAddUpToItsTelemetry) {
   simulation.step(100);
   const auto materials = materials_at(materials_of(robot), configuration().environment, simulation.clock());
   const std::vector<Vec3> positions = simulation.positions(0);
-  double energy = 0;
+  double energy = 0, power = 0;
   float largest = 0;
   for (const Spring& spring : robot.springs) {
     const MaterialNow& material = materials[spring.material];
     energy += elastic_energy(double{material.stiffness}, double{stretch(spring, material, positions)});
+    power += double{muscle_power(spring, material, stretch(spring, material, positions))};
     largest = std::max(largest, std::abs(strain(spring_length(spring, positions), spring.rest_length)));
   }
   const Telemetry telemetry = simulation.telemetry(0);
   EXPECT_NEAR(telemetry.elastic_energy, energy, 1e-4 * energy);
+  EXPECT_NEAR(telemetry.muscle_power, power, 1e-4 * std::abs(power));
   EXPECT_NEAR(telemetry.largest_strain, largest, 1e-5);
 }
 

@@ -188,13 +188,30 @@ double Reference::elastic_energy() const {
   return sum;
 }
 
+double Reference::muscle_power() const {
+  double sum = 0;
+  for (const Spring& spring : robot_.springs) {
+    const Material& material = materials_of(robot_)[spring.material];
+    const double rest = spring.rest_length, amplitude = material.amplitude, omega = material.frequency;
+    const double rate = rest * amplitude * omega * std::cos(omega * time() + double{material.phase});
+    sum -= stiffness(spring) * ((x_[spring.b] - x_[spring.a]).norm() - length_now(spring)) * rate;
+  }
+  return sum;
+}
+
+double Reference::strain(const Spring& spring) const {
+  const double rest = spring.rest_length;
+  return std::abs((x_[spring.b] - x_[spring.a]).norm() - rest) / rest;
+}
+
 double Reference::largest_strain() const {
   double largest = 0;
-  for (const Spring& spring : robot_.springs) {
-    const double rest = spring.rest_length;
-    largest = std::max(largest, std::abs((x_[spring.b] - x_[spring.a]).norm() - rest) / rest);
-  }
+  for (const Spring& spring : robot_.springs) largest = std::max(largest, strain(spring));
   return largest;
+}
+
+std::int64_t Reference::springs_beyond(double limit) const {
+  return std::ranges::count_if(robot_.springs, [&](const Spring& spring) { return strain(spring) > limit; });
 }
 
 double largest_deviation(const Field& expected, const std::vector<Vec3>& actual) {

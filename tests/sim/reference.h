@@ -42,7 +42,9 @@ class Reference {
   Vector center_velocity() const;
   double kinetic_energy() const;
   double elastic_energy() const;  // at the springs' present rest lengths
-  double largest_strain() const;  // against L0
+  double muscle_power() const;
+  double largest_strain() const;                     // against L0
+  std::int64_t springs_beyond(double strain) const;  // stretched or pressed together by more
 
  private:
   Field environment_forces() const;
@@ -51,6 +53,7 @@ class Reference {
   void resolve_contact(Field& next) const;
   double stiffness(const Spring& spring) const;
   double length_now(const Spring& spring) const;
+  double strain(const Spring& spring) const;
   void add_surface_drag(const Ocean& ocean, Field& force) const;
   void add_repulsion(const Land& land, Field& force) const;
 

@@ -8,13 +8,26 @@
 
 #include "backend.h"
 #include "bodies.h"
+#include "mercury/observables.h"
 #include "reference.h"
+#include "same_telemetry.h"
 
 namespace mercury {
 namespace {
 
 class TelemetryOf : public EveryPair {};
 INSTANTIATE_TEST_SUITE_P(All, TelemetryOf, every_pair, EveryPair::name);
+
+// The power of the muscles changes by at most this if every spring is longer by `length` [W].
+double power_of(double length, const Configuration& configuration, const Robot& robot) {
+  double sum = 0;
+  for (const Spring& spring : robot.springs) {
+    const MaterialNow now = material_at(materials_of(robot)[spring.material], configuration.environment, {});
+    const Material& material = materials_of(robot)[spring.material];
+    sum += double{now.stiffness * spring.rest_length * material.amplitude * material.frequency};
+  }
+  return length * sum;
+}
 
 TEST_P(TelemetryOf, AMovingRobotAgreesWithAnIndependentCalculation) {
   const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 2}, 2),
@@ -37,6 +50,8 @@ TEST_P(TelemetryOf, AMovingRobotAgreesWithAnIndependentCalculation) {
       EXPECT_LT((reference::vector_of(telemetry.velocity) - expected.center_velocity()).norm(), 1e-6) << i;
       EXPECT_NEAR(telemetry.kinetic_energy, expected.kinetic_energy(), 1e-5 * expected.kinetic_energy() + 1e-12) << i;
       EXPECT_NEAR(telemetry.elastic_energy, expected.elastic_energy(), 1e-3 * expected.elastic_energy() + 1e-12) << i;
+      // The positions are rounded to 1e-7 m.
+      EXPECT_NEAR(telemetry.muscle_power, expected.muscle_power(), power_of(1e-6, configuration(), robots[i])) << i;
       EXPECT_NEAR(telemetry.largest_strain, expected.largest_strain(), 1e-5) << i;
       EXPECT_FALSE(telemetry.exploded);
       EXPECT_EQ(telemetry.culprit_spring, no_spring);
@@ -44,6 +59,32 @@ TEST_P(TelemetryOf, AMovingRobotAgreesWithAnIndependentCalculation) {
       EXPECT_EQ(one.kinetic_energy, telemetry.kinetic_energy);
       EXPECT_EQ(one.center_of_mass, telemetry.center_of_mass);
     }
+  }
+}
+
+TEST_P(TelemetryOf, SpringsOfMoreThanHalfStrainAreCounted) {
+  const std::vector<Robot> robots = {bodies::random_voxels({.x = 6, .y = 4, .z = 4}, 1), bodies::point(),
+                                     bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 2)};
+  Simulation simulation(configuration(), robots);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const State start = bodies::shaken(robots[i], 0.05f, 0.2f, 3);
+    simulation.set_state(i, start.positions, start.velocities);
+  }
+  for (int look = 0; look < 2; ++look) {
+    const std::vector<Telemetry> telemetry = simulation.telemetry();
+    EXPECT_GT(telemetry[0].strained_share, 0.01f);
+    EXPECT_EQ(telemetry[1].strained_share, 0);
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      reference::Reference expected(configuration(), robots[i]);
+      expected.set_state(simulation.state(i));
+      const double springs = static_cast<double>(robots[i].springs.size());
+      const double share = double{telemetry[i].strained_share};
+      // Rounding decides about springs at the limit.
+      EXPECT_LE(share * springs, static_cast<double>(expected.springs_beyond(0.5 - 1e-5)) + 1e-3) << i;
+      EXPECT_GE(share * springs, static_cast<double>(expected.springs_beyond(0.5 + 1e-5)) - 1e-3) << i;
+      EXPECT_LT(share, 0.9) << i;
+    }
+    simulation.step(1);
   }
 }
 
@@ -88,11 +129,7 @@ TEST_P(TelemetryOf, ARobotIsTheSameBitForBitInAnyBatch) {
   const std::vector<Robot> several = {robot, bodies::random_voxels({.x = 9, .y = 8, .z = 7}, 2),
                                       bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
   for (const Telemetry& other : {report({robot}, 3), report(several, 1), report(several, 4)}) {
-    EXPECT_EQ(other.center_of_mass, once.center_of_mass);
-    EXPECT_EQ(other.velocity, once.velocity);
-    EXPECT_EQ(other.kinetic_energy, once.kinetic_energy);
-    EXPECT_EQ(other.elastic_energy, once.elastic_energy);
-    EXPECT_EQ(other.largest_strain, once.largest_strain);
+    expect_equal(other, once);
   }
 }
 

@@ -28,7 +28,9 @@ struct MaterialNow {
   float length_factor = 1;  // L / L0 [1]
   float length_rate = 0;    // d(L / L0) / dt [1/s]
 };
-// By id, one per material of the table. The phase is exact on runs of any length (sim/physics/muscle.h).
+// The phase is exact on runs of any length (sim/physics/muscle.h).
+MaterialNow material_at(const Material& material, const Environment& environment, const Clock& clock);
+// By id, one per material of the table.
 std::vector<MaterialNow> materials_at(std::span<const Material> table, const Environment& environment,
                                       const Clock& clock);
 // The same at a time in s since the start.
@@ -45,6 +47,15 @@ inline float spring_length(const Spring& spring, std::span<const Vec3> positions
 // (|d| - L0) / L0 [1]
 MERCURY_HOST_DEVICE float strain(float length, float rest_length) {
   return (length - rest_length) * inverse(rest_length);
+}
+
+// A spring counts as strained if it is stretched or pressed together by more than this [1].
+inline constexpr float strained_limit = 0.5f;
+MERCURY_HOST_DEVICE bool is_strained(float strain) { return absolute(strain) > strained_limit; }
+
+// The share of springs that are strained [1]; 0 for a robot without springs.
+MERCURY_HOST_DEVICE float strained_share(std::uint32_t strained, std::uint32_t springs) {
+  return springs > 0 ? static_cast<float>(strained) / static_cast<float>(springs) : 0.0f;
 }
 
 // |d| - L, with L = L0 length_factor [m]
@@ -67,11 +78,20 @@ MERCURY_HOST_DEVICE Real elastic_energy(Real stiffness, Real stretch) {
   return Real(0.5) * spring_force(stiffness, stretch) * stretch;
 }
 
-// Power that the muscle of a spring delivers [W]: the rate at which the change of L alone changes the elastic energy,
-//     dE/dL dL/dt = -k (|d| - L) dL/dt.
+// Power that the muscle of a spring delivers [W]. The energy of a spring changes because its ends move and because its
+// muscle changes L:
+//     E     = k (|d| - L)^2 / 2
+//     dE/dt = k (|d| - L) d|d|/dt - k (|d| - L) dL/dt
+// The first term is minus the power of the spring's force on the two masses. The second term comes from the muscle:
+//     P     = -k (|d| - L) dL/dt = -k (|d| - L) L0 d(L / L0)/dt
+// So over all springs, P = d/dt (kinetic + elastic energy) + the power that damping, drag and the floor take.
 // Positive: the muscle does work on the body. Negative: the body does work on the muscle. 0 for passive materials.
+template <class Real>
+MERCURY_HOST_DEVICE Real muscle_power(Real stiffness, Real stretch, Real rest_length, Real length_rate) {
+  return -spring_force(stiffness, stretch) * rest_length * length_rate;
+}
 inline float muscle_power(const Spring& spring, const MaterialNow& material, float stretch) {
-  return -spring_force(material.stiffness, stretch) * spring.rest_length * material.length_rate;
+  return muscle_power(material.stiffness, stretch, spring.rest_length, material.length_rate);
 }
 
 // The forces of all springs on each mass [N], one per mass. `materials` by id.

@@ -16,7 +16,9 @@ struct Telemetry {
   Vec3 velocity;                             // of the center of mass [m/s]
   double kinetic_energy = 0;                 // sum of |v|^2 / 2 [J]
   double elastic_energy = 0;                 // sum of k (|d| - L)^2 / 2, L the present rest lengths [J]
+  double muscle_power = 0;                   // that the muscles deliver now: sum of -k (|d| - L) dL/dt [W]
   float largest_strain = 0;                  // max | |d| - L0 | / L0 over the springs [1]
+  float strained_share = 0;                  // of the springs: those of a strain above strained_limit [1]
   bool exploded = false;                     // the robot is frozen, see State
   double exploded_at = 0;                    // when the step began that failed [s], if exploded
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs, if exploded and a spring is known as the cause
