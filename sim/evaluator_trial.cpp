@@ -15,8 +15,6 @@ namespace {
 constexpr double cpu_call = 0.1, cuda_call = 0.3;
 constexpr std::size_t most_samples = 1u << 19;  // of all robots in a call
 
-double distance(Vec3 a, Vec3 b) { return length(a - b); }
-
 }  // namespace
 
 void load(Simulation& simulation, Portion& portion) {
@@ -48,10 +46,8 @@ Trial::Trial(Simulation& simulation, const EvaluationRequest& request, const Tri
 bool Trial::run() {
   if (simulation_.size() == 0) return true;
   if (!advance(request_.settling, 0)) return false;
-  start_ = last_ = simulation_.telemetry();
-  path_.assign(start_.size(), 0);
-  strain_.assign(start_.size(), 0);
-  observe(start_);
+  measures_.reserve(simulation_.size());
+  for (const Telemetry& start : simulation_.telemetry()) measures_.emplace_back(start);
   const std::int64_t settled = simulation_.steps();
   const std::int64_t every = request_.sample_every > 0 ? request_.sample_every : request_.steps;
   if (!advance(request_.steps, every)) return false;
@@ -76,10 +72,10 @@ bool Trial::advance(std::int64_t steps, std::int64_t sample_every) {
     step(std::min(count, next - done));
     done = simulation_.steps() - first;
     if (!observes || done < next) continue;
-    observe(simulation_.telemetry());
+    observe(simulation_.telemetry(), done - observed);
     observed = done;
   }
-  if (observes && observed < done) observe(simulation_.telemetry());
+  if (observes && observed < done) observe(simulation_.telemetry(), done - observed);
   return !context_.cancelled();
 }
 
@@ -90,7 +86,7 @@ void Trial::step(std::int64_t steps) {
 void Trial::step_and_observe(std::int64_t steps, std::int64_t sample_every) {
   std::vector<Telemetry> samples;
   timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every); });
-  observe(samples);
+  observe(samples, sample_every);
 }
 
 template <class Call>
@@ -115,14 +111,11 @@ std::int64_t Trial::steps_per_call() const {
   return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, most));
 }
 
-void Trial::observe(std::span<const Telemetry> samples) {
-  const std::size_t robots = last_.size();
+void Trial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
+  const double seconds = simulation_.configuration().dt * static_cast<double>(steps);
+  const std::size_t robots = measures_.size();
   oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
-    for (std::size_t at = i; at < samples.size(); at += robots) {
-      path_[i] += distance(samples[at].center_of_mass, last_[i].center_of_mass);
-      strain_[i] = std::max(strain_[i], static_cast<double>(samples[at].largest_strain));
-      last_[i] = samples[at];
-    }
+    for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds);
   });
 }
 
@@ -139,10 +132,7 @@ std::vector<Evaluation> Trial::results(const Portion& portion) const {
     result.failure = candidate.failure;
     if (!candidate.failure.empty()) continue;
     result.steps = steps_;
-    result.start = start_[i];
-    result.end = last_[i];
-    result.path = path_[i];
-    result.largest_strain = strain_[i];
+    measures_[i].write(result);
     if (request_.hashes) result.hash = hashes[i];
     if (request_.states) result.state = simulation_.state(i);
     ++i;

@@ -11,6 +11,7 @@
 #include "mercury/evaluator.h"
 #include "mercury/simulation.h"
 #include "sim/evaluator_clock.h"
+#include "sim/evaluator_measures.h"
 #include "sim/evaluator_portion.h"
 
 namespace mercury {
@@ -50,7 +51,8 @@ class Trial {
   void step_and_observe(std::int64_t steps, std::int64_t sample_every);
   template <class Call>
   void timed(std::int64_t steps, Call call);
-  void observe(std::span<const Telemetry> samples);  // [sample][robot]
+  // [sample][robot], `steps` steps apart; the first comes as many after the last sample before.
+  void observe(std::span<const Telemetry> samples, std::int64_t steps);
   std::int64_t steps_per_call() const;
 
   Simulation& simulation_;
@@ -58,8 +60,7 @@ class Trial {
   const TrialContext& context_;
   StepPace& pace_;
   double size_ = 1;  // springs and masses of all robots
-  std::vector<Telemetry> start_, last_;
-  std::vector<double> path_, strain_;
+  std::vector<TrialMeasures> measures_;
   std::int64_t steps_ = 0;  // since the start of the trial
 };
 

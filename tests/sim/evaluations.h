@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bodies.h"
@@ -55,7 +56,10 @@ inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Eva
     expect_equal(a[i].start, b[i].start);
     expect_equal(a[i].end, b[i].end);
     EXPECT_EQ(a[i].path, b[i].path);
+    EXPECT_EQ(a[i].work, b[i].work);
+    EXPECT_EQ(a[i].highest, b[i].highest);
     EXPECT_EQ(a[i].largest_strain, b[i].largest_strain);
+    EXPECT_EQ(a[i].strained_share, b[i].strained_share);
     EXPECT_EQ(a[i].hash, b[i].hash);
     EXPECT_EQ(a[i].state.positions, b[i].state.positions);
     EXPECT_EQ(a[i].state.velocities, b[i].state.velocities);
@@ -74,14 +78,21 @@ inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const
                    .robot = robots[i],
                    .steps = request.steps,
                    .start = start[i],
-                   .largest_strain = start[i].largest_strain};
+                   .highest = start[i].center_of_mass.z,
+                   .largest_strain = start[i].largest_strain,
+                   .strained_share = start[i].strained_share};
+  std::int64_t sampled = 0;
   for (std::int64_t step = 1; step <= request.steps; ++step) {
     simulation.step();
     if (step < request.steps && (request.sample_every == 0 || step % request.sample_every != 0)) continue;
     const std::vector<Telemetry> now = simulation.telemetry();
+    const double seconds = request.configuration.dt * static_cast<double>(step - std::exchange(sampled, step));
     for (std::size_t i = 0; i < robots.size(); ++i) {
       expected[i].path += static_cast<double>(length(now[i].center_of_mass - last[i].center_of_mass));
+      if (!now[i].exploded) expected[i].work += seconds * 0.5 * (last[i].muscle_power + now[i].muscle_power);
+      expected[i].highest = std::max(expected[i].highest, static_cast<double>(now[i].center_of_mass.z));
       expected[i].largest_strain = std::max(expected[i].largest_strain, static_cast<double>(now[i].largest_strain));
+      expected[i].strained_share = std::max(expected[i].strained_share, static_cast<double>(now[i].strained_share));
     }
     last = now;
   }

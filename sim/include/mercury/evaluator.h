@@ -40,12 +40,14 @@ using RobotSource = std::function<std::shared_ptr<const Robot>(std::size_t index
 RobotSource source_of(std::vector<std::shared_ptr<const Robot>> robots);
 
 struct EvaluationRequest {
-  Configuration configuration;    // the device may be cuda:all: each portion goes to one device
-  std::int64_t settling = 0;      // steps before the start of the trial, at least 0
-  std::int64_t steps = 0;         // of the trial, at least 0
-  std::int64_t sample_every = 0;  // steps between two samples of the telemetry; 0 = only at start and end
-  bool hashes = false;            // of the final states
-  bool states = false;            // the final states themselves
+  Configuration configuration;  // the device may be cuda:all: each portion goes to one device
+  std::int64_t settling = 0;    // steps before the start of the trial, at least 0
+  std::int64_t steps = 0;       // of the trial, at least 0
+  // Steps between two samples of the telemetry; 0 = only at start and end. `path`, `work`, `highest` and the strains of
+  // an Evaluation are as good as the samples are dense.
+  std::int64_t sample_every = 0;
+  bool hashes = false;  // of the final states
+  bool states = false;  // the final states themselves
 
   // About how much host memory the robots may take that are made and not yet yielded, with what it takes to step them
   // [bytes]. 0 = a quarter of what is available. One robot at a time is always accepted.
@@ -64,7 +66,10 @@ struct Evaluation {
   std::int64_t steps = 0;              // of the trial that it made; fewer than requested only after stop()
   Telemetry start, end;                // at the start of the trial, after settling, and at its end
   double path = 0;                     // length of the path of the center of mass from sample to sample [m]
+  double work = 0;                     // that the muscles did, up to an explosion: trapezoid rule over the samples [J]
+  double highest = 0;                  // largest z of the center of mass of all samples [m]
   double largest_strain = 0;           // of all samples [1]
+  double strained_share = 0;           // largest Telemetry::strained_share of all samples [1]
   std::uint64_t hash = 0;              // Simulation::hash() of the final state, if requested
   State state;                         // the final state, if requested
 };
