@@ -16,6 +16,7 @@ namespace mercury {
 Generator voxel_generator();
 Generator nn_generator();
 Generator shell_generator();
+Generator cppn_generator();
 
 namespace {
 
@@ -50,7 +51,7 @@ Generator with_records(Generator generator) {
 
 const std::vector<Generator>& generators() {
   static const std::vector<Generator> all = [] {
-    std::vector<Generator> made{voxel_generator(), nn_generator(), shell_generator()};
+    std::vector<Generator> made{voxel_generator(), nn_generator(), shell_generator(), cppn_generator()};
     for (Generator& generator : made) generator = with_records(std::move(generator));
     return made;
   }();

@@ -15,28 +15,6 @@ double fraction(int i) { return static_cast<double>(i) / samples; }
 
 }  // namespace
 
-// Reduces the angle to an eighth of a turn, then sums the Taylor series.
-SineCosine wave(double turns) {
-  const double quarters = std::round(4 * turns);
-  const double x = 2 * std::numbers::pi * (turns - quarters / 4), square = x * x;
-  double sine = 1, cosine = 1;
-  for (int k = 16; k > 0; k -= 2) {
-    sine = 1 - square / (k * (k + 1)) * sine;
-    cosine = 1 - square / (k * (k - 1)) * cosine;
-  }
-  sine *= x;
-  switch (static_cast<int>(quarters - 4 * std::floor(quarters / 4))) {
-    case 0:
-      return {sine, cosine};
-    case 1:
-      return {cosine, -sine};
-    case 2:
-      return {-sine, -cosine};
-    default:
-      return {-cosine, sine};
-  }
-}
-
 RevolvedMesh::RevolvedMesh(const RevolvedSurface& surface, double spacing)
     : lobes_(static_cast<std::size_t>(surface.lobes)) {
   measure(surface);

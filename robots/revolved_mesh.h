@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes of surfaces around the z axis, and the mathematics that they need, alike on every machine.
+// Triangle meshes of surfaces around the z axis, alike on every machine.
 //
 // Rings of vertices lie at equal distances along the profile, neighbours half a step apart. Each ring has as many
 // vertices as its circumference needs, a multiple of the lobes; so triangles are nearly equilateral everywhere, and all
@@ -17,13 +17,6 @@
 #include <vector>
 
 namespace mercury {
-
-// Sine and cosine of an angle in turns, from the four operations alone. These are rounded alike on every machine;
-// std::sin is not.
-struct SineCosine {
-  double sine, cosine;
-};
-SineCosine wave(double turns);
 
 struct Point {
   double x = 0, y = 0, z = 0;

@@ -13,6 +13,7 @@
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "robots/parameter_table.h"
+#include "robots/portable_math.h"
 #include "robots/revolved_mesh.h"
 #include "robots/shell_evolution.h"
 

@@ -12,7 +12,7 @@
 #include "mercury/error.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"
-#include "robots/revolved_mesh.h"
+#include "robots/portable_math.h"
 
 namespace mercury {
 namespace {
