@@ -7,7 +7,9 @@
 
 #include "mercury/cppn.h"
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/random.h"
+#include "robots/cppn_evolution.h"
 #include "robots/cppn_graph.h"
 
 namespace mercury {
@@ -20,6 +22,10 @@ VoxelGrid body_of(const CppnGenome& genome) { return largest_body(paint(genome))
 
 bool is_empty(const VoxelGrid& body) {
   return std::ranges::all_of(body.cells, [](MaterialId cell) { return cell == air; });
+}
+
+void require_strength(double strength) {
+  if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("strength", "give a number of at least 0");
 }
 
 // The first of make(0), make(1), ... that has a body, and one unlike those of its parents.
@@ -142,25 +148,65 @@ class Inheritance {
 
 }  // namespace
 
+CppnGenome cppn_genome_in(const Robot& robot) {
+  std::optional<CppnGenome> genome = cppn_genome_of(robot);
+  if (!genome) throw InputError("/origin", "holds no painting network");
+  return *std::move(genome);
+}
+
 CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed) {
-  if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("strength", "give a number of at least 0");
+  require_strength(strength);
   const VoxelGrid body = body_of(genome);
   if (strength == 0) return genome;
   return first_of_its_own(genome, {body}, [&](std::uint64_t attempt) {
     Random random(seed_of(seed, attempt));
     CppnGenome child = genome;
-    Mutation(child.network, strength, random).run();
+    const double stronger = std::ldexp(std::min(strength, 1e6), static_cast<int>(attempt / 5));
+    Mutation(child.network, stronger, random).run();
     return child;
   });
 }
 
+CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed) {
+  require_strength(strength);
+  validate(genome);
+  if (strength == 0) return genome;
+  Random random(seed);
+  CppnGenome child = genome;
+  const auto move = [&](float& value, double size, float highest) {
+    const double moved = value + std::min(strength, 1e6) * size * random.normal();
+    value = static_cast<float>(std::clamp(std::abs(moved), 0., static_cast<double>(highest)));
+  };
+  const std::uint64_t choice = random.below(3);
+  if (choice != 0) move(child.frequency, 0.5, max_muscle_frequency);
+  if (choice != 1) move(child.amplitude, 0.02, max_muscle_amplitude);
+  if (child == genome) child.amplitude = std::nextafter(child.amplitude, max_muscle_amplitude / 2);
+  return child;
+}
+
 CppnGenome crossover(const CppnGenome& a, const CppnGenome& b, std::uint64_t seed) {
-  return first_of_its_own(a, {body_of(a), body_of(b)}, [&](std::uint64_t attempt) {
-    Random random(seed_of(seed, attempt));
-    CppnGenome child = a;
-    child.network = Inheritance(a.network, b.network, random).child();
+  Random random(seed);
+  CppnGenome of_a = a;
+  if (random.chance(0.5)) of_a.frequency = b.frequency;
+  if (random.chance(0.5)) of_a.amplitude = b.amplitude;
+  const std::vector<VoxelGrid> bodies{body_of(a), body_of(b)};
+  if (a.network == b.network) return of_a;
+  return first_of_its_own(of_a, bodies, [&](std::uint64_t attempt) {
+    Random drawn(seed_of(seed, attempt));
+    CppnGenome child = of_a;
+    child.network = Inheritance(a.network, b.network, drawn).child();
     return child;
   });
+}
+
+Robot mutate_cppn_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
+  validate(request);
+  const CppnGenome child = mutate(cppn_genome_in(parent), request.strength, request.seed);
+  return grow(mutate_muscles(child, request.muscles, seed_of(request.seed, 0)), name);
+}
+
+Robot cross_cppn_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+  return grow(crossover(cppn_genome_in(a), cppn_genome_in(b), seed), name);
 }
 
 }  // namespace mercury

@@ -2,6 +2,7 @@
 // Painted voxel robots as an entry of the registry.
 #include "mercury/cppn.h"
 #include "mercury/error.h"
+#include "robots/cppn_evolution.h"
 #include "robots/parameter_table.h"
 
 namespace mercury {
@@ -30,20 +31,14 @@ const ParameterTable<CppnOptions>& table() {
                                    .words = {"none", "x", "y", "z"}}),
       parameter(&Options::hidden,
                 {.name = "nodes", .help = "Hidden nodes that a network begins with", .highest = 60, .advanced = true}),
-      parameter(&Options::frequencies, {.name = "tones",
+      parameter(&Options::frequencies, {.name = "muscle_frequencies",
                                         .help = "Muscle frequencies in one robot",
                                         .lowest = 1,
                                         .highest = voxel_frequencies,
                                         .advanced = true}),
       parameter(&Options::frequency,
-                {.name = "tempo", .help = "Highest muscle frequency", .unit = "rad/s", .highest = 20})};
+                {.name = "muscle_frequency", .help = "Highest muscle frequency", .unit = "rad/s", .highest = 20})};
   return rows;
-}
-
-CppnGenome genome_in(const Robot& robot) {
-  std::optional<CppnGenome> genome = cppn_genome_of(robot);
-  if (!genome) throw InputError("/origin", "holds no painting network");
-  return *std::move(genome);
 }
 
 }  // namespace
@@ -66,11 +61,9 @@ Generator cppn_generator() {
                  .help = "Voxel robots painted by a small network (CPPN)",
                  .note = "A file keeps the network, so that the robot can be changed and grown again.",
                  .example = {.name = "ripple", .seed = 4, .values = {{"canvas", "10x4x4"}}},
-                 .regrow = [](const Robot& robot) { return grow(genome_in(robot), robot.name); },
-                 .mutate =
-                     [](const Robot& parent, const MutationRequest& request, const std::string& name) {
-                       return grow(mutate(genome_in(parent), request.strength, request.seed), name);
-                     }};
+                 .regrow = [](const Robot& robot) { return grow(cppn_genome_in(robot), robot.name); },
+                 .mutate = mutate_cppn_robot,
+                 .cross = cross_cppn_robots};
   return with_parameters(std::move(cppn), table(), random_cppn_robot);
 }
 

@@ -102,6 +102,7 @@ CppnGenome read_genome(const Json& origin) {
   genome.mirror = static_cast<Mirror>(word(member(origin, "mirror"), mirror_names, "/mirror"));
   genome.frequencies = small_natural(member(origin, "frequencies"), "/frequencies");
   genome.frequency = number(member(origin, "frequency"), "/frequency");
+  genome.amplitude = number(member(origin, "amplitude"), "/amplitude");
   genome.network = read_network(origin);
   return genome;
 }
@@ -115,6 +116,8 @@ std::string to_origin(const CppnGenome& genome) {
   out += ",\"mirror\":\"" + std::string(mirror_names[static_cast<std::size_t>(genome.mirror)]) +
          "\",\"frequencies\":" + std::to_string(genome.frequencies) + ",\"frequency\":";
   write(out, genome.frequency);
+  out += ",\"amplitude\":";
+  write(out, genome.amplitude);
   if (!genome.environment.empty()) out += ",\"environment\":" + json_text(genome.environment);
   out += ",\"nodes\":[";
   const auto begin_item = [&] { out += out.back() == '[' ? "[" : ",["; };

@@ -6,13 +6,12 @@
 
 #include "mercury/cppn.h"
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "robots/cppn_graph.h"
 #include "robots/portable_math.h"
 
 namespace mercury {
 namespace {
-
-constexpr float highest_frequency = 20;  // [rad/s]
 
 // From -1 to 1, exactly opposite for opposite voxels.
 double coordinate(int i, int n) { return static_cast<double>(2 * i + 1 - n) / n; }
@@ -83,7 +82,8 @@ void validate(const CppnGenome& genome) {
   require(genome.edge >= min_rest_length && genome.edge <= 1, "/edge", "give 0.001 to 1 m");
   require(genome.mirror >= Mirror::none && genome.mirror <= Mirror::z, "/mirror", "give none, x, y or z");
   require(genome.frequencies >= 1 && genome.frequencies <= voxel_frequencies, "/frequencies", "give 1 to 5");
-  require(genome.frequency >= 0 && genome.frequency <= highest_frequency, "/frequency", "give 0 to 20 rad/s");
+  require(genome.frequency >= 0 && genome.frequency <= max_muscle_frequency, "/frequency", "give 0 to 20 rad/s");
+  require(genome.amplitude >= 0 && genome.amplitude <= max_muscle_amplitude, "/amplitude", "give 0 to 0.4");
 }
 
 std::vector<CppnEvaluator::Outputs> outputs_of(const CppnGenome& genome) {
@@ -107,13 +107,14 @@ VoxelGrid paint(const CppnGenome& genome) {
   return grid;
 }
 
-std::vector<Material> cppn_materials(int frequencies, float frequency) {
+std::vector<Material> cppn_materials(int frequencies, float frequency, float amplitude) {
   const int phases = muscle_count / frequencies;
   std::array<Material, base_material_count> bases;
   for (MaterialId id = 1; id <= base_material_count; ++id) {
     bases[id - 1u] = default_materials()[id];
     if (id > muscle_count) continue;
     const auto [level, phase] = oscillation_of(id, frequencies, phases);
+    bases[id - 1u].amplitude = amplitude;
     bases[id - 1u].frequency = frequency * static_cast<float>(level + 1) / static_cast<float>(frequencies);
     bases[id - 1u].phase = radians(static_cast<double>(phase) / phases);
   }
@@ -132,9 +133,10 @@ Robot grow(const CppnGenome& genome, const std::string& name) {
       all.push_back(default_material_name(static_cast<MaterialId>(id)));
     return all;
   }();
-  Robot robot = make_voxel_robot(
-      paint(genome),
-      {.name = name, .materials = cppn_materials(genome.frequencies, genome.frequency), .material_names = names});
+  Robot robot = make_voxel_robot(paint(genome),
+                                 {.name = name,
+                                  .materials = cppn_materials(genome.frequencies, genome.frequency, genome.amplitude),
+                                  .material_names = names});
   robot.origin = to_origin(genome);
   return robot;
 }

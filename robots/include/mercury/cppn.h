@@ -92,6 +92,7 @@ struct CppnGenome {
   Mirror mirror = Mirror::y;   // along this axis the network sees |coordinate|, so the halves are alike
   int frequencies = 1;         // of its muscles, 1 to 5; each has 20 / frequencies phases, evenly over a turn
   float frequency = 5;         // the highest of them [rad/s], 0 to 20; the others are its 1/n, 2/n, ...
+  float amplitude = 0.14f;     // of its muscles [1], 0 to 0.4
   std::string environment;     // where the robot belongs ("ocean"), kept in its origin; empty = not recorded
   friend bool operator==(const CppnGenome&, const CppnGenome&) = default;
 };
@@ -108,10 +109,11 @@ void validate(const CppnGenome& genome);
 // f * (20 / frequencies) + p + 1 has frequency f and phase p. Throws InputError as validate.
 VoxelGrid paint(const CppnGenome& genome);
 
-// The table of materials of such robots: the 20 muscles as above with the stiffness and amplitude of the default
-// muscles, tissue, bone, and their pairs by the ids of combine(). Two muscles of one frequency make the mean of their
-// two sines: with a phase between theirs, and an amplitude that is smaller by the cosine of half their difference.
-std::vector<Material> cppn_materials(int frequencies, float frequency);
+// The table of materials of such robots: the 20 muscles as above with the stiffness of the default muscles, tissue,
+// bone, and their pairs by the ids of combine(). Two muscles of one frequency make the mean of their two sines: with a
+// phase between theirs, and an amplitude that is smaller by the cosine of half their difference. (The mean of the
+// phases as numbers, which material_table() takes, would be wrong by half a turn where phases go from 2 pi to 0.)
+std::vector<Material> cppn_materials(int frequencies, float frequency, float amplitude = 0.14f);
 
 // The largest connected body of the painted grid as a robot (voxel.h) with its own materials; bit for bit the same on
 // every machine. Its origin keeps the genome. Throws InputError as validate, and for a body that is all air or has more
@@ -126,16 +128,20 @@ std::optional<CppnGenome> cppn_genome_of(const Robot& robot);
 std::string to_origin(const CppnGenome& genome);
 
 // A genome with a changed network: weights and functions change, nodes and edges come and go. `strength` scales how
-// much (1 = a little, 0 = nothing). The child has a body, and one that differs from the parent's; only if none of 50
-// children does, the last of them that has a body is returned, or a copy of the parent. Depends on the arguments alone,
-// bit for bit on every machine. Throws InputError for a genome that is not valid or a strength that is not finite or
-// below 0.
+// much (1 = a little, 0 = nothing). The child has a body, and one that differs from the parent's: if it does not,
+// another one is drawn, after five with twice the strength, and so on; only if none of 50 children differs, the last of
+// them that has a body is returned, or a copy of the parent. Depends on the arguments alone, bit for bit on every
+// machine. Throws InputError for a genome that is not valid or a strength that is not finite or below 0.
 CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed);
 
+// A genome with another frequency, by a normal number times `strength` times 0.5 rad/s, or amplitude, by a normal
+// number times `strength` times 0.02, or both. It differs unless the strength is 0. Throws InputError as mutate.
+CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed);
+
 // A child with the grid of a. Each of its nodes is inherited whole, with its function and all edges into it, from
-// either parent with probability 1/2 if both have it. The child has a body, and one that differs from the bodies of
-// both parents; only if none of 50 children does, the last of them that has a body is returned, or a copy of a. Depends
-// on the arguments alone. Throws InputError for a genome that is not valid.
+// either parent with probability 1/2 if both have it; so are frequency and amplitude. The child has a body, and one
+// that differs from the bodies of both parents; only if none of 50 children does, the last of them that has a body is
+// returned, or a copy of a. Depends on the arguments alone. Throws InputError for a genome that is not valid.
 CppnGenome crossover(const CppnGenome& a, const CppnGenome& b, std::uint64_t seed);
 
 // How random genomes are drawn.
