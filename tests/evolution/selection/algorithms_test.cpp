@@ -158,8 +158,11 @@ TEST_P(EveryAlgorithm, PlansDependOnTheirArgumentsAlone) {
   }
 }
 
-TEST_P(EveryAlgorithm, TheShareOfCrossoversIsAsSet) {
-  if (GetParam() == "random") GTEST_SKIP() << "makes no children of parents";
+// Algorithms whose children have parents.
+class Parents : public EveryAlgorithm {};
+INSTANTIATE_TEST_SUITE_P(Algorithms, Parents, testing::Values("ga", "afpo", "nsga2", "map-elites"), suite_name);
+
+TEST_P(Parents, AreTwoForTheShareOfChildrenThatIsSet) {
   const std::vector<Individual> living = random_pool(30, 1, 1);
   AlgorithmSettings settings = settings_of(GetParam(), 30);
   for (const double share : {0.0, 0.3, 1.0}) {
@@ -179,7 +182,7 @@ TEST_P(EveryAlgorithm, TheShareOfCrossoversIsAsSet) {
   }
 }
 
-TEST_P(EveryAlgorithm, OneParentIsEnough) {
+TEST_P(Parents, OneIsEnough) {
   const std::vector<Individual> living = random_pool(1, 1, 1);
   AlgorithmSettings settings = settings_of(GetParam(), 30);
   settings.crossover = 1;
