@@ -39,6 +39,10 @@ double direction(const Trial& trial) {
   return std::atan2(static_cast<double>(d.y), static_cast<double>(d.x)) * degrees;
 }
 
+double height(const Trial& trial) {
+  return std::max(0.0, trial.evaluation.highest - static_cast<double>(trial.evaluation.start.center_of_mass.z));
+}
+
 double length_at_rest(const Trial& trial) {
   const Vec3 box = box_of(trial.robot);
   return std::max({box.x, box.y, box.z});
@@ -70,8 +74,14 @@ constexpr Quantity table[] = {
     {"straightness", "", "distance per path: 1 = along a line", false, 0, 1, straightness},
     {"direction", "degrees", "of the displacement in the x-y plane: 0 = along x, 90 = along y", false, -180, 180,
      direction},
+    {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
+    {"work", "J", "that the muscles did", false, 0, 100, [](const Trial& trial) { return trial.evaluation.work; }},
+    {"efficiency", "m/J", "distance per work; 0 where the muscles did none", false, 0, 1,
+     [](const Trial& trial) { return ratio(distance(trial), trial.evaluation.work); }},
     {"strain", "", "largest strain of a spring", false, 0, 2,
      [](const Trial& trial) { return trial.evaluation.largest_strain; }},
+    {"strained_share", "", "largest share of the springs that were strained by more than half at the same time", false,
+     0, 1, [](const Trial& trial) { return trial.evaluation.strained_share; }},
     {"seconds", "s", "time of the trial", false, 0, 10, seconds},
     {"body_lengths", "", "distance per length", false, 0, 5,
      [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }},

@@ -30,7 +30,10 @@ class OneTrial : public testing::Test {
                         .start = {.center_of_mass = {1, 1, 1}},
                         .end = {.center_of_mass = {4, 5, -11}},
                         .path = 26,
-                        .largest_strain = 0.25};
+                        .work = 52,
+                        .highest = 1.5,
+                        .largest_strain = 0.25,
+                        .strained_share = 0.125};
 };
 
 TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
@@ -43,6 +46,10 @@ TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
   EXPECT_DOUBLE_EQ(value("path"), 26);
   EXPECT_DOUBLE_EQ(value("straightness"), 0.5);
   EXPECT_DOUBLE_EQ(value("strain"), 0.25);
+  EXPECT_DOUBLE_EQ(value("strained_share"), 0.125);
+  EXPECT_DOUBLE_EQ(value("work"), 52);
+  EXPECT_DOUBLE_EQ(value("efficiency"), 13.0 / 52);
+  EXPECT_DOUBLE_EQ(value("height"), 0.5);
   EXPECT_NEAR(value("direction"), 53.130102354155978, 1e-12);  // of the triangle 3, 4, 5
 }
 
@@ -56,10 +63,12 @@ TEST_F(OneTrial, ARobotThatStoodStillHasNoNaN) {
   evaluation.end = evaluation.start;
   evaluation.path = 0;
   evaluation.steps = 0;
+  evaluation.work = 0;
   for (const double v : quantities_of({.robot = robot, .evaluation = evaluation, .configuration = configuration}))
     EXPECT_TRUE(std::isfinite(v));
   EXPECT_EQ(value("straightness"), 0);
   EXPECT_EQ(value("speed"), 0);
+  EXPECT_EQ(value("efficiency"), 0);
 }
 
 TEST_F(OneTrial, TheBodyIsMeasuredAtRest) {
@@ -98,7 +107,13 @@ TEST(Quantities, NamesAreDifferentWordsOfAFormula) {
 TEST_F(OneTrial, QuantitiesOfTheBodyDoNotDependOnTheTrial) {
   const std::vector<double> before =
       quantities_of({.robot = robot, .evaluation = evaluation, .configuration = configuration});
-  const Evaluation other{.steps = 100, .end = {.center_of_mass = {-1, -1, -1}}, .path = 3, .largest_strain = 0.5};
+  const Evaluation other{.steps = 100,
+                         .end = {.center_of_mass = {-1, -1, -1}},
+                         .path = 3,
+                         .work = 4,
+                         .highest = 9,
+                         .largest_strain = 0.5,
+                         .strained_share = 1};
   const std::vector<double> after =
       quantities_of({.robot = robot, .evaluation = other, .configuration = configuration});
   for (std::size_t q = 0; q < quantities().size(); ++q)
