@@ -2,7 +2,6 @@
 // One robot of a block as one of its threads sees it: its tiles, its masses, and a walk over its springs.
 #pragma once
 
-#include "mercury/observables.h"
 #include "sim/cuda/thread_context.cuh"
 #include "sim/physics/fixed_point.h"
 
@@ -95,18 +94,20 @@ class BlockRobot {
     else
       return scale() * __uint_as_float(record.y);
   }
+  // The same without the units [m].
+  __device__ float rest_length_of(const SpringRecord& record) const {
+    if constexpr (record_words == 1)
+      return scaled_rest_length_of(record) * (1 / scale());
+    else
+      return __uint_as_float(record.y);
+  }
   __device__ static std::uint32_t material_of(const SpringRecord& record) { return record.x & 0xff; }
   __device__ SpringParameters<solver> parameters_of(const SpringRecord& record) const {
     const float2 pair = table_entry_of(record);
     return {pair.x, pair.y};
   }
-  // After MaterialTable::write_rates(); `materials` = those of this robot.
-  __device__ MaterialNow material_now_of(const SpringRecord& record, const Material* materials) const {
-    const float2 pair = table_entry_of(record);
-    return {.stiffness = arguments_.stiffness_scale * __ldg(&materials[material_of(record)].stiffness),
-            .length_factor = pair.y,
-            .length_rate = pair.x};
-  }
+  // d(L / L0) / dt [1/s] and L / L0, after MaterialTable::write_rates().
+  __device__ float2 rate_and_length_factor_of(const SpringRecord& record) const { return table_entry_of(record); }
 
   // Visits the springs that this thread's masses own. For each mass it calls
   //   auto sum = begin(tile, mass, rows)                       with the number of rows of the tile,

@@ -109,7 +109,7 @@ class RobotReporter {
   struct LoadedSpring {
     float rest_length;
     Vec3 d;
-    MaterialNow material;
+    float stiffness;
   };
 
   template <int count>
@@ -117,18 +117,21 @@ class RobotReporter {
     LoadedSpring springs[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      springs[i].rest_length = robot_.scaled_rest_length_of(records[i]) * (1 / robot_.scale());
+      springs[i].rest_length = robot_.rest_length_of(records[i]);
       springs[i].d = owner.x - robot_.partner_of(records[i]).vector(field_x);
-      springs[i].material = robot_.material_now_of(records[i], materials_);
+      springs[i].stiffness =
+          robot_.arguments().stiffness_scale * __ldg(&materials_[robot_.material_of(records[i])].stiffness);
     }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
-      const auto& [rest_length, d, material] = springs[i];
+      const auto& [rest_length, d, stiffness] = springs[i];
+      // Loaded here, since all registers are in use.
+      const auto [length_rate, length_factor] = robot_.rate_and_length_factor_of(records[i]);
       const float squared = squared_length(d);
       const float distance = squared * inverse_sqrt(squared);
-      const float too_long = stretch(distance, rest_length, material.length_factor);
-      owner.twice_energy = multiply_add(spring_force(material.stiffness, too_long), too_long, owner.twice_energy);
-      owner.power += muscle_power(material.stiffness, too_long, rest_length, material.length_rate);
+      const float too_long = stretch(distance, rest_length, length_factor);
+      owner.twice_energy = multiply_add(spring_force(stiffness, too_long), too_long, owner.twice_energy);
+      owner.power += muscle_power(stiffness, too_long, rest_length, length_rate);
       if (robot_.material_of(records[i]) == air) continue;  // padding
       const float relative = strain(distance, rest_length);
       deformation.largest_strain = fmaxf(deformation.largest_strain, fabsf(relative));
