@@ -3,6 +3,7 @@
 #include "mercury/evaluator.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -10,6 +11,18 @@
 #include "sim/evaluator_parts.h"
 
 namespace mercury {
+
+namespace {
+
+void validate_checks(const EvaluationRequest& request) {
+  const std::vector<std::int64_t>& checks = request.checks;
+  if (checks.empty()) return;
+  if (!request.goes_on) throw std::invalid_argument("checks need goes_on");
+  if (checks.front() <= 0 || checks.back() >= request.steps || !std::ranges::is_sorted(checks, std::less_equal{}))
+    throw std::invalid_argument("checks must be ascending, above 0 and below the number of steps");
+}
+
+}  // namespace
 
 RobotSource source_of(std::vector<std::shared_ptr<const Robot>> robots) {
   return [robots = std::move(robots)](std::size_t index) {
@@ -25,6 +38,7 @@ Evaluator::Evaluator(const EvaluationRequest& request, RobotSource source, std::
   validate(request.configuration);
   if (request.steps < 0 || request.settling < 0 || request.sample_every < 0)
     throw std::invalid_argument("numbers of steps must be 0 or more");
+  validate_checks(request);
   parts_ = std::make_unique<Parts>(request, std::move(source), count);
   parts_->start(std::move(devices));
 }

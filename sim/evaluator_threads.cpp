@@ -158,10 +158,10 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
     load(simulation, portion);
     interval.reset();
     loaded(device, simulation);
-    Trial trial(simulation, request, context, pace);
+    Trial trial(simulation, request, context, pace, portion);
     if (!stopping && trial.run()) {
       interval.emplace(reading);
-      result.results = trial.results(portion);
+      result.results = trial.results();
     }
     add_load_times(before, simulation.load_times());
     simulation.keep({});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "mercury/error.h"
 
@@ -14,6 +15,8 @@ namespace {
 // Of a call of step() [s]. On a GPU each call ends with some robots stepping alone, so calls are longer there.
 constexpr double cpu_call = 0.1, cuda_call = 0.3;
 constexpr std::size_t most_samples = 1u << 19;  // of all robots in a call
+
+double size_of(const Robot& robot) { return static_cast<double>(robot.springs.size() + robot.masses.size()); }
 
 }  // namespace
 
@@ -37,45 +40,57 @@ void load(Simulation& simulation, Portion& portion) {
   simulation.add(portion.robots());
 }
 
-Trial::Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace)
-    : simulation_(simulation), request_(request), context_(context), pace_(pace) {
-  for (std::size_t i = 0; i < simulation.size(); ++i)
-    size_ += static_cast<double>(simulation.robot(i).springs.size() + simulation.robot(i).masses.size());
+Trial::Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
+             const Portion& portion)
+    : simulation_(simulation), request_(request), context_(context), pace_(pace),
+      sample_every_(request.sample_every > 0 ? request.sample_every : request.steps) {
+  results_.reserve(portion.candidates.size());
+  for (const Candidate& candidate : portion.candidates) {
+    if (candidate.failure.empty()) candidates_.push_back(results_.size());
+    results_.push_back(
+        {.index = portion.first + results_.size(), .robot = candidate.robot, .failure = candidate.failure});
+  }
+  for (std::size_t i = 0; i < simulation.size(); ++i) size_ += size_of(simulation.robot(i));
 }
 
 bool Trial::run() {
   if (simulation_.size() == 0) return true;
-  if (!advance(request_.settling, 0)) return false;
+  if (!settle()) return false;
+  settled_ = simulation_.steps();
   measures_.reserve(simulation_.size());
   for (const Telemetry& start : simulation_.telemetry()) measures_.emplace_back(start);
-  const std::int64_t settled = simulation_.steps();
-  const std::int64_t every = request_.sample_every > 0 ? request_.sample_every : request_.steps;
-  if (!advance(request_.steps, every)) return false;
-  steps_ = simulation_.steps() - settled;
+  for (const std::int64_t check : request_.checks) {
+    if (!advance(check)) return false;
+    if (steps_done() < check) break;  // it stops, or no robot is left
+    remove_losers();
+  }
+  if (!advance(request_.steps)) return false;
+  if (observed_ < steps_done() && simulation_.size() > 0) observe_now();
   return true;
 }
 
-// Makes `steps` steps, or fewer if the evaluation stops. Observes every `sample_every` steps and at the end; 0 = never.
-bool Trial::advance(std::int64_t steps, std::int64_t sample_every) {
-  const std::int64_t first = simulation_.steps();
-  std::int64_t done = 0, observed = 0;
-  const bool observes = sample_every > 0;
-  while (done < steps && !context_.stopping()) {
+// Makes the steps before the start, or fewer if the evaluation stops.
+bool Trial::settle() {
+  while (simulation_.steps() < request_.settling && !context_.stopping()) {
     if (context_.cancelled()) return false;
-    const std::int64_t count = std::min(steps_per_call(), steps - done);
-    if (observes && done == observed && count >= sample_every) {
-      step_and_observe(count - count % sample_every, sample_every);
-      done = observed = simulation_.steps() - first;
-      continue;
-    }
-    const std::int64_t next = observes ? std::min(steps, observed + sample_every) : steps;
-    step(std::min(count, next - done));
-    done = simulation_.steps() - first;
-    if (!observes || done < next) continue;
-    observe(simulation_.telemetry(), done - observed);
-    observed = done;
+    step(std::min(steps_per_call(), request_.settling - simulation_.steps()));
   }
-  if (observes && observed < done) observe(simulation_.telemetry(), done - observed);
+  return !context_.cancelled();
+}
+
+// Goes on to this step of the trial, or not so far if the evaluation stops. Takes the samples on the way.
+bool Trial::advance(std::int64_t end) {
+  while (simulation_.size() > 0 && steps_done() < end && !context_.stopping()) {
+    if (context_.cancelled()) return false;
+    const std::int64_t count = std::min(steps_per_call(), end - steps_done());
+    const std::int64_t next = observed_ + sample_every_;
+    if (steps_done() == observed_ && count >= sample_every_) {
+      step_and_observe(count - count % sample_every_);
+    } else {
+      step(std::min(count, next - steps_done()));
+      if (steps_done() == next) observe_now();
+    }
+  }
   return !context_.cancelled();
 }
 
@@ -83,10 +98,10 @@ void Trial::step(std::int64_t steps) {
   timed(steps, [&] { simulation_.step(steps); });
 }
 
-void Trial::step_and_observe(std::int64_t steps, std::int64_t sample_every) {
+void Trial::step_and_observe(std::int64_t steps) {
   std::vector<Telemetry> samples;
-  timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every); });
-  observe(samples, sample_every);
+  timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every_); });
+  observe(samples, sample_every_);
 }
 
 template <class Call>
@@ -96,12 +111,12 @@ void Trial::timed(std::int64_t steps, Call call) {
     const UnionClock::Interval all(*context_.stepping), device(*context_.device_stepping);
     call();
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double wanted = simulation_.cuda_device() >= 0 ? cuda_call : cpu_call;
   const bool as_many_as_allowed = 2 * steps > steps_per_call();
-  if (seconds > wanted || as_many_as_allowed)
+  if (elapsed > wanted || as_many_as_allowed)
     pace_.springs_and_masses =
-        std::max(size_, static_cast<double>(steps) * size_ * std::clamp(wanted / seconds, 0.5, 8.0));
+        std::max(size_, static_cast<double>(steps) * size_ * std::clamp(wanted / elapsed, 0.5, 8.0));
   context_.stepped(steps * static_cast<std::int64_t>(simulation_.size()));
 }
 
@@ -111,33 +126,74 @@ std::int64_t Trial::steps_per_call() const {
   return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, most));
 }
 
+double Trial::seconds(std::int64_t steps) const { return simulation_.configuration().dt * static_cast<double>(steps); }
+
+void Trial::observe_now() { observe(simulation_.telemetry(), steps_done() - observed_); }
+
 void Trial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
-  const double seconds = simulation_.configuration().dt * static_cast<double>(steps);
   const std::size_t robots = measures_.size();
   oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
-    for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds);
+    for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
   });
+  observed_ = steps_done();
 }
 
-std::vector<Evaluation> Trial::results(const Portion& portion) const {
+// Asks about every robot. A check between two samples is a sample for the robots that it removes, and none for the
+// others: their results must not depend on the checks.
+void Trial::remove_losers() {
+  const std::size_t robots = simulation_.size();
+  const std::int64_t now = steps_done();
+  const bool is_sampled = observed_ == now;
+  const std::vector<Telemetry> telemetry = is_sampled ? std::vector<Telemetry>() : simulation_.telemetry();
+  std::vector<Evaluation> reached(robots);
+  std::vector<std::uint8_t> goes_on(robots);
+  oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
+    TrialMeasures measures = measures_[i];
+    if (!is_sampled) measures.add(telemetry[i], seconds(now - observed_));
+    reached[i] = results_[candidates_[i]];
+    reached[i].steps = now;
+    measures.write(reached[i]);
+    goes_on[i] = request_.goes_on(reached[i]) ? 1 : 0;
+  });
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < robots; ++i)
+    if (goes_on[i] != 0) kept.push_back(i);
+  if (kept.size() == robots) return;
+  const std::vector<std::uint64_t> hashes = request_.hashes ? simulation_.hashes() : std::vector<std::uint64_t>();
+  for (std::size_t i = 0; i < robots; ++i) {
+    if (goes_on[i] != 0) continue;
+    if (request_.hashes) reached[i].hash = hashes[i];
+    if (request_.states) reached[i].state = simulation_.state(i);
+    results_[candidates_[i]] = std::move(reached[i]);
+  }
+  context_.stepped((request_.steps - now) * static_cast<std::int64_t>(robots - kept.size()));
+  keep(kept);
+}
+
+// By their present indices, ascending.
+void Trial::keep(std::span<const std::size_t> robots) {
+  simulation_.keep(robots);
+  size_ = 1;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    candidates_[i] = candidates_[robots[i]];
+    measures_[i] = measures_[robots[i]];
+    size_ += size_of(simulation_.robot(i));
+  }
+  candidates_.resize(robots.size());
+  measures_.erase(measures_.begin() + static_cast<std::ptrdiff_t>(robots.size()), measures_.end());
+}
+
+std::vector<Evaluation> Trial::results() {
   std::vector<std::uint64_t> hashes;
   if (request_.hashes) hashes = simulation_.hashes();
-  std::vector<Evaluation> results;
-  results.reserve(portion.candidates.size());
-  std::size_t i = 0;  // in the simulation
-  for (const Candidate& candidate : portion.candidates) {
-    Evaluation& result = results.emplace_back();
-    result.index = portion.first + results.size() - 1;
-    result.robot = candidate.robot;
-    result.failure = candidate.failure;
-    if (!candidate.failure.empty()) continue;
-    result.steps = steps_;
+  for (std::size_t i = 0; i < simulation_.size(); ++i) {
+    Evaluation& result = results_[candidates_[i]];
+    result.steps = steps_done();
     measures_[i].write(result);
     if (request_.hashes) result.hash = hashes[i];
     if (request_.states) result.state = simulation_.state(i);
-    ++i;
   }
-  return results;
+  return std::move(results_);
 }
 
 }  // namespace mercury

@@ -36,32 +36,51 @@ struct StepPace {
   double springs_and_masses;
 };
 
+// A robot leaves the simulation at the check that removes it, so robots of the simulation are counted by themselves:
+//
+//   candidates         0   1   2   3   4   5       of the portion; results_ has one element for each
+//   loaded             0   .   1   2   3   4       candidate 1 cannot be used
+//   after a check      0   .   .   1   .   2       candidates 2 and 4 were removed: their results are complete
+//
 class Trial {
  public:
-  Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace);
+  // `portion` was loaded into the simulation.
+  Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
+        const Portion& portion);
 
   // Returns false if the trial was cancelled.
   bool run();
-  // One per candidate of the portion that was loaded.
-  std::vector<Evaluation> results(const Portion& portion) const;
+  // One per candidate. Takes them out of the trial.
+  std::vector<Evaluation> results();
 
  private:
-  bool advance(std::int64_t steps, std::int64_t sample_every);
+  bool settle();
+  bool advance(std::int64_t end);
   void step(std::int64_t steps);
-  void step_and_observe(std::int64_t steps, std::int64_t sample_every);
+  void step_and_observe(std::int64_t steps);
   template <class Call>
   void timed(std::int64_t steps, Call call);
+  void observe_now();
   // [sample][robot], `steps` steps apart; the first comes as many after the last sample before.
   void observe(std::span<const Telemetry> samples, std::int64_t steps);
+  void remove_losers();
+  void keep(std::span<const std::size_t> robots);
   std::int64_t steps_per_call() const;
+  std::int64_t steps_done() const { return simulation_.steps() - settled_; }
+  double seconds(std::int64_t steps) const;
 
   Simulation& simulation_;
   const EvaluationRequest& request_;
   const TrialContext& context_;
   StepPace& pace_;
+  const std::int64_t sample_every_;
   double size_ = 1;  // springs and masses of all robots
+  std::vector<Evaluation> results_;
+  // Per robot of the simulation.
+  std::vector<std::size_t> candidates_;
   std::vector<TrialMeasures> measures_;
-  std::int64_t steps_ = 0;  // since the start of the trial
+  std::int64_t settled_ = 0;   // steps of the simulation at the start of the trial
+  std::int64_t observed_ = 0;  // steps of the trial at the last sample
 };
 
 }  // namespace mercury

@@ -39,6 +39,8 @@ using RobotSource = std::function<std::shared_ptr<const Robot>(std::size_t index
 // Robots that are there already.
 RobotSource source_of(std::vector<std::shared_ptr<const Robot>> robots);
 
+struct Evaluation;
+
 struct EvaluationRequest {
   Configuration configuration;  // the device may be cuda:all: each portion goes to one device
   std::int64_t settling = 0;    // steps before the start of the trial, at least 0
@@ -48,6 +50,16 @@ struct EvaluationRequest {
   std::int64_t sample_every = 0;
   bool hashes = false;  // of the final states
   bool states = false;  // the final states themselves
+
+  // Racing: robots that do badly are stopped early. At each of these numbers of steps of the trial (ascending, above 0
+  // and below `steps`), goes_on() is asked about every robot that is still stepped. Robots for which it returns false
+  // are removed. Their results are those of a trial that ends there; the results of the others are the same bit for bit
+  // as without racing. `so_far` is what the result would be if the trial ended now, without hash and state. Exploded
+  // robots are asked about like others.
+  // Several threads call goes_on() at the same time, in no particular order, and other robots may be at other checks.
+  // If it depends on anything but `so_far`, results depend on chance. An exception ends the evaluation.
+  std::vector<std::int64_t> checks;
+  std::function<bool(const Evaluation& so_far)> goes_on;
 
   // About how much host memory the robots may take that are made and not yet yielded, with what it takes to step them
   // [bytes]. 0 = a quarter of what is available. One robot at a time is always accepted.
@@ -63,7 +75,7 @@ struct Evaluation {
   std::size_t index = 0;               // in the source
   std::shared_ptr<const Robot> robot;  // nullptr if the source threw
   std::string failure;                 // why this robot cannot be used; empty = it was stepped
-  std::int64_t steps = 0;              // of the trial that it made; fewer than requested only after stop()
+  std::int64_t steps = 0;              // of the trial that it made; fewer than requested if it was removed or stopped
   Telemetry start, end;                // at the start of the trial, after settling, and at its end
   double path = 0;                     // length of the path of the center of mass from sample to sample [m]
   double work = 0;                     // that the muscles did, up to an explosion: trapezoid rule over the samples [J]
@@ -83,7 +95,7 @@ struct EvaluationProgress {
   };
   std::vector<Device> devices;
   std::size_t made = 0, done = 0;  // robots: made, or without success; ready to be yielded
-  std::int64_t robot_steps = 0;    // of all robots together; a robot that failed counts with all its steps
+  std::int64_t robot_steps = 0;    // of all robots; one that failed or was removed counts with all its steps
   // How long at least one device was being started, or one portion was being made, loaded, ... [s]
   double starting = 0, making = 0, loading = 0, stepping = 0, reading = 0;
   LoadTimes load;  // of all portions that are done; several may be loaded at the same time
@@ -96,7 +108,8 @@ class Evaluator {
   using MakeBackend = std::function<std::unique_ptr<Backend>()>;
 
   // Begins at once. `count` = robots of the source; if it is unknown, the source ends with a nullptr. Throws InputError
-  // for a configuration that breaks a rule, std::invalid_argument for a negative number of steps.
+  // for a configuration that breaks a rule, std::invalid_argument for a negative number of steps and for checks that
+  // are not as EvaluationRequest says.
   Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count = unknown_count);
   // Uses these devices. The configuration's device has no effect.
   Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count, std::vector<MakeBackend> devices);
