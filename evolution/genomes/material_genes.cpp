@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evolution/genomes/material_genes.h"
+
+#include <algorithm>
+
+#include "mercury/error.h"
+#include "mercury/muscle_laws.h"
+
+namespace mercury {
+namespace {
+
+MaterialGenes filled_in(const MaterialGenes& genes) { return genes.empty() ? base_materials_of(Robot{}) : genes; }
+
+}  // namespace
+
+MaterialGenes material_genes_of(const Robot& robot) {
+  return robot.materials.empty() ? MaterialGenes{} : base_materials_of(robot);
+}
+
+std::vector<Material> table_of(const MaterialGenes& genes) {
+  std::vector<Material> table;
+  if (genes.size() == base_material_count) {
+    table = material_table(std::span(genes).first<base_material_count>());
+    if (std::ranges::equal(table, default_materials())) table.clear();
+  } else if (!genes.empty()) {
+    table.push_back({});
+    table.insert(table.end(), genes.begin(), genes.end());
+  }
+  return table;
+}
+
+MaterialGenes mutated(const MaterialGenes& genes, double strength, std::uint64_t seed,
+                      const std::vector<bool>& in_use) {
+  return mutate_muscle_laws(filled_in(genes), strength, seed, in_use);
+}
+
+MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint64_t seed) {
+  if (a == b) return a;
+  const MaterialGenes of_a = filled_in(a), of_b = filled_in(b);
+  return of_a.size() == of_b.size() ? cross_muscle_laws(of_a, of_b, seed) : a;
+}
+
+void write(ByteWriter& writer, const MaterialGenes& genes) {
+  writer.add(static_cast<std::uint8_t>(genes.size()));
+  for (const auto& [stiffness, amplitude, frequency, phase] : genes)
+    for (const float number : {stiffness, amplitude, frequency, phase}) writer.add(number);
+}
+
+MaterialGenes read_material_genes(ByteReader& reader) {
+  const auto count = reader.read<std::uint8_t>();
+  reader.expect(count, 4 * sizeof(float));
+  MaterialGenes genes(count);
+  for (std::size_t i = 0; i < genes.size(); ++i) {
+    for (float* number : {&genes[i].stiffness, &genes[i].amplitude, &genes[i].frequency, &genes[i].phase})
+      *number = reader.read<float>();
+    validate(genes[i], "genome: base material " + std::to_string(i + 1));
+  }
+  return genes;
+}
+
+void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vector<bool>& in_use) {
+  const MaterialGenes all = filled_in(genes);
+  const bool only_used = all.size() == base_material_count && !in_use.empty();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (only_used && !in_use[i]) continue;
+    for (const float number : {all[i].stiffness, all[i].amplitude, all[i].frequency, all[i].phase}) hash.add(number);
+  }
+}
+
+}  // namespace mercury

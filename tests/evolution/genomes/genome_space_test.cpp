@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// What holds for the genomes of every kind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "mercury/error.h"
+#include "mercury/genome.h"
+#include "mercury/muscle_laws.h"
+#include "mercury/origin.h"
+#include "mercury/random.h"
+#include "mercury/random_voxel.h"
+#include "mercury/voxel.h"
+
+namespace mercury {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A kind and what may change. "given" = the muscles of given robots.
+struct Case {
+  std::string kind;
+  Genes genes;
+};
+
+Robot given_robot() {
+  Robot robot = random_voxel_robot({.smallest = {4, 3, 3}, .largest = {4, 3, 3}}, 3);
+  robot.origin.clear();
+  return robot;
+}
+
+GenomeSpaceRequest request_for(const Case& chosen) {
+  if (chosen.kind == "given") return {.genes = chosen.genes, .founders = {given_robot()}};
+  GenomeSpaceRequest request{.kind = chosen.kind, .environment = "land", .genes = chosen.genes};
+  if (chosen.kind == "nn") request.values = {{"points", std::int64_t{64}}, {"hidden", std::vector<int>{8, 8}}};
+  return request;
+}
+
+class EveryGenome : public testing::TestWithParam<Case> {
+ protected:
+  std::unique_ptr<GenomeSpace> space_ = make_genome_space(request_for(GetParam()));
+};
+
+TEST_P(EveryGenome, ComesBackFromItsBytes) {
+  for (std::uint64_t index = 0; index < 10; ++index) {
+    const GenomePointer genome = space_->random(1, index)->mutate(2, index);
+    const std::string bytes = genome->encode();
+    const GenomePointer again = space_->decode(bytes);
+    EXPECT_EQ(again->encode(), bytes);
+    EXPECT_EQ(again->identity(), genome->identity());
+    EXPECT_EQ(again->grow("robot"), genome->grow("robot"));
+    EXPECT_EQ(again->mutate(1, 7)->encode(), genome->mutate(1, 7)->encode());
+  }
+}
+
+TEST_P(EveryGenome, GrowsRobotsThatTheirGeneratorKnows) {
+  for (std::uint64_t index = 0; index < 5; ++index) {
+    const Robot robot = space_->random(2, index)->mutate(1, index)->grow("offspring");
+    EXPECT_NO_THROW(validate(robot));
+    EXPECT_EQ(robot.name, "offspring");
+    if (GetParam().kind == "given") continue;
+    EXPECT_EQ(environment_of(robot), "land");
+    ASSERT_EQ(generator_of(robot), find_generator(GetParam().kind));
+    EXPECT_EQ(generator_of(robot)->regrow(robot), robot);
+  }
+}
+
+TEST_P(EveryGenome, DependsOnItsSeedsAlone) {
+  EXPECT_EQ(space_->random(5, 3)->encode(), make_genome_space(request_for(GetParam()))->random(5, 3)->encode());
+  EXPECT_NE(space_->random(5, 3)->encode(), space_->random(5, 4)->encode());
+  EXPECT_NE(space_->random(5, 3)->encode(), space_->random(6, 3)->encode());
+}
+
+TEST_P(EveryGenome, ChildrenDifferFromTheirParentsAndFromEachOther) {
+  const GenomePointer a = space_->random(1, 1), b = space_->random(1, 2);
+  std::set<std::uint64_t> identities{a->identity(), b->identity()};
+  ASSERT_EQ(identities.size(), 2u);
+  int alike = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const GenomePointer child = a->mutate(1, seed);
+    EXPECT_NE(child->identity(), a->identity()) << seed;
+    alike += identities.insert(child->identity()).second ? 0 : 1;
+    const GenomePointer cross = a->cross(*b, seed);
+    EXPECT_EQ(cross->encode(), a->cross(*b, seed)->encode());
+    EXPECT_NO_THROW(space_->decode(cross->encode()));
+  }
+  EXPECT_LE(alike, 2);
+  EXPECT_EQ(a->mutate(0, 3)->encode(), a->encode());
+  EXPECT_NO_THROW(a->mutate(1000, 3)->encode());
+}
+
+TEST_P(EveryGenome, RobotsOfOneIdentityAreTheSame) {
+  std::map<std::uint64_t, Robot> grown;
+  const GenomePointer parent = space_->random(1, 1);
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const GenomePointer child = parent->mutate(0.2, seed);
+    Robot robot = child->grow("robot");
+    robot.origin.clear();
+    const auto [before, is_new] = grown.try_emplace(child->identity(), robot);
+    if (is_new) continue;
+    EXPECT_EQ(before->second.masses, robot.masses);
+    EXPECT_EQ(before->second.springs, robot.springs);
+  }
+}
+
+TEST_P(EveryGenome, ChangesOnlyWhatMayChange) {
+  const GenomePointer parent = space_->random(1, 1);
+  const Robot before = parent->grow("robot");
+  bool body_changed = false, muscles_changed = false;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Robot after = parent->mutate(1, seed)->grow("robot");
+    const bool same_muscles = std::ranges::equal(materials_of(before), materials_of(after));
+    body_changed |= after.masses != before.masses || after.springs != before.springs;
+    muscles_changed |= !same_muscles;
+    if (GetParam().genes == Genes::muscles) {
+      EXPECT_EQ(after.masses, before.masses);
+      EXPECT_EQ(after.faces, before.faces);
+    }
+    // A shell lists the muscles that it needs.
+    if (GetParam().genes == Genes::body && GetParam().kind != "shell") {
+      EXPECT_TRUE(same_muscles) << seed;
+    }
+  }
+  EXPECT_EQ(body_changed, GetParam().genes != Genes::muscles || GetParam().kind == "shell");
+  EXPECT_EQ(muscles_changed, GetParam().genes != Genes::body || GetParam().kind == "shell");
+}
+
+TEST_P(EveryGenome, RefusesBytesThatBreakOffOrGoOn) {
+  const std::string bytes = space_->random(1, 1)->encode();
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 500)
+    EXPECT_THROW(space_->decode(std::string_view(bytes).substr(0, length)), InputError) << length;
+  EXPECT_EQ(refusal([&] { space_->decode(bytes + "x"); }), "genome: is followed by 1 bytes that are not of it");
+  std::string newer = bytes;
+  newer[1] = 2;
+  EXPECT_EQ(refusal([&] { space_->decode(newer); }), "genome: has version 2; this program reads version 1");
+  newer[0] = 77;
+  EXPECT_EQ(refusal([&] { space_->decode(newer); }), "genome: is not of the kind that the run evolves");
+}
+
+// Bytes are a genome that has these bytes, or they are refused in one line.
+TEST_P(EveryGenome, DamagedBytesGiveAGenomeOrALine) {
+  const std::string sound = space_->random(1, 1)->mutate(1, 1)->encode();
+  int used = 0, refused = 0;
+  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+    Random random(seed);
+    std::string bytes = sound;
+    const std::size_t range = random.chance(0.5) ? std::min<std::size_t>(bytes.size(), 64) : bytes.size();
+    for (std::uint64_t edits = 1 + random.below(4); edits > 0; --edits) {
+      const auto at = static_cast<std::size_t>(random.below(range));
+      switch (random.below(4)) {
+        case 0:
+          bytes[at] = static_cast<char>(random.below(256));
+          break;
+        case 1:
+          bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
+          break;
+        case 2:
+          bytes[at] = random.chance(0.5) ? '\xff' : '\0';
+          break;
+        default:
+          if (random.chance(0.1)) bytes.erase(at, random.below(9));
+          break;
+      }
+      if (bytes.size() < range) break;
+    }
+    try {
+      const GenomePointer genome = space_->decode(bytes);
+      ASSERT_EQ(genome->encode(), bytes) << seed;
+      ++used;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      ASSERT_LT(message.size(), 250u);
+      ASSERT_EQ(message.find('\n'), std::string::npos);
+      ++refused;
+    }
+  }
+  EXPECT_GT(used, 100);
+  EXPECT_GT(refused, 100);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all{{"given", Genes::muscles}};
+  for (const std::string kind : {"voxel", "cppn", "shell", "nn"})
+    for (const Genes genes : {Genes::body, Genes::muscles, Genes::both})
+      if (kind != "nn" || MERCURY_NN) all.push_back({kind, genes});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryGenome, testing::ValuesIn(cases()), [](const auto& parameter) {
+  return parameter.param.kind + "_" + std::string(name_of(parameter.param.genes));
+});
+
+TEST(GenomeSpaces, EveryGeneratorHasOne) {
+  for (const Generator& generator : generators())
+    EXPECT_NO_THROW(make_genome_space({.kind = generator.kind})) << generator.kind;
+}
+
+TEST(GenomeSpaces, BeginWithTheFoundersAndThenTheirMutants) {
+  const Robot first = random_voxel_robot({.environment = "land"}, 1), second = random_voxel_robot({}, 2);
+  for (const Genes genes : {Genes::body, Genes::muscles, Genes::both}) {
+    const auto space = make_genome_space({.genes = genes, .founders = {first, second}});
+    ASSERT_EQ(space->founders(), 2u);
+    for (const std::uint64_t seed : {1u, 2u}) {
+      EXPECT_EQ(space->random(seed, 0)->grow("a").springs, first.springs);
+      EXPECT_EQ(space->random(seed, 1)->grow("a").springs, second.springs);
+      std::set<std::uint64_t> identities;
+      for (std::uint64_t i = 0; i < 20; ++i) identities.insert(space->random(seed, i)->identity());
+      EXPECT_EQ(identities.size(), 20u);
+    }
+    EXPECT_EQ(environment_of(space->random(1, 0)->grow("a")), "land");
+  }
+}
+
+TEST(GenomeSpaces, FoundersKeepTheirOwnMaterials) {
+  Robot founder = random_voxel_robot({}, 1);
+  std::vector<Material> bases = base_materials_of(founder);
+  bases[4].amplitude = 0.3f;
+  founder = with_base_materials(founder, bases);
+  const auto space = make_genome_space({.founders = {founder}});
+  EXPECT_EQ(space->random(1, 0)->grow("a").materials, founder.materials);
+  EXPECT_EQ(space->random(1, 5)->grow("a").materials, founder.materials);
+  EXPECT_EQ(space->decode(space->random(1, 0)->encode())->grow("a").materials, founder.materials);
+  // A table in which pairs have materials of their own.
+  founder.materials[100].frequency = 17;
+  const auto other = make_genome_space({.genes = Genes::both, .founders = {founder}});
+  EXPECT_EQ(other->random(1, 0)->grow("a").materials, founder.materials);
+  EXPECT_EQ(other->decode(other->random(1, 0)->encode())->grow("a").materials, founder.materials);
+}
+
+TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
+  const Robot voxel = random_voxel_robot({}, 1), unknown = given_robot();
+  const auto refused = [](GenomeSpaceRequest request) { return refusal([&] { make_genome_space(request); }); };
+  EXPECT_THAT(refused({.founders = {voxel, unknown}}), HasSubstr("does not say how its body was made"));
+  EXPECT_EQ(refused({.genes = Genes::muscles, .founders = {voxel, unknown}}), "");
+  const Robot shell = generator_named("shell").make({}, "", 1, 0);
+  EXPECT_EQ(refused({.founders = {voxel, shell}}),
+            "robot shell-1-0: is a shell robot, and voxel-1-0 a voxel robot; give robots of one kind");
+  Robot edited = voxel;
+  edited.springs.pop_back();
+  EXPECT_EQ(refused({.founders = {edited}}),
+            "robot voxel-1-0: /origin: leads to another robot; evolve its muscles alone");
+  Robot stiff = make_voxel_robot(VoxelGrid(2, 2, 2, bone), {.name = "rock"});
+  EXPECT_EQ(refused({.genes = Genes::muscles, .founders = {stiff}}), "robot rock: has no muscles that could change");
+  EXPECT_THAT(refused({.kind = "fish"}), HasSubstr("kind: \"fish\" is not a kind of robot"));
+  EXPECT_THAT(refused({.kind = "voxel", .values = {{"air", 7.0}}}), HasSubstr("air: 7 is not accepted"));
+  EXPECT_EQ(refusal([] { genes_named("all"); }), "genes: \"all\" is not accepted; give body, muscles or both");
+  EXPECT_EQ(genes_named(name_of(Genes::both)), Genes::both);
+}
+
+TEST(GenomeIdentity, IsThatOfTheBodyThatGrows) {
+  VoxelGrid grid(5, 2, 2, 3);
+  for (int z = 0; z < 2; ++z)
+    for (int y = 0; y < 2; ++y) grid.cell(3, y, z) = air;
+  const Robot with_loose_part = make_voxel_robot(grid);
+  const Robot without = make_voxel_robot(largest_body(grid));
+  const auto space = make_genome_space({.founders = {with_loose_part, without}});
+  EXPECT_EQ(space->random(1, 0)->identity(), space->random(1, 1)->identity());
+  EXPECT_NE(space->random(1, 0)->encode(), space->random(1, 1)->encode());
+  // A muscle that the body does not have makes no difference; one that it has does.
+  const auto with_amplitude = [&](std::size_t muscle) {
+    std::vector<Material> bases = base_materials_of(without);
+    bases[muscle - 1].amplitude = 0.2f;
+    return make_genome_space({.founders = {with_base_materials(without, bases)}})->random(1, 0)->identity();
+  };
+  EXPECT_EQ(with_amplitude(7), space->random(1, 1)->identity());
+  EXPECT_NE(with_amplitude(3), space->random(1, 1)->identity());
+}
+
+}  // namespace
+}  // namespace mercury
