@@ -93,6 +93,7 @@ class RunHistory {
   std::uint64_t champion(int generation) const;
 
  private:
+  friend class RunFolder;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

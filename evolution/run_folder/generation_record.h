@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A generation as a record of the journal.
+//
+// A record is a head, an index and the genomes:
+//
+//     head     "GENERATN"; u64 bytes of the index; u64 bytes of the genomes; u64 checksum of the index;
+//              u64 checksum of the genomes; u64 checksum of the head so far
+//     index    number; times; everyone born, in the order of ids; ids of the living
+//     genomes  one after the other, in the order of ids: whole, or as the difference from the first parent's
+//
+// So a reader that does not need the genomes skips them.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/evolution.h"
+#include "mercury/run_folder.h"
+
+namespace mercury {
+
+// Genomes are read by applying at most as many differences one after the other.
+inline constexpr int longest_chain = 32;
+
+// Where a genome is in the journal.
+struct StoredGenome {
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t offset = 0;    // in the file; in a new record, from the beginning of its genomes
+  std::uint64_t base = none;   // id of the individual from whose genome this one is the difference
+  std::uint32_t size = 0;      // bytes
+  std::uint32_t checksum = 0;  // of these bytes
+};
+
+struct GenerationRecord {
+  std::uint64_t first_id = 0;  // of those born; the others follow
+  Generation generation;       // without genomes
+  GenerationTimes times;
+  std::vector<StoredGenome> genomes;  // of those born
+};
+
+struct RecordHead {
+  static constexpr std::size_t size = 48;  // bytes
+  std::uint64_t index_size = 0, genomes_size = 0, index_checksum = 0, genomes_checksum = 0;
+};
+
+std::string encode_head(const RecordHead& head);
+// Nothing if the bytes are no head.
+std::optional<RecordHead> decode_head(std::string_view bytes);
+// What a head begins with.
+extern const std::string_view head_mark;
+
+std::string encode_index(const GenerationRecord& record);
+// Throws DamagedBytes unless it is generation `number`, whose first child has the id `first_id`, and its genomes have
+// `genomes_size` bytes. Their offsets count from the beginning of the genomes.
+GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size);
+
+}  // namespace mercury

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The journal of a run, the file `genomes`: a header, then one record per generation (generation_record.h).
+//
+// A record is appended by one write and is on the disk before the next one is begun, so only the last record can be cut
+// off (by kill -9, a power cut, a full disk). Readers ignore such a record, and the writer that goes on removes it. A
+// damaged record with a sound one behind it was not cut off: that is an error, and nothing is removed.
+//
+// The writer holds a lock (flock) on the file; readers need none, because what they have read does not change.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "evolution/run_folder/file_descriptor.h"
+#include "evolution/run_folder/generation_record.h"
+
+namespace mercury {
+
+inline constexpr std::string_view journal_name = "genomes";  // in a run folder
+inline constexpr std::uint32_t journal_version = 1;
+
+class JournalReader {
+ public:
+  // Throws InputError for a file that cannot be read, is no journal, or is of a newer version.
+  explicit JournalReader(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t fingerprint() const { return fingerprint_; }  // of the run's settings, as given to create()
+  // The next generation that is written to its end, with offsets of genomes in the file. Nothing if there is none
+  // (yet). Throws InputError if the journal is damaged.
+  std::optional<GenerationRecord> next();
+  // Where the records that were read end.
+  std::uint64_t end() const { return end_; }
+  // Bytes of a genome, checked. Throws InputError.
+  std::string bytes_of(const StoredGenome& genome, std::uint64_t id) const;
+  // Throws InputError if the path has another file now.
+  void check_not_replaced() const;
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const;
+  std::optional<RecordHead> whole_record(std::uint64_t size) const;
+  bool has_sound_head_after(std::uint64_t offset, std::uint64_t size) const;
+
+  std::filesystem::path path_;
+  FileDescriptor file_;
+  std::uint64_t fingerprint_ = 0, end_ = 0, next_id_ = 0;
+  int next_number_ = 0;
+};
+
+class JournalWriter {
+ public:
+  // Makes the file and locks it. Throws InputError if there is one.
+  static JournalWriter create(const std::filesystem::path& path, std::uint64_t fingerprint);
+  // Locks the file. Throws InputError if another process has it locked.
+  static JournalWriter open(const std::filesystem::path& path);
+
+  // Removes what is behind `end`: a record that was cut off.
+  void cut(std::uint64_t end);
+  // The record is on the disk when this returns. If it cannot be written, throws InputError, and the file is as it was.
+  // Offsets in record.genomes do not matter.
+  void append(const GenerationRecord& record, std::string_view genomes);
+
+ private:
+  JournalWriter(const std::filesystem::path& path, int flags);
+  int write(std::string_view bytes, std::uint64_t offset) const;
+
+  FileDescriptor file_;
+};
+
+}  // namespace mercury

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evolution/run_folder/new_folder.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "evolution/run_folder/derived_files.h"
+#include "evolution/run_folder/file_descriptor.h"
+#include "evolution/run_folder/run_file.h"
+#include "mercury/error.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) fail(path, error.value());
+}
+
+// Removes the files of a folder that have names such as "0012-000345.json", and the folder if nothing is left.
+void remove_numbered_robots(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".json" && stem.find_first_not_of("0123456789-") == std::string::npos)
+      remove_file(entry.path());
+  }
+  if (!error && fs::is_empty(folder, error)) remove_file(folder);
+}
+
+void remove_run(const fs::path& folder) {
+  remove_file(folder / run_file_name);  // first: a run that is half removed is no run
+  remove_numbered_robots(folder / founders_name);
+  remove_numbered_robots(folder / champions_name);
+  for (const std::string_view name : derived_file_names) remove_file(folder / name);
+  remove_file(folder / journal_name);
+}
+
+// Locks the journal of a run that is to be replaced, if it has one.
+std::optional<JournalWriter> lock_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / journal_name, error)) return std::nullopt;
+  return JournalWriter::open(folder / journal_name);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail(folder, error.value());
+}
+
+void write_settings(const fs::path& folder, const RunFileTexts& texts) {
+  if (!texts.founders.empty()) make_folder(folder / founders_name);
+  for (std::size_t i = 0; i < texts.founders.size(); ++i)
+    write_whole_file(folder / founders_name / founder_file_name(i), texts.founders[i]);
+  write_whole_file(folder / run_file_name, texts.run);  // last: now it is a run
+  sync_folder(folder);
+}
+
+}  // namespace
+
+JournalWriter make_run_folder(const fs::path& folder, const RunSettings& settings, bool force) {
+  const RunFileTexts texts = run_file_texts(settings);
+  const RunFile file = parse_run_file(folder, texts);
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw InputError(folder.string(), "is a file; give a new folder");
+  make_folder(folder);
+  if (force && is_run_folder(folder)) {
+    const std::optional<JournalWriter> lock = lock_of(folder);
+    remove_run(folder);
+  } else if (fs::directory_iterator(folder, error) != fs::directory_iterator() || error) {
+    if (error) fail(folder, error.value());
+    throw InputError(folder.string(), is_run_folder(folder)
+                                          ? "holds a run; give --resume to go on with it or --force to replace it"
+                                          : "is not empty; give a new folder");
+  }
+  JournalWriter journal = JournalWriter::create(folder / journal_name, file.fingerprint);
+  try {
+    write_settings(folder, texts);
+  } catch (...) {
+    remove_run(folder);
+    throw;
+  }
+  return journal;
+}
+
+}  // namespace mercury

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of run.toml, listed once for the writer and the reader.
+#pragma once
+
+#include <string>
+
+#include "evolution/run_folder/run_file.h"
+#include "mercury/configuration.h"
+
+namespace mercury {
+
+// `File` is RunFileWriter or RunFileReader. Both have
+//   value(key, variable, comment)            must be there
+//   parameter(key, variable, comment)        may be absent: then the variable stays as it is
+//   named(key, variable, from_name)          a variable with name_of(variable) and the reverse
+//   table(key, describe)                     [key]
+//   tables(key, list, describe)              [[key]], one per element
+//   generator_values(key, kind, values)      [key], the parameters of a generator
+template <class File, class Run>
+void describe_algorithm(File& file, Run& algorithm) {
+  file.value("name", algorithm.name);
+  file.value("population", algorithm.population);
+  file.value("tournament", algorithm.tournament);
+  file.value("elites", algorithm.elites);
+  file.value("crossover", algorithm.crossover);
+  file.tables("axes", algorithm.axes, [](auto& table, auto& axis) {
+    table.value("quantity", axis.quantity);
+    table.value("lowest", axis.lowest);
+    table.value("highest", axis.highest);
+    table.value("cells", axis.cells);
+  });
+}
+
+template <class File, class Trials>
+void describe_trials(File& file, Trials& trials) {
+  file.value("seconds", trials.seconds, "s, settling included");
+  file.value("settle", trials.settle, "s");
+  file.value("trials", trials.trials, "per individual");
+  file.value("noise", trials.noise);
+  file.value("damage", trials.damage);
+  file.value("strain_limit", trials.strain_limit);
+  file.value("racing", trials.racing);
+}
+
+template <class File, class Configured>
+void describe_configuration(File& file, Configured& configuration) {
+  const auto parameters = [](auto& table) {
+    return [&table](const auto& parameter, auto& value) { table.parameter(parameter.name, value, parameter.unit); };
+  };
+  file.table("configuration", [&](auto& table) {
+    table.named("solver", configuration.solver, solver_named);
+    for_each_parameter(configuration, parameters(table));
+    table.named("device", configuration.device, device_named);
+    for_each_parameter(configuration.device, parameters(table));
+  });
+  file.table("environment", [&](auto& table) {
+    table.named("name", configuration.environment, environment_named);
+    for_each_parameter(configuration.environment, parameters(table));
+  });
+}
+
+template <class File, class Run>
+void describe(File& file, Run& run) {
+  auto& settings = run.settings;
+  auto& evolution = settings.evolution;
+  file.value("program", settings.program);
+  file.table("evolution", [&](auto& table) {
+    table.value("generations", evolution.generations, "after generation 0, which is random");
+    table.value("children", evolution.children, "per generation; 0 = as many as the population");
+    table.value("mutation", evolution.mutation, "strength");
+    table.value("seed", evolution.seed);
+    table.value("objectives", evolution.objectives);
+    table.value("quantities", run.quantities, "that the journal holds of each individual");
+  });
+  file.table("algorithm", [&](auto& table) { describe_algorithm(table, evolution.algorithm); });
+  file.table("trials", [&](auto& table) { describe_trials(table, evolution.trials); });
+  describe_configuration(file, evolution.configuration);
+  file.table("genomes", [&](auto& table) {
+    auto& space = settings.space;
+    table.value("kind", space.kind);
+    table.named("genes", space.genes, genes_named);
+    table.value("environment", space.environment);
+    table.value("founders", run.founder_files, "in founders/");
+    table.generator_values("values", space.kind, space.values);
+  });
+}
+
+}  // namespace mercury

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/run_folder.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "evolution/run_folder/byte_difference.h"
+#include "evolution/run_folder/checksum.h"
+#include "evolution/run_folder/derived_files.h"
+#include "evolution/run_folder/history_parts.h"
+#include "evolution/run_folder/new_folder.h"
+#include "mercury/error.h"
+#include "mercury/quantity.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+
+struct RunFolder::Parts {
+  Parts(const std::filesystem::path& folder, JournalWriter locked, GenomeSpaceMaker make_space)
+      : writer(std::move(locked)), history(folder, std::move(make_space)) {}
+
+  JournalWriter writer;  // holds the lock, so the history is read after it was taken
+  RunHistory history;
+  DerivedFiles derived;
+};
+
+namespace {
+
+// The genomes of those born, one after the other: whole, or as the difference from the first parent's.
+std::string store_genomes(GenerationRecord& record, const GenomeStore& store) {
+  std::vector<Individual>& born = record.generation.born;
+  std::vector<std::string> stored(born.size());
+  record.genomes.resize(born.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, born.size(), [&](std::size_t i) {
+    StoredGenome& genome = record.genomes[i];
+    stored[i] = born[i].genome->encode();
+    if (!born[i].parents.empty() && store.chain_of(born[i].parents.front()) < longest_chain) {
+      const std::uint64_t parent = born[i].parents.front();
+      std::string difference = difference_of(*store.bytes(parent), stored[i]);
+      if (difference.size() < stored[i].size()) {
+        stored[i] = std::move(difference);
+        genome.base = parent;
+      }
+    }
+    genome.size = static_cast<std::uint32_t>(stored[i].size());
+    genome.checksum = short_checksum_of(stored[i]);
+    born[i].genome = nullptr;
+  });
+  std::string genomes;
+  for (const std::string& bytes : stored) genomes += bytes;
+  return genomes;
+}
+
+// Values in the order that the journal has, which may be of another version of this program.
+void use_stored_quantities(Assessment& assessment, const std::vector<std::string>& names) {
+  if (assessment.values.empty()) return;
+  std::vector<double> values;
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> q = find_quantity(name);
+    values.push_back(q && *q < assessment.values.size() ? assessment.values[*q]
+                                                        : std::numeric_limits<double>::quiet_NaN());
+  }
+  assessment.values = std::move(values);
+}
+
+}  // namespace
+
+RunFolder::RunFolder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+RunFolder::~RunFolder() = default;
+RunFolder::RunFolder(RunFolder&&) noexcept = default;
+RunFolder& RunFolder::operator=(RunFolder&&) noexcept = default;
+
+RunFolder RunFolder::create(const std::filesystem::path& folder, const RunSettings& settings, bool force,
+                            GenomeSpaceMaker make_space) {
+  make_space(settings.space);  // throws before anything is written or removed
+  JournalWriter journal = make_run_folder(folder, settings, force);
+  return RunFolder(std::make_unique<Parts>(folder, std::move(journal), std::move(make_space)));
+}
+
+RunFolder RunFolder::open(const std::filesystem::path& folder, GenomeSpaceMaker make_space) {
+  check_run_folder(folder);
+  auto parts = std::make_unique<Parts>(folder, JournalWriter::open(folder / journal_name), std::move(make_space));
+  parts->history.space();
+  parts->writer.cut(parts->history.parts_->journal.end());
+  return RunFolder(std::move(parts));
+}
+
+const RunHistory& RunFolder::history() const { return parts_->history; }
+const GenomeSpace& RunFolder::space() const { return parts_->history.space(); }
+
+void RunFolder::set_generations(int generations) {
+  RunHistory::Parts& run = *parts_->history.parts_;
+  if (generations < 0) throw ParameterError("generations", "give 0 or more");
+  const std::filesystem::path path = run.folder / run_file_name;
+  write_whole_file(path, with_generations(path, read_whole_file(path), generations));
+  run.file.settings.evolution.generations = generations;
+}
+
+void RunFolder::restore(Evolution& evolution) const {
+  const RunHistory::Parts& run = *parts_->history.parts_;
+  if (run.generations.empty()) return;
+  std::vector<Individual> living(run.living.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, living.size(), [&](std::size_t i) {
+    living[i] = run.individuals[run.living[i]];
+    living[i].genome = run.genome(run.living[i]);
+  });
+  evolution.restore(run.generations.back().number, std::move(living), run.individuals.size());
+}
+
+void RunFolder::append(const Generation& generation, const GenerationTimes& times) {
+  RunHistory::Parts& run = *parts_->history.parts_;
+  if (generation.number != static_cast<int>(run.generations.size()))
+    throw InputError(run.folder.string(), "generation " + std::to_string(generation.number) + " does not follow the " +
+                                              std::to_string(run.generations.size()) + " generations of the run");
+  GenerationRecord record{.first_id = run.individuals.size(), .generation = generation, .times = times};
+  const std::string genomes = store_genomes(record, run.genomes);
+  for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
+  parts_->writer.append(record, genomes);
+  run.refresh();
+  parts_->derived.write_now_and_then(parts_->history);
+}
+
+void RunFolder::write_all() { parts_->derived.write(parts_->history); }
+
+}  // namespace mercury

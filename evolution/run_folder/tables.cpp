@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evolution/run_folder/tables.h"
+
+#include <charconv>
+#include <cstdio>
+#include <string>
+
+#include "evolution/run_folder/derived_files.h"
+#include "evolution/run_folder/number_text.h"
+#include "mercury/quantity.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+class Csv {
+ public:
+  Csv& cell(std::string_view text) {
+    if (!at_line_start_) text_ += ',';
+    at_line_start_ = false;
+    if (text.find_first_of(",\"\n\r") == std::string_view::npos) {
+      text_ += text;
+      return *this;
+    }
+    text_ += '"';
+    for (const char letter : text) text_.append(letter == '"' ? 2 : 1, letter);
+    text_ += '"';
+    return *this;
+  }
+  Csv& cell(double value) { return cell(shortest_text(value)); }
+  template <std::integral Whole>
+  Csv& cell(Whole value) {
+    return cell(std::to_string(value));
+  }
+  void end_line() {
+    text_ += '\n';
+    at_line_start_ = true;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  bool at_line_start_ = true;
+};
+
+// "score", or "score_1", "score_2", ... of several objectives.
+std::string score_name(std::size_t objective, std::size_t objectives) {
+  return objectives == 1 ? "score" : "score_" + std::to_string(objective + 1);
+}
+
+std::string ancestor_list(const Individual& individual) {
+  if (individual.parents.empty()) return "[none]";
+  std::string list = "[";
+  for (const std::uint64_t parent : individual.parents)
+    list.append(list.size() > 1 ? "," : "").append(std::to_string(parent));
+  return list + "]";
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+// Numbers that an individual may lack.
+void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
+}
+
+}  // namespace
+
+void write_lineage(const RunHistory& run) {
+  const std::size_t objectives = run.settings().evolution.objectives.size();
+  Csv csv;
+  for (const char* name :
+       {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
+    csv.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
+  csv.cell("hash");
+  for (const Quantity& quantity : quantities()) csv.cell(quantity.name);
+  csv.end_line();
+  for (const Individual& individual : run.individuals()) {
+    const Assessment& assessment = individual.assessment;
+    const std::optional<int> died = run.died(individual.id);
+    csv.cell(individual.id).cell(ancestor_list(individual)).cell(individual.generation);
+    csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
+    csv.cell(individual.seed).cell(name_of(assessment.fate));
+    add_cells(csv, assessment.scores, objectives);
+    csv.cell(hexadecimal(assessment.hash));
+    add_cells(csv, assessment.values, quantities().size());
+    csv.end_line();
+  }
+  write_whole_file(run.folder() / lineage_name, csv.text());
+}
+
+void write_generations(const RunHistory& run) {
+  const std::size_t objectives = run.settings().evolution.objectives.size();
+  Csv csv;
+  for (const char* name : {"generation", "born", "living", "best_id"}) csv.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i)
+    for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
+      csv.cell(name + score_name(i, objectives));
+  for (const char* name :
+       {"sound", "stopped", "exploded", "overstretched", "failed", "seconds", "robots_per_second", "device"})
+    csv.cell(name);
+  csv.end_line();
+  for (const GenerationSummary& generation : run.generations()) {
+    csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
+    for (const ScoreSpread& scores : generation.scores)
+      csv.cell(scores.highest).cell(scores.upper_quartile).cell(scores.median).cell(scores.lower_quartile);
+    csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched - generation.failed)
+        .cell(generation.stopped)
+        .cell(generation.exploded)
+        .cell(generation.overstretched)
+        .cell(generation.failed);
+    const double seconds = generation.times.seconds;
+    csv.cell(fixed_text(seconds, 3))
+        .cell(seconds > 0 ? fixed_text(static_cast<double>(generation.born) / seconds, 1) : std::string())
+        .cell(generation.times.device);
+    csv.end_line();
+  }
+  write_whole_file(run.folder() / generations_name, csv.text());
+}
+
+}  // namespace mercury
