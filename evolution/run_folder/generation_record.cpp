@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/generation_record.h"
 
-#include "evolution/run_folder/bytes.h"
 #include "evolution/run_folder/checksum.h"
+#include "evolution/run_folder/record_bytes.h"
 
 namespace mercury {
 
@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t last_fate = static_cast<std::uint8_t>(Fate::failed);
 enum class Form : std::uint8_t { whole, difference };
 
-void encode(ByteWriter& writer, const Assessment& assessment) {
+void encode(RecordWriter& writer, const Assessment& assessment) {
   writer.number(static_cast<std::uint8_t>(assessment.fate));
   writer.text(assessment.problem);
   writer.numbers(assessment.scores);
@@ -22,7 +22,7 @@ void encode(ByteWriter& writer, const Assessment& assessment) {
   writer.number(assessment.hash);
 }
 
-Assessment decode_assessment(ByteReader& reader) {
+Assessment decode_assessment(RecordReader& reader) {
   Assessment assessment;
   const auto fate = reader.number<std::uint8_t>();
   if (fate > last_fate) throw DamagedBytes("an individual has an unknown fate");
@@ -35,7 +35,7 @@ Assessment decode_assessment(ByteReader& reader) {
   return assessment;
 }
 
-void encode(ByteWriter& writer, const Individual& individual, const StoredGenome& genome) {
+void encode(RecordWriter& writer, const Individual& individual, const StoredGenome& genome) {
   writer.numbers(individual.parents);
   writer.number(static_cast<std::uint32_t>(individual.line_began));
   writer.number(individual.seed);
@@ -45,7 +45,7 @@ void encode(ByteWriter& writer, const Individual& individual, const StoredGenome
   writer.number(genome.checksum);
 }
 
-Individual decode_individual(ByteReader& reader, int generation, std::uint64_t first_id) {
+Individual decode_individual(RecordReader& reader, int generation, std::uint64_t first_id) {
   Individual individual;
   individual.generation = generation;
   individual.parents = reader.numbers<std::uint64_t>();
@@ -59,7 +59,7 @@ Individual decode_individual(ByteReader& reader, int generation, std::uint64_t f
   return individual;
 }
 
-StoredGenome decode_genome(ByteReader& reader, const Individual& individual) {
+StoredGenome decode_genome(RecordReader& reader, const Individual& individual) {
   StoredGenome genome;
   const auto form = reader.number<std::uint8_t>();
   if (form > static_cast<std::uint8_t>(Form::difference)) throw DamagedBytes("a genome has an unknown form");
@@ -75,7 +75,7 @@ StoredGenome decode_genome(ByteReader& reader, const Individual& individual) {
 }  // namespace
 
 std::string encode_head(const RecordHead& head) {
-  ByteWriter writer;
+  RecordWriter writer;
   for (const char letter : head_mark) writer.number(static_cast<std::uint8_t>(letter));
   writer.number(head.index_size);
   writer.number(head.genomes_size);
@@ -87,7 +87,7 @@ std::string encode_head(const RecordHead& head) {
 
 std::optional<RecordHead> decode_head(std::string_view bytes) {
   if (bytes.size() < RecordHead::size || !bytes.starts_with(head_mark)) return std::nullopt;
-  ByteReader reader(bytes.substr(head_mark.size()));
+  RecordReader reader(bytes.substr(head_mark.size()));
   RecordHead head;
   head.index_size = reader.number<std::uint64_t>();
   head.genomes_size = reader.number<std::uint64_t>();
@@ -99,7 +99,7 @@ std::optional<RecordHead> decode_head(std::string_view bytes) {
 }
 
 std::string encode_index(const GenerationRecord& record) {
-  ByteWriter writer;
+  RecordWriter writer;
   const Generation& generation = record.generation;
   writer.number(static_cast<std::uint32_t>(generation.number));
   writer.number(record.first_id);
@@ -113,7 +113,7 @@ std::string encode_index(const GenerationRecord& record) {
 
 GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size) {
   constexpr std::size_t smallest_individual = 50;  // bytes
-  ByteReader reader(index);
+  RecordReader reader(index);
   GenerationRecord record;
   if (reader.number<std::uint32_t>() != static_cast<std::uint32_t>(number))
     throw DamagedBytes("the record is of another generation");

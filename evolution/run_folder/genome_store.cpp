@@ -2,7 +2,7 @@
 #include "evolution/run_folder/genome_store.h"
 
 #include "evolution/run_folder/byte_difference.h"
-#include "evolution/run_folder/bytes.h"
+#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 
 namespace mercury {

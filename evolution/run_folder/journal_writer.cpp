@@ -5,10 +5,10 @@
 
 #include <cerrno>
 
-#include "evolution/run_folder/bytes.h"
 #include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/journal_header.h"
+#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -22,7 +22,7 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, int flags) : fil
 
 JournalWriter JournalWriter::create(const std::filesystem::path& path, std::uint64_t fingerprint) {
   JournalWriter writer(path, O_CREAT | O_EXCL);
-  ByteWriter header;
+  RecordWriter header;
   for (const char letter : journal_mark) header.number(static_cast<std::uint8_t>(letter));
   header.number(journal_version);
   header.number(std::uint32_t{0});

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "evolution/run_folder/bytes.h"
+#include "evolution/run_folder/record_bytes.h"
 #include "mercury/random.h"
 
 namespace mercury {

@@ -20,7 +20,7 @@ class DamagedBytes : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-class ByteWriter {
+class RecordWriter {
  public:
   template <std::unsigned_integral Number>
   void number(Number value) {
@@ -46,9 +46,9 @@ class ByteWriter {
 
 // All functions throw DamagedBytes where the bytes end too early. Nothing is allocated from counts that the bytes that
 // follow do not back.
-class ByteReader {
+class RecordReader {
  public:
-  explicit ByteReader(std::string_view bytes) : rest_(bytes) {}
+  explicit RecordReader(std::string_view bytes) : rest_(bytes) {}
 
   template <class Number>
   Number number() {
