@@ -4,6 +4,7 @@
 
 #include "evolution/genomes/body_genome.h"
 #include "evolution/genomes/given_body.h"
+#include "mercury/configuration.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 
@@ -73,6 +74,7 @@ void read_head(ByteReader& reader, std::uint8_t tag) {
 }
 
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
+  if (!request.environment.empty()) environment_named(request.environment);  // or it throws
   if (!request.founders.empty() && request.genes == Genes::muscles) return make_given_body_space(request);
   const Generator& generator = generator_named(kind_for(request));
   const MakeSpace make = maker_of(generator.kind);

@@ -255,6 +255,7 @@ TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
   EXPECT_EQ(refused({.genes = Genes::muscles, .founders = {stiff}}), "robot rock: has no muscles that could change");
   EXPECT_THAT(refused({.kind = "fish"}), HasSubstr("kind: \"fish\" is not a kind of robot"));
   EXPECT_THAT(refused({.kind = "voxel", .values = {{"air", 7.0}}}), HasSubstr("air: 7 is not accepted"));
+  EXPECT_THAT(refused({.environment = "moon"}), HasSubstr("moon"));
   EXPECT_EQ(refusal([] { genes_named("all"); }), "genes: \"all\" is not accepted; give body, muscles or both");
   EXPECT_EQ(genes_named(name_of(Genes::both)), Genes::both);
 }
