@@ -24,7 +24,7 @@ enum Kind { random_voxels, large_voxels, network, full_lattice };
 const std::vector<Robot>& robots_of(const State& state) {
   static const std::array<std::vector<Robot>, 4> robots{
       random_voxel_robots({}, 1, 200), random_voxel_robots({.smallest = {10, 10, 10}, .largest = {10, 10, 10}}, 1, 20),
-      random_nn_robots({}, 1, 20), std::vector<Robot>{lattice(10)}};
+      random_nn_robots({.spacing = 0}, 1, 20), std::vector<Robot>{lattice(10)}};
   return robots[static_cast<std::size_t>(state.range(0))];
 }
 

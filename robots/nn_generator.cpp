@@ -31,6 +31,10 @@ const ParameterTable<NnOptions>& table() {
                  .unit = "m",
                  .usual_highest = 1,
                  .advanced = true}),
+      parameter(&Options::spacing,
+                {.name = "spacing",
+                 .help = "Least distance of two points, by their mean spacing; nearer ones are thinned or pushed apart",
+                 .highest = 1}),
       parameter(&Options::mirrored,
                 {.name = "mirrored", .help = "Share of the robots that have a left and a right", .highest = 1})};
   return rows;

@@ -162,6 +162,7 @@ NnGenome random_nn_genome(const NnOptions& options, std::uint64_t seed, std::uin
   genome.cloud_seed = random.bits();
   genome.points = options.points;
   genome.alpha = options.alpha;
+  genome.spacing = options.spacing;
   genome.environment = options.environment;
   genome.mirrored = random.chance(options.mirrored);
   Trunk trunk = random_trunk(options.hidden, genome.mirrored, random);

@@ -115,6 +115,10 @@ std::string to_origin(const NnGenome& genome) {
                     ",\"points\":" + std::to_string(genome.points) +
                     ",\"mirrored\":" + (genome.mirrored ? "true" : "false") + ",\"alpha\":";
   write(out, genome.alpha);
+  if (genome.spacing != 0) {
+    out += ",\"spacing\":";
+    write(out, genome.spacing);
+  }
   constexpr std::size_t usual_length = 13;  // of a number and its comma
   std::size_t numbers = 0;
   for (const Layer& layer : genome.network.layers) numbers += layer.weights.size() + layer.biases.size();
@@ -144,6 +148,10 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot) {
   const Json& alpha = member(origin, "alpha");
   if (!alpha.is_number()) refuse("/alpha", "a number of metres is expected");
   genome.alpha = alpha.get<float>();
+  if (const auto spacing = origin.find("spacing"); spacing != origin.end()) {  // files before 0.3.0 lack it
+    if (!spacing->is_number()) refuse("/spacing", "a share of the mean spacing is expected");
+    genome.spacing = spacing->get<float>();
+  }
   genome.environment = environment_of(robot);
   try {
     validate(genome);

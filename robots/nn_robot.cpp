@@ -10,6 +10,7 @@
 #include "mercury/error.h"
 #include "mercury/random.h"
 #include "robots/alpha_body.h"
+#include "robots/cloud_spacing.h"
 
 namespace mercury {
 namespace {
@@ -79,6 +80,20 @@ void order_and_merge(std::vector<CloudPoint>& cloud) {
               cloud.end());
 }
 
+void spread_out(std::vector<CloudPoint>& cloud, const NnGenome& genome) {
+  std::vector<Vec3> places;
+  for (const CloudPoint& p : cloud) places.push_back(p.place);
+  const double distance = static_cast<double>(genome.spacing) * mean_spacing(places);
+  if (!(distance > 0)) return;  // a plane, which has no body
+  std::vector<CloudPoint> spread_cloud;
+  for (const SpreadPoint& point : spread(places, genome.mirrored, distance)) {
+    spread_cloud.push_back(cloud[point.index]);
+    spread_cloud.back().place = point.place;
+  }
+  cloud = std::move(spread_cloud);
+  fit_into_unit_sphere(cloud);
+}
+
 std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
   const std::vector<float> outputs = evaluate(genome.network, normal_points(genome));
   std::vector<CloudPoint> cloud(genome.points);
@@ -92,6 +107,7 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
     cloud[i].material = static_cast<MaterialId>(1 + most_probable({output + 3, base_material_count}));
   }
   fit_into_unit_sphere(cloud);
+  if (genome.spacing > 0) spread_out(cloud, genome);
   order_and_merge(cloud);
   return cloud;
 }
@@ -148,6 +164,7 @@ void validate(const NnGenome& genome) {
     throw InputError("points", std::to_string(genome.points) + " is not accepted; give 64 to 65535");
   require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha",
           "give a radius > 0 m, or 0 for the smallest that holds all points");
+  require(genome.spacing >= 0 && genome.spacing <= 1, "spacing", "give a share of the mean spacing, 0 to 1");
 }
 
 Robot grow(const NnGenome& genome, const std::string& name) {

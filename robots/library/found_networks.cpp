@@ -8,7 +8,7 @@ namespace {
 
 Robot found(const char* name, const char* environment, std::size_t points, std::uint64_t index) {
   constexpr std::uint64_t seed = 1;
-  return grow(random_nn_genome({.points = points, .environment = environment}, seed, index), name);
+  return grow(random_nn_genome({.points = points, .spacing = 0, .environment = environment}, seed, index), name);
 }
 
 }  // namespace

@@ -25,6 +25,14 @@ TEST(NnOrigin, ASavedGenomeGrowsTheIdenticalRobot) {
   }
 }
 
+TEST(NnOrigin, WithoutASpacingHasNone) {  // files of versions before 0.3.0
+  NnGenome genome = random_nn_genome({.points = 100, .spacing = 0}, 1);
+  EXPECT_EQ(to_origin(genome).find("spacing"), std::string::npos);
+  EXPECT_EQ(nn_genome_of(grow(genome))->spacing, 0);
+  genome.spacing = 0.3f;
+  EXPECT_EQ(nn_genome_of(grow(genome))->spacing, 0.3f);
+}
+
 TEST(NnOrigin, EveryFloatComesBackFromTheOrigin) {
   NnGenome genome = simple_genome(identity, identity);
   Random random(6);
@@ -78,6 +86,10 @@ TEST(NnOrigin, OriginsThatCannotBeUsedAreRefusedWithTheirPlace) {
   EXPECT_EQ(replaced("\"points\":200", "\"points\":20"), "/origin: points: 20 is not accepted; give 64 to 65535");
   EXPECT_EQ(replaced("\"points\":200", "\"points\":-1"), "/origin/points: a whole number >= 0 is expected");
   EXPECT_EQ(replaced("\"mirrored\":false", "\"mirrored\":0"), "/origin/mirrored: true or false is expected");
+  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":0,\"spacing\":\"wide\""),
+            "/origin/spacing: a share of the mean spacing is expected");
+  EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":0,\"spacing\":2"),
+            "/origin: spacing: give a share of the mean spacing, 0 to 1");
   EXPECT_EQ(replaced("\"alpha\":0", "\"alpha\":-1"),
             "/origin: alpha: give a radius > 0 m, or 0 for the smallest that holds all points");
 }

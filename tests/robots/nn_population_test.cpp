@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/simulation.h"
 #include "tests/robots/nn_bodies.h"
 
 namespace mercury {
@@ -18,7 +19,8 @@ namespace {
 TEST(NnPopulation, BodiesOf500SeedsAreClosedSolidAndWhole) {
   int pinched = 0;
   for (const Robot& robot : random_nn_robots({.points = 96}, 1, 488)) pinched += check_body(robot);
-  for (const Robot& robot : random_nn_robots({}, 2, 12)) {
+  for (const Robot& robot : random_nn_robots({}, 2, 12)) pinched += check_body(robot);
+  for (const Robot& robot : random_nn_robots({.spacing = 0}, 2, 12)) {
     pinched += check_body(robot);
     EXPECT_EQ(robot.masses.size(), 512u);
   }
@@ -70,6 +72,7 @@ TEST(NnPopulation, OptionsOutOfRangeAreNamed) {
   EXPECT_EQ(message({.points = 63}), "points: 63 is not accepted; give 64 to 65535");
   EXPECT_EQ(message({.points = 65536}), "points: 65536 is not accepted; give 64 to 65535");
   EXPECT_EQ(message({.alpha = -0.5f}), "alpha: -0.5 is not accepted; give 0 m or more");
+  EXPECT_EQ(message({.spacing = 1.5f}), "spacing: 1.5 is not accepted; give 0 to 1");
   EXPECT_EQ(message({.mirrored = 2}), "mirrored: 2 is not accepted; give 0 to 1");
 }
 
@@ -105,6 +108,25 @@ TEST(NnPopulation, APopulationDiffersInShapeAndMaterials) {
   EXPECT_LT(quantile(slenderness, 8), 0.7 * quantile(slenderness, 56));
   EXPECT_GE(fewest, 2);
   EXPECT_GE(sum, 4);
+}
+
+// Median over robots of the largest strain of any spring, sampled every 0.1 s.
+double median_strain(const NnOptions& options) {
+  const std::vector<Robot> robots = random_nn_robots(options, 1, 20);
+  Simulation simulation({}, robots);
+  std::vector<float> largest(robots.size(), 0);
+  for (int sample = 0; sample < 60; ++sample) {
+    simulation.step(100);
+    const auto telemetry = simulation.telemetry();
+    for (std::size_t i = 0; i < robots.size(); ++i) largest[i] = std::max(largest[i], telemetry[i].largest_strain);
+  }
+  std::ranges::sort(largest);
+  return largest[robots.size() / 2];
+}
+
+TEST(NnPopulation, SpacingKeepsSpringsFromBeingTorn) {
+  EXPECT_GT(median_strain({.points = 200, .spacing = 0}), 2);
+  EXPECT_LT(median_strain({.points = 200}), 1);
 }
 
 }  // namespace

@@ -86,10 +86,14 @@ std::uint64_t hash_of(const Robot& robot) {
 
 // These hashes do not say what is right; they hold for every compiler, optimization and machine.
 TEST(NnRobot, ASeedGrowsTheSameBitsEverywhere) {
-  EXPECT_EQ(hash_of(grow(random_nn_genome({}, 1))), 15080024903124239027u);
-  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .mirrored = 1}, 2))),
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.spacing = 0}, 1))), 15080024903124239027u);
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .spacing = 0, .mirrored = 1}, 2))),
             18007120144977833535u);
-  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {}, .points = 3000, .alpha = 0.15f}, 3))), 8435448039254982332u);
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {}, .points = 3000, .alpha = 0.15f, .spacing = 0}, 3))),
+            8435448039254982332u);
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.spacing = 0.6f}, 1))), 2804734140950173474u);
+  EXPECT_EQ(hash_of(grow(random_nn_genome({.hidden = {20, 30, 40}, .points = 300, .spacing = 0.6f, .mirrored = 1}, 2))),
+            237037505877357863u);
 }
 
 TEST(NnRobot, SizesOfTheNetworkAreFree) {

@@ -24,20 +24,22 @@ struct NnGenome {
   std::size_t points = 512;      // of the cloud, 64 .. 65,535
   bool mirrored = false;         // points come in pairs, (x, y, z...) and (x, -y, z...)
   float alpha = 0;          // radius of the alpha shape [m]; 0 = the smallest that gives one body holding all points
+  float spacing = 0;        // of the points: by this share of their mean spacing they stay apart, 0 to 1
   std::string environment;  // where the robot belongs ("ocean"), kept in its origin; empty = not recorded
   friend bool operator==(const NnGenome&, const NnGenome&) = default;
 };
 
 // The robot of a genome, bit for bit the same on every machine; its origin keeps the genome.
-// Places are centred and scaled into the unit sphere [m]. Masses are the places that the body holds, ordered along a
-// Z-curve so that neighbours in space are near in memory. Springs are the edges of the body's tetrahedra, except those
-// shorter than 0.001 m; their material combines the materials of their two masses. Faces are the skin of the body.
-// Throws InputError if the genome is not valid, or if its places are not finite, all the same, in one plane, or hold no
-// body of the given alpha.
+// Places are centred and scaled into the unit sphere [m]. With a spacing, places nearer to each other than that are
+// thinned and the others pushed apart a little (robots/cloud_spacing.h says how and why). Masses are the places that
+// the body holds, ordered along a Z-curve so that neighbours in space are near in memory. Springs are the edges of the
+// body's tetrahedra, except those shorter than 0.001 m; their material combines the materials of their two masses.
+// Faces are the skin of the body. Throws InputError if the genome is not valid, or if its places are not finite, all
+// the same, in one plane, or hold no body of the given alpha.
 Robot grow(const NnGenome& genome, const std::string& name = {});
 
-// Throws InputError unless the network is valid and all its numbers are finite, there are 64 to 65,535 points, and
-// alpha is finite and >= 0.
+// Throws InputError unless the network is valid and all its numbers are finite, there are 64 to 65,535 points, alpha is
+// finite and >= 0, and the spacing is 0 to 1.
 void validate(const NnGenome& genome);
 
 // The genome in a robot's origin; none if it was not grown by a network. Throws InputError("/origin/weights/1", ...),
@@ -49,7 +51,7 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot);
 std::string to_origin(const NnGenome& genome);
 
 // A genome with a changed network (see mutate and crossover in network.h). A child of two parents keeps the cloud, the
-// symmetry and the alpha of the first.
+// symmetry, the alpha and the spacing of the first.
 NnGenome mutate(const NnGenome& genome, double rate, double size, std::uint64_t seed);
 NnGenome crossover(const NnGenome& a, const NnGenome& b, std::uint64_t seed);
 
@@ -60,12 +62,13 @@ struct NnOptions {
   std::vector<int> hidden = {64, 64};  // neurons of each hidden layer
   std::size_t points = 512;            // of the cloud
   float alpha = 0;                     // radius of the alpha shape [m]; 0 = as in NnGenome
+  float spacing = 0.6f;                // as in NnGenome; 0 = every point becomes a mass, however near another one is
   double mirrored = 0.5;               // share of robots with mirror symmetry
   std::string environment;             // as in NnGenome
 };
 
 // Throws ParameterError("hidden", "3 is not accepted; ...") and so on unless there are at most 15 hidden layers of 6 to
-// 4,096 neurons, 64 to 65,535 points, a finite alpha >= 0 and a share from 0 to 1.
+// 4,096 neurons, 64 to 65,535 points, a finite alpha >= 0, a spacing and a share from 0 to 1.
 void validate(const NnOptions& options);
 
 // The genome of the index-th robot of a seed. It depends on options, seed and index alone, bit for bit on every
