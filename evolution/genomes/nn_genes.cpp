@@ -44,6 +44,7 @@ void NnGenes::write(ByteWriter& writer) const {
   writer.add(static_cast<std::uint32_t>(genome.points));
   writer.add(static_cast<std::uint8_t>(genome.mirrored ? 1 : 0));
   writer.add(genome.alpha);
+  writer.add(genome.spacing);
   writer.add(static_cast<std::uint8_t>(genome.network.layers.size()));
   for (const Layer& layer : genome.network.layers) {
     writer.add(static_cast<std::uint16_t>(layer.inputs));
@@ -63,6 +64,7 @@ NnGenes NnGenes::read(ByteReader& reader) {
   if (mirrored > 1) throw InputError("genome", "mirrored must be 0 or 1");
   genome.mirrored = mirrored == 1;
   genome.alpha = reader.read<float>();
+  genome.spacing = reader.read<float>();
   const auto layers = reader.read<std::uint8_t>();
   for (std::size_t i = 0; i < layers; ++i) {
     Layer& layer = genome.network.layers.emplace_back();
