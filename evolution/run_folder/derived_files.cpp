@@ -2,7 +2,9 @@
 #include "evolution/run_folder/derived_files.h"
 
 #include "evolution/run_folder/champions.h"
+#include "evolution/run_folder/progress_plot.h"
 #include "evolution/run_folder/tables.h"
+#include "robots/whole_file.h"
 
 namespace mercury {
 
@@ -17,6 +19,7 @@ void DerivedFiles::write(const RunHistory& run) {
   write_champions(run);
   write_lineage(run);
   write_generations(run);
+  write_whole_file(run.folder() / progress_name, progress_plot(run));
   const Clock::time_point end = Clock::now();
   next_ = end + pauses * (end - start);
 }

@@ -164,15 +164,14 @@ TEST_F(RunFolders, DerivedFilesAreMadeAgainTheSame) {
   make_run("run", test_settings(4));
   open("run").write_all();
   std::vector<std::string> before;
-  constexpr std::array names{lineage_name, generations_name};
-  for (const std::string_view name : names) before.push_back(read("run/" + std::string(name)));
+  for (const std::string_view name : derived_file_names) before.push_back(read("run/" + std::string(name)));
   const std::string champion = fs::directory_iterator(path("run/best"))->path().filename().string();
   const std::string robot = read("run/best/" + champion);
-  for (const std::string_view name : names) fs::remove(path("run/" + std::string(name)));
+  for (const std::string_view name : derived_file_names) fs::remove(path("run/" + std::string(name)));
   fs::remove_all(path("run/best"));
   open("run").write_all();
   for (std::size_t i = 0; i < before.size(); ++i)
-    EXPECT_EQ(read("run/" + std::string(names[i])), before[i]) << names[i];
+    EXPECT_EQ(read("run/" + std::string(derived_file_names[i])), before[i]) << derived_file_names[i];
   EXPECT_EQ(read("run/best/" + champion), robot);
 }
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "evolution/run_folder/plot_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "evolution/run_folder/number_text.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::string_view grid_color = "#e7e9ec", axis_color = "#8a9099";
+constexpr double tick_size = 12, title_size = 13;
+
+// The power of ten at or below x > 0.
+double power_of_ten(double x) { return std::pow(10, std::floor(std::log10(x))); }
+
+double step_for(Range range, int most) {
+  const double smallest = (range.high - range.low) / most;
+  const double power = power_of_ten(smallest);
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= smallest * (1 - 1e-9)) return factor * power;
+  return 10 * power;
+}
+
+}  // namespace
+
+Range widened(Range range) {
+  if (range.high > range.low) return range;
+  const double half = range.low == 0 ? 1 : 0.1 * std::abs(range.low);
+  return {range.low - half, range.low + half};
+}
+
+std::vector<double> ticks_in(Range range, int most) {
+  const double step = step_for(range, most);
+  std::vector<double> ticks;
+  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * step; ++k)
+    ticks.push_back(k * step);
+  return ticks;
+}
+
+std::string with_commas(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
+    text.insert(static_cast<std::size_t>(at), 1, ',');
+  return text;
+}
+
+std::string tick_text(double value, double step) {
+  if (std::abs(value) < step / 2) return "0";
+  if (std::abs(value) >= 1e7 || step < 1e-4) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+  }
+  const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  const double size = std::abs(value);
+  std::string text = value < 0 ? "\u2212" : "";  // a minus sign is as wide as a digit
+  text.append(digits > 0 || size < 10'000 ? fixed_text(size, digits)
+                                          : with_commas(static_cast<std::uint64_t>(std::llround(size))));
+  return text;
+}
+
+void draw_left_axis(Svg& svg, const Box& box, const Scale& scale, std::string_view title) {
+  const Range range{scale.low, scale.high};
+  const int most = std::max(2, static_cast<int>(box.height / 50));
+  std::size_t widest = 0;
+  for (const double tick : ticks_in(range, most)) {
+    const std::string text = tick_text(tick, step_for(range, most));
+    svg.line({box.x, scale(tick)}, {box.right(), scale(tick)}, grid_color, 1);
+    svg.text({box.x - 10, scale(tick)}, text, {.size = tick_size, .anchor = Anchor::end});
+    widest = std::max(widest, text.size());
+  }
+  const double title_at = box.x - 32 - 6.6 * static_cast<double>(std::min<std::size_t>(widest, 6));
+  svg.text({title_at, box.y + box.height / 2}, title,
+           {.size = title_size, .color = "#33373d", .anchor = Anchor::middle, .turn = -90});
+}
+
+void draw_bottom_axis(Svg& svg, const Box& box, const Scale& scale, std::string_view title, bool whole) {
+  const Range range{scale.low, scale.high};
+  const int most = std::max(2, static_cast<int>(box.width / 80));
+  svg.line({box.x, box.bottom()}, {box.right(), box.bottom()}, axis_color, 1);
+  for (const double tick : ticks_in(range, most)) {
+    if (whole && tick != std::floor(tick)) continue;
+    svg.line({scale(tick), box.bottom()}, {scale(tick), box.bottom() + 5}, axis_color, 1);
+    svg.text({scale(tick), box.bottom() + 17}, tick_text(tick, step_for(range, most)),
+             {.size = tick_size, .anchor = Anchor::middle});
+  }
+  svg.text({box.x + box.width / 2, box.bottom() + 40}, title,
+           {.size = title_size, .color = "#33373d", .anchor = Anchor::middle});
+}
+
+std::string axis_title(const std::string& formula) {
+  const std::optional<std::size_t> q = find_quantity(formula);
+  if (!q || quantities()[*q].unit.empty()) return formula;
+  return std::string(formula).append(" [").append(quantities()[*q].unit).append("]");
+}
+
+}  // namespace mercury
