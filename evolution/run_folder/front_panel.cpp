@@ -55,6 +55,7 @@ void draw_front(Svg& svg, const Box& box, const RunHistory& run) {
   svg.polyline(steps, "#d55e00", 1.4);
   for (const Point& point : living) svg.circle({x(point.x), y(point.y)}, 3.2, "#56b4e9", "#ffffff");
   for (const Point& point : front_of(living)) svg.circle({x(point.x), y(point.y)}, 4.6, "#d55e00", "#ffffff");
+  svg.text({box.x, box.y - 14}, "the living; nobody beats those of the front in both objectives", {.size = 12});
   svg.text({box.right() + 12, box.y + 6}, "front", {.size = 12, .color = "#d55e00", .bold = true});
   svg.text({box.right() + 12, box.y + 26}, "other living", {.size = 12, .color = "#0072b2"});
 }

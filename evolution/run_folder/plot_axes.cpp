@@ -25,6 +25,24 @@ double step_for(Range range, int most) {
   return 10 * power;
 }
 
+std::size_t letters_in(std::string_view utf8) {
+  return static_cast<std::size_t>(std::ranges::count_if(utf8, [](char byte) { return (byte & 0xc0) != 0x80; }));
+}
+
+// "m/s2" as "m/s" with a raised 2.
+std::string with_raised_digits(std::string_view unit) {
+  std::string text;
+  for (const char letter : unit) {
+    if (letter == '2')
+      text += "\u00b2";
+    else if (letter == '3')
+      text += "\u00b3";
+    else
+      text += letter;
+  }
+  return text;
+}
+
 }  // namespace
 
 Range widened(Range range) {
@@ -71,7 +89,7 @@ void draw_left_axis(Svg& svg, const Box& box, const Scale& scale, std::string_vi
     const std::string text = tick_text(tick, step_for(range, most));
     svg.line({box.x, scale(tick)}, {box.right(), scale(tick)}, grid_color, 1);
     svg.text({box.x - 10, scale(tick)}, text, {.size = tick_size, .anchor = Anchor::end});
-    widest = std::max(widest, text.size());
+    widest = std::max(widest, letters_in(text));
   }
   const double title_at = box.x - 32 - 6.6 * static_cast<double>(std::min<std::size_t>(widest, 6));
   svg.text({title_at, box.y + box.height / 2}, title,
@@ -95,7 +113,7 @@ void draw_bottom_axis(Svg& svg, const Box& box, const Scale& scale, std::string_
 std::string axis_title(const std::string& formula) {
   const std::optional<std::size_t> q = find_quantity(formula);
   if (!q || quantities()[*q].unit.empty()) return formula;
-  return std::string(formula).append(" [").append(quantities()[*q].unit).append("]");
+  return std::string(formula).append(" [").append(with_raised_digits(quantities()[*q].unit)).append("]");
 }
 
 }  // namespace mercury

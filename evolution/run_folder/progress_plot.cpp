@@ -8,7 +8,7 @@
 namespace mercury {
 namespace {
 
-constexpr double width = 960, left = 92, right = 138, top = 92, below = 68, gap = 34, bottom = 34;
+constexpr double width = 960, left = 92, right = 138, top = 112, below = 68, gap = 34, bottom = 34;
 
 std::string title_of(const RunHistory& run) {
   const std::filesystem::path folder = std::filesystem::absolute(run.folder()).lexically_normal();

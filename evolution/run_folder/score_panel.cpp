@@ -45,7 +45,7 @@ Range score_range(std::span<const GenerationSummary> generations, std::size_t ob
   if (std::isfinite(quartile.low))
     range.low = std::max(std::min(best.low, quartile.low),
                          best.low - 2 * std::max(best.high - best.low, 0.1 * std::abs(best.low)));
-  if (range.low > 0 && range.low < 0.6 * range.high) range.low = 0;
+  if (range.low > 0 && range.low < 0.35 * range.high) range.low = 0;
   range = widened(range);
   const double margin = 0.05 * (range.high - range.low);
   return {range.low == 0 ? 0 : range.low - margin, range.high + margin};
@@ -91,6 +91,7 @@ void draw_scores(Svg& svg, const Box& box, const RunHistory& run, std::size_t ob
   const Scale x{0, last, box.x, box.right()}, y{range.low, range.high, box.bottom(), box.y};
   draw_left_axis(svg, box, y, axis_title(run.settings().evolution.objectives[objective]));
   draw_bottom_axis(svg, box, x, "generation", true);
+  svg.text({box.x, box.y - 14}, "the best, the median and the middle half of the living", {.size = 12});
   if (generations.empty()) return;
 
   const std::vector<const GenerationSummary*> chosen = drawn(generations);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/tables.h"
 
-#include <charconv>
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -56,6 +56,13 @@ std::string ancestor_list(const Individual& individual) {
   return list + "]";
 }
 
+// A quantity's name, unless tools for phylogenies give a column of that name a meaning of their own.
+std::string column_of(const Quantity& quantity) {
+  constexpr std::string_view taken[] = {"branch_length", "edge_length", "label",    "length",          "name",
+                                        "num_orgs",      "taxon_label", "tot_orgs", "total_offspring", "weight"};
+  return (std::ranges::find(taken, quantity.name) == std::end(taken) ? "" : "robot_") + std::string(quantity.name);
+}
+
 std::string hexadecimal(std::uint64_t value) {
   char text[20];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
@@ -77,7 +84,7 @@ void write_lineage(const RunHistory& run) {
     csv.cell(name);
   for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
   csv.cell("hash");
-  for (const Quantity& quantity : quantities()) csv.cell(quantity.name);
+  for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
   csv.end_line();
   for (const Individual& individual : run.individuals()) {
     const Assessment& assessment = individual.assessment;
