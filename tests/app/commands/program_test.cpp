@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
             "NoRobots", {"run"}, "no robots given; name files or folders, or use --random voxel:12, nn:12 or shell:12"},
         BadInput{"UnknownKind",
                  {"run", "--random", "fish:2"},
-                 "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N or shell:N"},
+                 "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N"},
         BadInput{"NoCount",
                  {"run", "--random", "voxel:0"},
                  "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
