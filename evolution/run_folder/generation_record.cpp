@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/generation_record.h"
 
+#include "evolution/run_folder/assessment_bytes.h"
 #include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/record_bytes.h"
 
@@ -10,30 +11,7 @@ const std::string_view head_mark = "GENERATN";
 
 namespace {
 
-constexpr std::uint8_t last_fate = static_cast<std::uint8_t>(Fate::failed);
 enum class Form : std::uint8_t { whole, difference };
-
-void encode(RecordWriter& writer, const Assessment& assessment) {
-  writer.number(static_cast<std::uint8_t>(assessment.fate));
-  writer.text(assessment.problem);
-  writer.numbers(assessment.scores);
-  writer.numbers(assessment.values);
-  writer.numbers(assessment.interim_scores);
-  writer.number(assessment.hash);
-}
-
-Assessment decode_assessment(RecordReader& reader) {
-  Assessment assessment;
-  const auto fate = reader.number<std::uint8_t>();
-  if (fate > last_fate) throw DamagedBytes("an individual has an unknown fate");
-  assessment.fate = static_cast<Fate>(fate);
-  assessment.problem = reader.text();
-  assessment.scores = reader.numbers<double>();
-  assessment.values = reader.numbers<double>();
-  assessment.interim_scores = reader.numbers<double>();
-  assessment.hash = reader.number<std::uint64_t>();
-  return assessment;
-}
 
 void encode(RecordWriter& writer, const Individual& individual, const StoredGenome& genome) {
   writer.numbers(individual.parents);

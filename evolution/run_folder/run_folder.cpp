@@ -99,15 +99,16 @@ void RunFolder::set_generations(int generations) {
   run.file.settings.evolution.generations = generations;
 }
 
-void RunFolder::restore(Evolution& evolution) const {
-  const RunHistory::Parts& run = *parts_->history.parts_;
-  if (run.generations.empty()) return;
-  std::vector<Individual> living(run.living.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, living.size(), [&](std::size_t i) {
-    living[i] = run.individuals[run.living[i]];
-    living[i].genome = run.genome(run.living[i]);
+void restore(const RunHistory& history, Evolution& evolution) {
+  if (history.generations().empty()) return;
+  history.space();  // made once, before several threads need it
+  const std::span<const std::uint64_t> ids = history.living();
+  std::vector<Individual> living(ids.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
+    living[i] = history.individuals()[ids[i]];
+    living[i].genome = history.genome(ids[i]);
   });
-  evolution.restore(run.generations.back().number, std::move(living), run.individuals.size());
+  evolution.restore(history.generations().back().number, std::move(living), history.individuals().size());
 }
 
 void RunFolder::append(const Generation& generation, const GenerationTimes& times) {

@@ -98,6 +98,9 @@ class RunHistory {
   std::unique_ptr<Parts> parts_;
 };
 
+// Puts an evolution of the run's settings where the run ends.
+void restore(const RunHistory& history, Evolution& evolution);
+
 // Whether the folder looks like a run: it has a run.toml.
 bool is_run_folder(const std::filesystem::path& folder);
 
@@ -119,8 +122,6 @@ class RunFolder {
   const GenomeSpace& space() const;
   // The number of generations may be raised after the fact; run.toml is written again.
   void set_generations(int generations);
-  // Puts the evolution where the journal ends.
-  void restore(Evolution& evolution) const;
 
   // Appends a generation to the journal; it is on the disk when this returns. The other files follow now and then, so
   // that they take a small share of the time. If it cannot be written (a full disk), throws InputError, and the journal

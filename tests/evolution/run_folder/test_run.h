@@ -110,7 +110,7 @@ inline RunSettings test_settings(int generations = 5) {
 // Takes generations until it is over, or as many as given.
 inline void evolve(RunFolder& run, int most = 1'000'000) {
   Evolution evolution(run.history().settings().evolution, run.space());
-  run.restore(evolution);
+  restore(run.history(), evolution);
   ByteAssessor assessor(run.history().settings().evolution.objectives.size());
   for (int i = 0; i < most; ++i) {
     const std::optional<Generation> generation = evolution.advance(assessor);
