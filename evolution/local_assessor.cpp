@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tries candidates on the devices of this process, by an Evaluator: it grows them while others are stepped.
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double sample_period = 0.05;  // of the telemetry [s]
 constexpr std::chrono::milliseconds watch_period(100);
+constexpr std::size_t most_waiting = 128;  // evaluations
 
 std::int64_t steps_in(double seconds, const Configuration& configuration) {
   return static_cast<std::int64_t>(std::llround(seconds / configuration.dt));
@@ -127,7 +129,6 @@ class LocalAssessor : public Assessor {
 
   std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
                                                 std::span<const double> interim_limits, const Watch& watch) override {
-    (void)interim_limits;
     const auto trials = static_cast<std::size_t>(settings_.trials);
     const std::size_t all = candidates.size() * trials;
     Cast cast(candidates, settings_, seed_);
@@ -137,17 +138,43 @@ class LocalAssessor : public Assessor {
         .steps = steps_in(settings_.seconds, configuration_) - steps_in(settings_.settle, configuration_),
         .sample_every = std::max<std::int64_t>(1, steps_in(sample_period, configuration_)),
         .hashes = true};
+    std::vector<std::vector<double>> interim_scores(candidates.size());
+    if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
+      for (std::size_t check = 1; check <= racing_checks; ++check)
+        request.checks.push_back(request.steps * static_cast<std::int64_t>(check) /
+                                 static_cast<std::int64_t>(racing_checks + 1));
+      request.goes_on = [&](const Evaluation& so_far) {
+        std::vector<double>& scores = interim_scores[so_far.index];  // one trial per candidate
+        const std::size_t check = scores.size();
+        scores.push_back(objectives_.front().score(
+            quantities_of({.robot = *so_far.robot, .evaluation = so_far, .configuration = configuration_})));
+        return interim_limits.empty() || scores[check] >= interim_limits[check];
+      };
+    }
     Evaluator evaluator(request, std::ref(cast), all);
-    std::vector<Assessment> assessments;
+    std::vector<Assessment> assessments(candidates.size());
+    std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
+    std::size_t assessed = 0;
+    const auto assess_waiting = [&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, waiting.size() / trials, [&](std::size_t k) {
+        Tally tally(configuration_, settings_, objectives_);
+        for (std::size_t t = 0; t < trials; ++t) tally.add(waiting[k * trials + t]);
+        assessments[assessed + k] = tally.result(std::move(interim_scores[assessed + k]));
+      });
+      assessed += waiting.size() / trials;
+      waiting.clear();
+    };
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      Tally tally(configuration_, settings_, objectives_);
       for (std::size_t t = 0; t < trials; ++t) {
         while (!evaluator.wait_for(watch_period))
           if (watch && !watch(evaluator.progress().done, all)) return std::nullopt;
-        tally.add(evaluator.next().value());
+        waiting.push_back(evaluator.next().value());
       }
-      assessments.push_back(tally.result({}));
+      if (waiting.size() < most_waiting) continue;
+      assess_waiting();
+      if (watch && !watch(evaluator.progress().done, all)) return std::nullopt;
     }
+    assess_waiting();
     if (watch && !watch(all, all)) return std::nullopt;
     if (device_name_.empty()) device_name_ = evaluator.device_name();
     return assessments;

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace mercury {
+
+// Whether this process's environment is that of one of several processes of an MPI launcher.
+bool launched_by_mpi();
+
+}  // namespace mercury
