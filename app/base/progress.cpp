@@ -16,16 +16,6 @@ namespace {
 constexpr std::chrono::milliseconds bar_period{100};
 constexpr std::chrono::seconds line_period{5};
 
-bool is_terminal(int descriptor) {
-  const char* terminal = std::getenv("TERM");
-  return isatty(descriptor) && terminal && std::string(terminal) != "dumb";
-}
-
-int columns_of(int descriptor) {
-  winsize size{};
-  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 std::string rate_and_time_left(const std::string& unit, double done, std::int64_t total, double elapsed) {
   if (done <= 0 || elapsed <= 0) return {};
   const double rate = done / elapsed;
@@ -38,6 +28,16 @@ double fraction_of(double done, std::int64_t total) {
 }
 
 }  // namespace
+
+bool draws_on_terminal() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) && terminal && std::string(terminal) != "dumb";
+}
+
+int terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
 
 std::string with_magnitude(double value) {
   if (!std::isfinite(value)) return "-";
@@ -78,8 +78,8 @@ std::string progress_line(const std::string& what, const std::string& unit, doub
 }
 
 Progress::Progress(std::string what, std::string unit, std::int64_t total, bool quiet)
-    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet),
-      terminal_(is_terminal(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
+    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(draws_on_terminal()),
+      start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
@@ -95,7 +95,7 @@ void Progress::update_with_fraction(double done) {
   shown_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   if (terminal_)
-    fmt::print(stderr, "\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, columns_of(STDERR_FILENO)));
+    fmt::print(stderr, "\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, terminal_columns()));
   else
     fmt::print(stderr, "{}\n", progress_line(what_, unit_, done, total_, elapsed));
 }

@@ -33,6 +33,11 @@ class Progress {
   Clock::time_point start_, last_;
 };
 
+// Whether standard error is a terminal on which a line can be drawn again.
+bool draws_on_terminal();
+// Columns of that terminal; 80 if unknown.
+int terminal_columns();
+
 // The bar: "rendering [#####     ]  50 %  150/300 frames  42.1 frames/s  0:04 left", cut to `columns`.
 std::string progress_bar(const std::string& what, const std::string& unit, double done, std::int64_t total,
                          double elapsed, int columns);

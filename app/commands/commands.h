@@ -19,6 +19,7 @@ using Choose = std::function<void(CommandBody)>;
 void add_run_command(CLI::App& program, const Choose& choose);
 void add_view_command(CLI::App& program, const Choose& choose);
 void add_render_command(CLI::App& program, const Choose& choose);
+void add_evolve_command(CLI::App& program, const Choose& choose);
 void add_new_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);
 void add_info_command(CLI::App& program, const Choose& choose);

@@ -55,6 +55,7 @@ class Program {
     add_view_command(app_, choose);
     add_render_command(app_, choose);
     add_run_command(app_, choose);
+    add_evolve_command(app_, choose);
     add_new_command(app_, choose);
     add_bench_command(app_, choose);
     add_info_command(app_, choose);

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury evolve: evolves robots, into a run folder.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/base/interrupt.h"
+#include "app/base/progress.h"
+#include "app/commands/commands.h"
+#include "app/commands/evolution_progress.h"
+#include "app/options/evolution_options.h"
+#include "app/options/option_values.h"
+#include "evolution/distribution/ranks.h"
+#include "mercury/cuda_devices.h"
+#include "mercury/error.h"
+#include "mercury/run_folder.h"
+#include "mercury/shards.h"
+
+namespace mercury {
+namespace {
+
+struct EvolveOptions {
+  std::string folder, config;
+  std::string shard;  // "3/8"
+  bool resume = false, prepare = false, merge = false, force = false, quiet = false;
+  EvolutionOptions run;
+};
+
+void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", message); }
+
+double median_score(const Evolution& evolution) {
+  std::vector<double> scores;
+  for (const Individual& individual : evolution.living()) scores.push_back(individual.score());
+  if (scores.empty()) return worst_score;
+  const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(scores.size() / 2);
+  std::ranges::nth_element(scores, middle);
+  return *middle;
+}
+
+RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
+  const std::filesystem::path folder = options.folder;
+  if (options.resume) {
+    options.run.require_only_what_may_change(command);
+    RunFolder run = RunFolder::open(folder);
+    if (options.run.generations()) run.set_generations(*options.run.generations());
+    return run;
+  }
+  if (!options.force && is_run_folder(folder))
+    throw InputError(folder.string(), "holds a run; --resume goes on with it, --force replaces it");
+  std::vector<std::string> notes;
+  const RunSettings settings = options.run.settings(notes);
+  for (const std::string& note : notes) say(note);
+  return RunFolder::create(folder, settings, options.force);
+}
+
+// Runs generation after generation. Returns false if the user interrupted.
+bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, bool quiet) {
+  EvolutionProgress progress(evolution.next_generation(), evolution.settings().generations, quiet);
+  const Watch watch = [&](std::size_t done, std::size_t all) {
+    progress.update(done, all);
+    return !interrupted();
+  };
+  while (!evolution.is_over()) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::optional<Generation> generation = evolution.advance(assessor, watch);
+    if (!generation) return false;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.append(*generation, {.seconds = seconds, .device = assessor.device_name()});
+    progress.finish_generation(generation->born.size() * static_cast<std::size_t>(evolution.settings().trials.trials),
+                               evolution.living().empty() ? worst_score : evolution.living().front().score(),
+                               median_score(evolution));
+  }
+  return true;
+}
+
+void report(const EvolveOptions& options, const RunFolder& run, const Evolution& evolution) {
+  if (evolution.living().empty()) return;
+  const Individual& best = evolution.living().front();
+  const std::vector<std::string>& objectives = evolution.settings().objectives;
+  fmt::print("{}: generation {}, {} robots\n", options.folder, evolution.next_generation() - 1,
+             run.history().individuals().size());
+  for (std::size_t i = 0; i < objectives.size(); ++i)
+    fmt::print("best: {} = {:.6g}\n", objectives[i], best.assessment.scores.at(i));
+  fmt::print("born in generation {} as number {}; see {}\n", best.generation, best.id,
+             (std::filesystem::path(options.folder) / "best").string());
+}
+
+// The settings of the run with the device that the user gave for this process.
+EvolutionSettings settings_here(const EvolveOptions& options, const CLI::App& command, const RunSettings& run) {
+  EvolutionSettings settings = run.evolution;
+  options.run.choose_device(command, settings.configuration);
+  return settings;
+}
+
+int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSettings& settings, Assessor& assessor) {
+  Evolution evolution(settings, run.space());
+  restore(run.history(), evolution);
+  if (evolution.is_over() && !options.quiet)
+    say(fmt::format("{} has all its {} generations; --generations raises their number", options.folder,
+                    settings.generations));
+  const bool done = evolve(run, evolution, assessor, options.quiet);
+  run.write_all();
+  report(options, run, evolution);
+  if (!done)
+    say(fmt::format("stopped in generation {}, which is lost; mercury evolve {} --resume goes on",
+                    evolution.next_generation(), options.folder));
+  return done ? 0 : 1;
+}
+
+int evolve_here(const EvolveOptions& options, const CLI::App& command) {
+  RunFolder run = open_folder(options, command);
+  if (options.prepare) return 0;
+  const EvolutionSettings settings = settings_here(options, command, run.history().settings());
+  return evolve_in(options, run, settings, *make_assessor(settings));
+}
+
+// --- By MPI
+
+// Each rank on a host takes a GPU of its own, unless the user names one.
+void choose_gpu_of_rank(const Ranks& ranks, Device& device) {
+  const int gpus = device.kind == DeviceKind::automatic ? cuda_device_count() : 0;
+  if (gpus > 0) device = {.kind = DeviceKind::cuda, .index = ranks.rank_on_host() % gpus, .threads = device.threads};
+}
+
+int evolve_as_rank_0(const EvolveOptions& options, const CLI::App& command, Ranks& ranks) {
+  std::optional<RunFolder> run;
+  try {
+    run = open_folder(options, command);
+    ranks.share(run->history().settings());
+  } catch (...) {
+    if (!run) ranks.abandon();
+    throw;
+  }
+  EvolutionSettings settings = settings_here(options, command, run->history().settings());
+  choose_gpu_of_rank(ranks, settings.configuration.device);
+  const std::unique_ptr<Assessor> local = make_assessor(settings);
+  return evolve_in(options, *run, settings, *ranks.distribute(*local));
+}
+
+int evolve_as_other_rank(const EvolveOptions& options, const CLI::App& command, Ranks& ranks) {
+  const std::optional<RunSettings> run = ranks.receive_settings();
+  if (!run) return 2;
+  EvolutionSettings settings = settings_here(options, command, *run);
+  choose_gpu_of_rank(ranks, settings.configuration.device);
+  const std::unique_ptr<GenomeSpace> space = make_genome_space(run->space);
+  ranks.serve([&] { return make_assessor(settings); }, *space);
+  return 0;
+}
+
+// --- In shards
+
+// "3/8"
+std::pair<std::size_t, std::size_t> shard_from(const std::string& text) {
+  const std::vector<std::string_view> parts = split(text, '/');
+  const auto number = [&](std::size_t i) { return number_from<std::uint64_t>("--shard", parts[i]); };
+  if (parts.size() != 2 || number(0) < 1 || number(0) > number(1))
+    throw InputError("--shard", fmt::format("\"{}\" is not accepted; give I/N, from 1/N to N/N", text));
+  return {number(0), number(1)};
+}
+
+int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
+  const auto [shard, count] = shard_from(options.shard);
+  options.run.require_only_what_may_change(command);
+  const RunHistory history(options.folder);
+  const EvolutionSettings settings = settings_here(options, command, history.settings());
+  Evolution evolution(settings, history.space());
+  restore(history, evolution);
+  if (evolution.is_over())
+    throw InputError(options.folder, fmt::format("has all its {} generations; mercury evolve {} --merge "
+                                                 "--generations N raises their number",
+                                                 settings.generations, options.folder));
+  Progress progress(fmt::format("generation {}, shard {}/{}", evolution.next_generation(), shard, count), "robots",
+                    static_cast<std::int64_t>(evolution.children().size() / count + 1), options.quiet);
+  const std::optional<std::filesystem::path> file = assess_shard(options.folder, evolution, *make_assessor(settings),
+                                                                 shard, count, [&](std::size_t done, std::size_t) {
+                                                                   progress.update(static_cast<std::int64_t>(done));
+                                                                   return !interrupted();
+                                                                 });
+  if (!file) {
+    say("stopped; the shard was not written");
+    return 1;
+  }
+  fmt::print("{}\n", file->string());
+  return 0;
+}
+
+int merge(const EvolveOptions& options, const CLI::App& command) {
+  options.run.require_only_what_may_change(command);
+  RunFolder run = RunFolder::open(options.folder);
+  if (options.run.generations()) run.set_generations(*options.run.generations());
+  Evolution evolution(run.history().settings().evolution, run.space());
+  restore(run.history(), evolution);
+  run.append(merge_shards(options.folder, evolution), {.seconds = 0, .device = "shards"});
+  remove_shards(options.folder, evolution.next_generation());
+  run.write_all();
+  report(options, run, evolution);
+  return 0;
+}
+
+int evolve(const EvolveOptions& options, const CLI::App& command) {
+  if (options.resume + options.prepare + options.merge + !options.shard.empty() > 1)
+    throw InputError("--resume, --prepare, --shard and --merge", "give one of them");
+  if (!options.shard.empty()) return evolve_shard(options, command);
+  if (options.merge) return merge(options, command);
+  if (!Ranks::launched()) return evolve_here(options, command);
+  Ranks ranks;
+  return ranks.rank() == 0 ? evolve_as_rank_0(options, command, ranks) : evolve_as_other_rank(options, command, ranks);
+}
+
+}  // namespace
+
+void add_evolve_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<EvolveOptions>();
+  CLI::App* command = program.add_subcommand("evolve", "Evolve robots; every ancestor is kept, and a run can go on");
+  command->add_option("RUN", options->folder, "The folder of the run")->type_name("FOLDER")->required();
+  command->add_flag("--resume", options->resume, "Go on with the run in the folder");
+  command->add_flag("--prepare", options->prepare, "Make the folder of a run, for --shard")->group("Several hosts");
+  add_text(*command, "--shard", options->shard, "Try part I of N of the next generation, into a file of the folder",
+           "I/N")
+      ->group("Several hosts");
+  command->add_flag("--merge", options->merge, "Select from the files of all parts")->group("Several hosts");
+  command->add_flag("--force", options->force, "Replace the run in the folder");
+  command->add_flag("--quiet", options->quiet, "Print no progress on standard error");
+  options->run.add_to(*command);
+  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
+           "FILE.toml");
+  command->footer(
+      "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"
+      "docs/evolution.md explains algorithms, genomes and the files of the folder.\n\n"
+      "Examples:\n"
+      "  mercury evolve swim --from voxel:6x4x4 --population 64 --generations 50\n"
+      "  mercury evolve crawl --from cppn:6x4x4 --environment land --settle 1 --objective \"distance - 0.01 * work\"\n"
+      "  mercury evolve eels --from eel.json --genes muscles --seconds 20\n"
+      "  mercury evolve map --from cppn:6x4x4 --axis masses:20:120 --axis muscle_share\n"
+      "  mercury evolve swim --resume --generations 200\n"
+      "  mpirun -n 8 mercury evolve swim --from voxel:6x4x4 --population 4096");
+  command->callback([options, choose, command] { choose([options, command] { return evolve(*options, *command); }); });
+}
+
+}  // namespace mercury

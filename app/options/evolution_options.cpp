@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/options/evolution_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "app/base/version.h"
+#include "app/options/option_values.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "mercury/quantity.h"
+#include "mercury/robot_file.h"
+
+namespace mercury {
+namespace {
+
+constexpr const char* search_group = "Search";
+constexpr const char* trial_group = "Trials";
+
+std::vector<std::string> names_of_algorithms() {
+  std::vector<std::string> names;
+  for (const AlgorithmDescription& algorithm : algorithms()) names.emplace_back(algorithm.name);
+  return names;
+}
+
+std::vector<std::string> names_of_quantities() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) names.emplace_back(quantity.name);
+  return names;
+}
+
+// "masses", "masses:20:120" or "masses:20:120:8"
+MapAxis axis_from(const std::string& text) {
+  const std::vector<std::string_view> parts = split(text, ':');
+  const std::optional<std::size_t> quantity = find_quantity(parts.front());
+  if (!quantity)
+    throw InputError("--axis", fmt::format("\"{}\" is not a quantity; give {}", parts.front(),
+                                           fmt::join(names_of_quantities(), ", ")));
+  const Quantity& found = quantities()[*quantity];
+  MapAxis axis{.quantity = std::string(found.name), .lowest = found.usual_lowest, .highest = found.usual_highest};
+  if (parts.size() == 2 || parts.size() > 4)
+    throw InputError("--axis",
+                     fmt::format("\"{}\" is not accepted; give NAME, NAME:LOW:HIGH or NAME:LOW:HIGH:CELLS", text));
+  if (parts.size() > 2) {
+    axis.lowest = number_from<double>("--axis", parts[1]);
+    axis.highest = number_from<double>("--axis", parts[2]);
+  }
+  if (parts.size() > 3) axis.cells = number_from<int>("--axis", parts[3]);
+  return axis;
+}
+
+bool is_given(const CLI::App& command, const std::string& option) {
+  const CLI::Option* found = command.get_option_no_throw(option);
+  return found && found->count() > 0;
+}
+
+}  // namespace
+
+void EvolutionOptions::add_to(CLI::App& command) {
+  const auto repeated = [&](const char* name, std::vector<std::string>& values, const std::string& help,
+                            const char* form) {
+    return command.add_option(name, values, help)->allow_extra_args(false)->type_name(form)->group(search_group);
+  };
+  command
+      .add_option("--from", from_,
+                  fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders to start "
+                              "from (default voxel)",
+                              generator_kinds()))
+      ->type_name("KIND[:SIZE]|PATH...")
+      ->group(search_group);
+  add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
+      ->group(search_group);
+  add_value(command, "--algorithm", algorithm_,
+            "Algorithm (default afpo; nsga2 with several objectives, map-elites with --axis)",
+            fmt::format("{}", fmt::join(names_of_algorithms(), "|")),
+            [](const std::string&, const std::string& text) { return text; })
+      ->group(search_group);
+  repeated("--objective", objectives_,
+           fmt::format("Formula to maximise (default distance); several give a front. Quantities: {}",
+                       fmt::join(names_of_quantities(), ", ")),
+           "FORMULA");
+  repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]");
+  const auto search = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
+    add_number(command, name, value, help, form)->group(search_group);
+  };
+  AlgorithmSettings& algorithm = given_.algorithm;
+  search("--population", algorithm.population, "Robots that live on after each generation (default 128)", "N");
+  search("--children", given_.children, "Robots born in a generation (default: --population)", "N");
+  search("--generations", generations_, "Generations after the first, random one (default 100)", "N");
+  search("--mutation", given_.mutation, "Strength of mutations (default 1)", "X");
+  search("--crossover", algorithm.crossover,
+         fmt::format("Share of the children with two parents (default {})", algorithm.crossover), "0..1");
+  search("--tournament", algorithm.tournament,
+         fmt::format("Robots among which the best becomes a parent (default {})", algorithm.tournament), "N");
+  search("--elites", algorithm.elites,
+         fmt::format("ga: share that lives on unconditionally (default {})", algorithm.elites), "0..1");
+  search("--seed", given_.seed, "Seed of the run (default 1)", "N");
+
+  TrialSettings& trials = given_.trials;
+  const auto trial = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
+    add_number(command, name, value, help, form)->group(trial_group);
+  };
+  trial("--settle", trials.settle, "Measure from this time on, after robots have fallen (default 0)", "S");
+  trial("--trials", trials.trials, "Trials per robot, started at different moments of its movement (default 1)", "N");
+  trial("--noise", trials.noise, "Standard deviation of stiffness and amplitude between trials (default 0)", "0..1");
+  trial("--damage", trials.damage, "Share of the voxels that are missing in a trial (default 0)", "0..1");
+  trial("--strain-limit", trials.strain_limit,
+        fmt::format("Robots with a spring strained more get the worst score (default {})", trials.strain_limit), "X");
+  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")->group(trial_group);
+  simulation_.add_to(command);
+  generators_.add_to(command);
+}
+
+void EvolutionOptions::set_size(GenomeSpaceRequest& space, const std::string& size) const {
+  const GeneratorParameter& parameter = generator_named(space.kind).parameters.front();
+  space.values[parameter.name] = parameter_value_from(parameter, "--from", size);
+}
+
+// Paths are what is not a kind of robot.
+GenomeSpaceRequest EvolutionOptions::space(std::vector<std::string>& paths) const {
+  GenomeSpaceRequest space{.values = generators_.values(), .genes = genes_named(genes_)};
+  bool has_kind = false;
+  for (const std::string& from : from_) {
+    const std::string kind = from.substr(0, from.find(':'));
+    if (!find_generator(kind)) {
+      paths.push_back(from);
+      continue;
+    }
+    if (has_kind) throw InputError("--from", "give one kind of robot");
+    has_kind = true;
+    space.kind = kind;
+    if (kind.size() < from.size()) set_size(space, from.substr(kind.size() + 1));
+  }
+  if (has_kind && !paths.empty())
+    throw InputError("--from", fmt::format("\"{}\" is not a kind of robot ({}); give either one kind, or paths",
+                                           paths.front(), generator_kinds()));
+  return space;
+}
+
+std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& paths) const {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path path : paths) {
+    if (!std::filesystem::exists(path))
+      throw InputError("--from", fmt::format("\"{}\" is neither a file or folder nor a kind of robot ({})",
+                                             path.string(), generator_kinds()));
+    files.push_back(is_run_folder(path) ? path / "best" : path);
+  }
+  if (files.empty()) return {};
+  return load_robots(files);
+}
+
+AlgorithmSettings EvolutionOptions::algorithm() const {
+  AlgorithmSettings algorithm = given_.algorithm;
+  for (const std::string& axis : axes_) algorithm.axes.push_back(axis_from(axis));
+  algorithm.name = algorithm_.value_or(!axes_.empty() ? "map-elites" : objectives_.size() > 1 ? "nsga2" : "afpo");
+  if (algorithm.name == "map-elites") {
+    if (algorithm.axes.empty()) algorithm.axes = {axis_from("masses"), axis_from("muscle_share")};
+  } else if (!algorithm.axes.empty()) {
+    throw InputError("--axis", "goes with --algorithm map-elites");
+  }
+  return algorithm;
+}
+
+RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
+  RunSettings settings{.evolution = given_, .program = std::string(program_version)};
+  std::vector<std::string> paths;
+  settings.space = space(paths);
+  EvolutionSettings& evolution = settings.evolution;
+  evolution.algorithm = algorithm();
+  if (!objectives_.empty()) evolution.objectives = objectives_;
+  if (generations_) evolution.generations = *generations_;
+  evolution.trials.seconds = simulation_.seconds();
+  evolution.configuration = simulation_.configuration();
+  validate(evolution);
+  settings.space.founders = founders(paths);
+  std::vector<std::string> environments;
+  for (const Robot& robot : settings.space.founders) environments.push_back(environment_of(robot));
+  if (environments.empty()) environments.push_back(generator_named(settings.space.kind).environment);
+  evolution.configuration = simulation_.configuration(environments, notes);
+  settings.space.environment = name_of(evolution.configuration.environment);
+  make_genome_space(settings.space);  // throws for a request that cannot be used
+  return settings;
+}
+
+void EvolutionOptions::require_only_what_may_change(const CLI::App& command) const {
+  const std::set<std::string> allowed{"RUN",     "--resume", "--generations", "--device", "--threads",
+                                      "--quiet", "--config", "--shard",       "--merge"};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_single_name();
+    if (option->count() == 0 || allowed.contains(name) || allowed.contains("--" + name)) continue;
+    throw InputError("--" + name,
+                     "a run that goes on keeps its settings; only --generations, --device and --threads may change");
+  }
+}
+
+void EvolutionOptions::choose_device(const CLI::App& command, Configuration& configuration) const {
+  const Device& given = simulation_.configuration().device;
+  if (is_given(command, "--device")) {
+    configuration.device.kind = given.kind;
+    configuration.device.index = given.index;
+  }
+  if (is_given(command, "--threads")) configuration.device.threads = given.threads;
+}
+
+}  // namespace mercury

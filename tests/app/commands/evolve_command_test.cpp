@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury evolve: runs, and that they go on as if they had never stopped.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/base/child_process.h"
+#include "mercury/robot_file.h"
+#include "mercury/run_folder.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+Arguments joined(Arguments first, const Arguments& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+class EvolveCommand : public FolderTest {
+ protected:
+  // Small robots, short trials.
+  static Arguments small(const std::string& generations = "4") {
+    return {"--from", "voxel:3x2x2", "--population", "8",   "--generations", generations, "--seconds",
+            "0.3",    "--quiet",     "--device",     "cpu", "--seed",        "5"};
+  }
+  Outcome evolve(const std::string& name, const Arguments& options) const {
+    return mercury(joined({"evolve", path(name)}, options));
+  }
+  std::string lineage(const std::string& run) const { return read(run + "/lineage.csv"); }
+  // What an uninterrupted run gives.
+  std::string expected_lineage(const std::string& generations = "4") const {
+    const Outcome outcome = evolve("expected", joined(small(generations), {"--force"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    return lineage("expected");
+  }
+  std::size_t generations_in(const std::string& run) const {
+    try {
+      return RunHistory(path(run)).generations().size();
+    } catch (const std::exception&) {
+      return 0;  // not yet made
+    }
+  }
+  // Waits until that many generations are on the disk. Gives up after a minute.
+  void wait_for_generations(const std::string& run, std::size_t count) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (generations_in(run) < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  }
+};
+
+TEST_F(EvolveCommand, MakesARunFolder) {
+  const Outcome outcome = evolve("run", small());
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(outcome.messages, "");
+  EXPECT_THAT(listing("run"),
+              testing::IsSupersetOf({"best", "generations.csv", "genomes", "lineage.csv", "progress.svg", "run.toml"}));
+  const RunHistory history(path("run"));
+  EXPECT_EQ(history.generations().size(), 5u);
+  EXPECT_EQ(history.individuals().size(), 5u * 8);
+  EXPECT_THAT(outcome.output, testing::HasSubstr("best: distance = "));
+}
+
+TEST_F(EvolveCommand, LineageDoesNotDependOnThreads) {
+  const std::string lineage_of_all_threads = expected_lineage();
+  ASSERT_EQ(evolve("one", joined(small(), {"--threads", "1"})).status, 0);
+  EXPECT_EQ(lineage("one"), lineage_of_all_threads);
+  EXPECT_THAT(lineage_of_all_threads, testing::HasSubstr("ancestor_list"));
+}
+
+TEST_F(EvolveCommand, LineageDependsOnTheSeed) {
+  ASSERT_EQ(evolve("other", joined(small(), {"--seed", "6"})).status, 0);
+  EXPECT_NE(lineage("other"), expected_lineage());
+}
+
+TEST_F(EvolveCommand, GenerationsCanBeRaised) {
+  ASSERT_EQ(evolve("run", small("2")).status, 0);
+  ASSERT_EQ(evolve("run", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("run"), expected_lineage());
+}
+
+// Killed as soon as some generations are there, wherever it is at that moment, and resumed.
+TEST_F(EvolveCommand, KilledRunsEndInTheSameLineage) {
+  const std::string generations = "30", wanted = expected_lineage(generations);
+  Arguments command = joined({"evolve", path("run")}, small(generations));
+  int kills = 0;
+  for (std::size_t target : {1, 3, 7, 12, 20}) {
+    ChildProcess child(MERCURY_PROGRAM, command);
+    wait_for_generations("run", target);
+    child.kill();
+    kills += outcome_of(child).status == 128 + SIGKILL;
+    command = {"evolve", path("run"), "--resume", "--quiet"};
+  }
+  EXPECT_GT(kills, 0);
+  ASSERT_EQ(mercury(command).status, 0);
+  EXPECT_EQ(lineage("run"), wanted);
+}
+
+TEST_F(EvolveCommand, InterruptedRunsStopCleanlyAndGoOn) {
+  const std::string generations = "40";
+  ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small(generations)));
+  wait_for_generations("run", 2);
+  child.signal(SIGINT);
+  const Outcome outcome = outcome_of(child);
+  ASSERT_EQ(outcome.status, 1) << outcome.messages;
+  EXPECT_THAT(outcome.messages, testing::EndsWith("mercury evolve " + path("run") + " --resume goes on\n"));
+  EXPECT_THAT(listing("run"), testing::Contains("lineage.csv"));
+  ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("run"), expected_lineage(generations));
+}
+
+TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
+  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
+  for (int generation = 0; generation <= 2; ++generation) {
+    for (const char* shard : {"3/3", "1/3", "2/3"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
+    const Outcome merged = evolve("run", {"--merge"});
+    ASSERT_EQ(merged.status, 0) << merged.messages;
+  }
+  EXPECT_EQ(lineage("run"), expected_lineage("2"));
+  EXPECT_THAT(listing("run"), testing::Not(testing::Contains("shards")));
+}
+
+TEST_F(EvolveCommand, MissingAndDamagedShardsAreNamed) {
+  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
+  EXPECT_EQ(evolve("run", {"--merge"}).messages,
+            "mercury: " + path("run/shards") + ": has no shard of generation 0; make them by --shard I/N\n");
+  ASSERT_EQ(evolve("run", {"--shard", "1/2", "--quiet"}).status, 0);
+  EXPECT_EQ(evolve("run", {"--merge"}).messages,
+            "mercury: " + path("run/shards") + ": shard 2 of 2 of generation 0 is missing\n");
+  const std::string whole = read("run/shards/0-1-of-2");
+  for (std::size_t length : {std::size_t{0}, std::size_t{7}, whole.size() / 2, whole.size() - 1}) {
+    write("run/shards/0-2-of-2", whole.substr(0, length));
+    const Outcome outcome = evolve("run", {"--merge"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + path("run/shards/0-2-of-2") + ": is "));
+    EXPECT_THAT(outcome.messages, testing::EndsWith("; remove it and run this shard again\n"));
+  }
+  EXPECT_EQ(generations_in("run"), 0u);
+}
+
+TEST_F(EvolveCommand, RanksEndInTheSameLineage) {
+  if (std::system("command -v mpirun > /dev/null") != 0) GTEST_SKIP() << "no mpirun on this machine";
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  const Outcome outcome =
+      run_program("mpirun", joined({"-n", "3", "--oversubscribe", MERCURY_PROGRAM, "evolve", path("run")}, small()));
+  if (outcome.messages.find("this build has no MPI") != std::string::npos) GTEST_SKIP() << "a build without MPI";
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(lineage("run"), expected_lineage());
+}
+
+TEST_F(EvolveCommand, RunsAreReplacedOnlyWithForce) {
+  ASSERT_EQ(evolve("run", small("1")).status, 0);
+  const std::string before = lineage("run");
+  const Outcome refused = evolve("run", joined(small("1"), {"--seed", "9"}));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.messages,
+            "mercury: " + path("run") + ": holds a run; --resume goes on with it, --force replaces it\n");
+  EXPECT_EQ(lineage("run"), before);
+  ASSERT_EQ(evolve("run", joined(small("1"), {"--seed", "9", "--force"})).status, 0);
+  EXPECT_NE(lineage("run"), before);
+}
+
+TEST_F(EvolveCommand, ResumedRunsKeepTheirSettings) {
+  ASSERT_EQ(evolve("run", small("1")).status, 0);
+  const Outcome refused = evolve("run", {"--resume", "--seconds", "3"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.messages,
+            "mercury: --seconds: a run that goes on keeps its settings; only --generations, "
+            "--device and --threads may change\n");
+}
+
+TEST_F(EvolveCommand, StartsFromRobotFiles) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("parents"), "--count", "3", "--voxels", "3x2x2"}).status, 0);
+  const Outcome outcome = evolve(
+      "run", {"--from", path("parents"), "--population", "6", "--generations", "1", "--seconds", "0.2", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const RunHistory history(path("run"));
+  for (std::uint64_t id : {0, 1, 2})
+    EXPECT_EQ(history.grow(id).masses, load_robot(path("parents/voxel-1-" + std::to_string(id) + ".json")).masses);
+}
+
+TEST_F(EvolveCommand, MusclesOfAnyBody) {
+  const Outcome outcome = evolve("run", {"--from", MERCURY_ROBOT_LIBRARY "/eel.json", "--genes", "muscles",
+                                         "--population", "4", "--generations", "1", "--seconds", "0.1", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const RunHistory history(path("run"));
+  const Robot eel = load_robot(MERCURY_ROBOT_LIBRARY "/eel.json"), last = history.grow(7);
+  EXPECT_EQ(last.masses, eel.masses);
+  EXPECT_EQ(last.springs, eel.springs);
+  EXPECT_FALSE(std::ranges::equal(materials_of(last), materials_of(eel)));
+}
+
+struct BadOptions {
+  Arguments options;
+  std::string message;
+};
+class EvolveOptions : public FolderTest, public testing::WithParamInterface<BadOptions> {};
+
+TEST_P(EvolveOptions, AreRefusedInOneLineBeforeAnythingIsMade) {
+  const Outcome outcome = mercury(joined({"evolve", path("run")}, GetParam().options));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + GetParam().message));
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1);
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bad, EvolveOptions,
+    testing::Values(BadOptions{{"--from", "fish:3"}, "--from: \"fish:3\" is neither a file or folder nor a kind"},
+                    BadOptions{{"--from", "voxel:6x4"}, "--from: \"6x4\" is not accepted"},
+                    BadOptions{{"--algorithm", "luck"}, "--algorithm: "},
+                    BadOptions{{"--objective", "distance -"}, "--objective: "},
+                    BadOptions{{"--objective", "elegance"}, "--objective: "},
+                    BadOptions{{"--objective", "distance", "--objective", "-work", "--algorithm", "ga"},
+                               "--algorithm: ga takes one objective"},
+                    BadOptions{{"--axis", "charm"}, "--axis: \"charm\" is not a quantity"},
+                    BadOptions{{"--axis", "masses", "--algorithm", "ga"}, "--axis: goes with"},
+                    BadOptions{{"--population", "0"}, "--population: "}, BadOptions{{"--settle", "20"}, "--settle: "},
+                    BadOptions{{"--trials", "0"}, "--trials: "},
+                    BadOptions{{"--racing", "--trials", "2"}, "--racing: "},
+                    BadOptions{{"--damage", "1"}, "--damage: "}, BadOptions{{"--mutation", "-1"}, "--mutation: "},
+                    BadOptions{{"--generations", "-1"}, "--generations: "},
+                    BadOptions{{"--genes", "soul"}, "--genes: "},
+                    BadOptions{{"--shard", "0/4"}, "--shard: \"0/4\" is not accepted"}, BadOptions{{"--resume"}, ""}));
+
+}  // namespace
+}  // namespace mercury::test
