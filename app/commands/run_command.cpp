@@ -38,12 +38,12 @@ struct RunOptions {
 
 double distance(Vec3 a, Vec3 b) { return length(a - b); }
 
-// Samples the telemetry: the length of each robot's path and its largest strain.
+// Samples the telemetry: the length of each robot's path, its largest strain, its largest share of strained springs.
 class Observer {
  public:
   explicit Observer(const Simulation& simulation)
       : simulation_(simulation), start_(simulation.telemetry()), last_(start_), path_(start_.size(), 0.0),
-        strain_(start_.size(), 0.0) {
+        strain_(start_.size(), 0.0), strained_(start_.size(), 0.0) {
     observe(start_);
   }
 
@@ -60,6 +60,7 @@ class Observer {
                          .displacement = distance(now.center_of_mass, start_[i].center_of_mass),
                          .mean_speed = simulation_.time() > 0 ? path_[i] / simulation_.time() : 0,
                          .largest_strain = strain_[i],
+                         .strained_share = strained_[i],
                          .exploded = now.exploded,
                          .exploded_at = now.exploded_at,
                          .culprit_spring = now.culprit_spring,
@@ -73,13 +74,14 @@ class Observer {
     for (std::size_t i = 0; i < now.size(); ++i) {
       path_[i] += distance(now[i].center_of_mass, last_[i].center_of_mass);
       strain_[i] = std::max(strain_[i], static_cast<double>(now[i].largest_strain));
+      strained_[i] = std::max(strained_[i], static_cast<double>(now[i].strained_share));
     }
     last_ = now;
   }
 
   const Simulation& simulation_;
   std::vector<Telemetry> start_, last_;
-  std::vector<double> path_, strain_;
+  std::vector<double> path_, strain_, strained_;
 };
 
 // Throws InputError for options that do not go together.
@@ -217,7 +219,9 @@ void add_run_command(CLI::App& program, const Choose& choose) {
            "FILE.toml");
   command->footer(
       "Displacement is the distance of the centre of mass from its start. Speed is the length of its path divided by\n"
-      "the time. Strain is the largest of any spring. Speed and strain are sampled every 0.1 s.\n\n"
+      "the time. Strain is the largest of any spring; \"> 50\" is the largest share of springs that had more than 50 "
+      "%\n"
+      "at the same time. Speed and strain are sampled every 0.1 s.\n\n"
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"

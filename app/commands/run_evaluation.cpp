@@ -24,6 +24,7 @@ RobotResult result_of(const Evaluation& robot, double seconds) {
           .displacement = length(robot.end.center_of_mass - robot.start.center_of_mass),
           .mean_speed = seconds > 0 ? robot.path / seconds : 0,
           .largest_strain = robot.largest_strain,
+          .strained_share = robot.strained_share,
           .exploded = robot.end.exploded,
           .exploded_at = robot.end.exploded_at,
           .culprit_spring = robot.end.culprit_spring,

@@ -24,6 +24,7 @@ nlohmann::ordered_json json_of(const RobotResult& robot) {
                               {"displacement", robot.displacement},
                               {"mean_speed", robot.mean_speed},
                               {"largest_strain", robot.largest_strain},
+                              {"strained_share", robot.strained_share},
                               {"exploded", robot.exploded},
                               {"hash", hash_text(robot.hash)}};
   if (robot.exploded) {
@@ -67,12 +68,12 @@ std::string table_of(const RunReport& report) {
   std::string text = fmt::format("{}, {}, {} solver, dt {} s, {} steps = {:.6g} s\n\n", report.device,
                                  name_of(configuration.environment), name_of(configuration.solver), configuration.dt,
                                  report.steps, report.seconds);
-  text += fmt::format("{:<{}}  {:>7}  {:>8}  {:>9}  {:>11}  {:>10}  {:<16}  {}\n", "robot", width, "masses", "springs",
-                      "moved [m]", "speed [m/s]", "strain [%]", "hash", "state");
+  text += fmt::format("{:<{}}  {:>7}  {:>8}  {:>9}  {:>11}  {:>10}  {:>8}  {:<16}  {}\n", "robot", width, "masses",
+                      "springs", "moved [m]", "speed [m/s]", "strain [%]", "> 50 [%]", "hash", "state");
   for (const RobotResult& robot : report.robots)
-    text += fmt::format("{:<{}}  {:>7}  {:>8}  {:>9.4f}  {:>11.4f}  {:>10.2f}  {}  {}\n", robot.name, width,
+    text += fmt::format("{:<{}}  {:>7}  {:>8}  {:>9.4f}  {:>11.4f}  {:>10.2f}  {:>8.2f}  {}  {}\n", robot.name, width,
                         robot.masses, robot.springs, robot.displacement, robot.mean_speed, 100 * robot.largest_strain,
-                        hash_text(robot.hash), state_of(robot));
+                        100 * robot.strained_share, hash_text(robot.hash), state_of(robot));
   text += fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", report.robots.size(),
                       report.robots.size() == 1 ? "" : "s", report.springs(), report.wall_seconds,
                       with_magnitude(report.springs_per_second()));
@@ -81,12 +82,13 @@ std::string table_of(const RunReport& report) {
 
 std::string csv_of(const RunReport& report) {
   std::string text =
-      "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,"
+      "name,masses,springs,displacement,mean_speed,largest_strain,strained_share,exploded,exploded_at,"
       "first_bad_spring,hash\n";  // columns
   for (const RobotResult& robot : report.robots)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(robot.name), robot.masses, robot.springs,
                         csv_number(robot.displacement), csv_number(robot.mean_speed), csv_number(robot.largest_strain),
-                        robot.exploded, robot.exploded ? csv_number(robot.exploded_at) : "",
+                        csv_number(robot.strained_share), robot.exploded,
+                        robot.exploded ? csv_number(robot.exploded_at) : "",
                         robot.exploded && robot.culprit_spring != no_spring ? fmt::to_string(robot.culprit_spring) : "",
                         hash_text(robot.hash));
   return text;

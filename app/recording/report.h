@@ -17,6 +17,7 @@ struct RobotResult {
   double displacement = 0;    // of the centre of mass, from start to end [m]
   double mean_speed = 0;      // length of the path of the centre of mass per time [m/s]
   double largest_strain = 0;  // over all samples [1]
+  double strained_share = 0;  // largest share of the springs that a sample has above strained_limit [1]
   bool exploded = false;
   double exploded_at = 0;  // [s]
   std::uint32_t culprit_spring = no_spring;

@@ -91,7 +91,7 @@ struct EvaluationProgress {
   struct Device {
     std::string name;
     double busy_seconds = 0;  // during which it stepped robots [s]
-    std::size_t robots = 0;   // that it stepped to the end
+    std::size_t robots = 0;   // that it stepped, to the end or until they were removed
   };
   std::vector<Device> devices;
   std::size_t made = 0, done = 0;  // robots: made, or without success; ready to be yielded

@@ -49,6 +49,23 @@ TEST_F(RunCommand, JsonHoldsConfigurationAndEachRobot) {
   }
 }
 
+// A sample has springs above 50 % strain if its largest strain is above that. Bodies of soft springs
+// collapse on land. In 0.02 s, 26 muscles that pull a mass by 50 N/m * 14 mm each move it by 4 mm, of 0.1 m.
+TEST_F(RunCommand, ShareOfStrainedSpringsGoesWithTheLargestStrain) {
+  for (const bool collapses : {false, true}) {
+    std::vector<std::string> arguments{"--random", "voxel:3", "--seconds", collapses ? "0.5" : "0.02"};
+    if (collapses) arguments.insert(arguments.end(), {"--environment", "land", "--stiffness-scale", "2"});
+    const json report = run_json(arguments);
+    ASSERT_EQ(report["robots"].size(), 3u);
+    for (const json& robot : report["robots"]) {
+      const auto share = robot["strained_share"].get<double>();
+      EXPECT_EQ(share > 0, collapses);
+      EXPECT_EQ(share > 0, robot["largest_strain"].get<double>() > 0.5);
+      EXPECT_LT(share, 1);
+    }
+  }
+}
+
 TEST_F(RunCommand, HashesAreReproducibleWithAnyNumberOfThreads) {
   const std::vector<std::string> arguments{"--random",  "voxel:16", "--seed",   "1",
                                            "--seconds", "0.3",      "--device", "cpu"};
@@ -99,6 +116,7 @@ TEST_F(RunCommand, TableShowsEachRobot) {
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-0"));
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-1"));
   EXPECT_THAT(outcome.output, HasSubstr("moved [m]"));
+  EXPECT_THAT(outcome.output, HasSubstr("strain [%]  > 50 [%]"));
   EXPECT_EQ(outcome.messages, "");
 }
 
@@ -111,7 +129,8 @@ TEST_F(RunCommand, CsvHasALinePerRobot) {
   std::string header, line;
   std::getline(csv, header);
   const char* const columns =
-      "name,masses,springs,displacement,mean_speed,largest_strain,exploded,exploded_at,first_bad_spring,hash";  // column
+      "name,masses,springs,displacement,mean_speed,largest_strain,strained_share,exploded,exploded_at,"
+      "first_bad_spring,hash";  // columns
   EXPECT_EQ(header, columns);
   for (const json& robot : report["robots"]) {
     std::getline(csv, line);
