@@ -3,7 +3,7 @@
 // the ocean and on land. Prints a table: median and quartiles over the seeds of the best distance. --csv writes the
 // best score after each generation; bench/plot_evolution.py plots it.
 //
-//     bench_evolution [--seeds 10] [--evaluations 1024] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
+//     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance.
@@ -31,11 +31,13 @@ struct Options {
   std::vector<std::string> algorithms{"random", "ga", "afpo", "nsga2", "map-elites"};
   std::vector<std::string> kinds{"voxel", "cppn", "nn"}, environments{"ocean", "land"};
   std::uint64_t seeds = 10, first_seed = 1;
-  std::size_t evaluations = 2048, population = 64;
+  std::size_t evaluations = 1280, population = 64;
   SizeRange voxels{{4, 3, 3}, {4, 3, 3}};
   std::int64_t points = 64;
-  double seconds = 10;
-  double ocean_dt = 4e-3, land_dt = 1e-3;  // [s]; land is stiffer
+  struct Place {
+    double seconds, dt;
+  };
+  Place ocean{10, 4e-3}, land{5, 1e-3};  // [s]; land is stiffer
   Genes genes = Genes::both;
   EvolutionSettings settings;  // their defaults, and what the options say
   std::string device = "cpu", csv;
@@ -75,9 +77,10 @@ Options options_from(int argc, char** argv) {
       {"--population", number(options.population)},
       {"--voxels", [&](const std::string& v) { options.voxels = voxels_of(v); }},
       {"--points", number(options.points)},
-      {"--seconds", number(options.seconds)},
-      {"--ocean-dt", number(options.ocean_dt)},
-      {"--land-dt", number(options.land_dt)},
+      {"--ocean-seconds", number(options.ocean.seconds)},
+      {"--ocean-dt", number(options.ocean.dt)},
+      {"--land-seconds", number(options.land.seconds)},
+      {"--land-dt", number(options.land.dt)},
       {"--genes", [&](const std::string& v) { options.genes = genes_named(v); }},
       {"--mutation", number(options.settings.mutation)},
       {"--crossover", number(algorithm.crossover)},
@@ -115,11 +118,11 @@ EvolutionSettings settings_of(const Task& task, const Options& options) {
   settings.algorithm.axes = {{.quantity = "size", .lowest = 0, .highest = volume, .cells = 8},
                              {.quantity = "muscle_share", .lowest = 0, .highest = 1, .cells = 8}};
   if (task.algorithm == "nsga2") settings.objectives = {"distance", "efficiency"};
-  settings.trials.seconds = options.seconds;
   settings.configuration.environment = environment_named(task.environment);
   settings.configuration.device = device_named(options.device);
   const bool on_land = std::holds_alternative<Land>(settings.configuration.environment);
-  settings.configuration.dt = on_land ? options.land_dt : options.ocean_dt;
+  settings.configuration.dt = on_land ? options.land.dt : options.ocean.dt;
+  settings.trials.seconds = on_land ? options.land.seconds : options.ocean.seconds;
   settings.generations = static_cast<int>(options.evaluations / options.population) - 1;
   settings.seed = task.seed;
   return settings;
