@@ -14,7 +14,8 @@ std::vector<Point> scores_of_living(const RunHistory& run) {
   std::vector<Point> scores;
   for (const std::uint64_t id : run.living()) {
     const std::vector<double>& both = run.individuals()[id].assessment.scores;
-    if (both.size() == 2 && std::isfinite(both[0]) && std::isfinite(both[1])) scores.push_back({both[0], both[1]});
+    if (both.size() == 2 && std::abs(both[0]) < 1e300 && std::abs(both[1]) < 1e300)
+      scores.push_back({both[0], both[1]});
   }
   return scores;
 }

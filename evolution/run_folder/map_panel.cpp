@@ -60,7 +60,7 @@ Map map_of(const RunHistory& run) {
   map.best.assign(map.columns * map.rows, empty);
   for (const std::uint64_t id : run.living()) {
     const Individual& individual = run.individuals()[id];
-    if (individual.assessment.values.empty() || !std::isfinite(individual.score())) continue;
+    if (individual.assessment.values.empty() || !(std::abs(individual.score()) < 1e300)) continue;
     const std::size_t cell = map_cell(axes, individual.assessment.values);
     const std::size_t column = cell % cells(0) * map.columns / cells(0);
     const std::size_t row = cell / cells(0) % cells(1) * map.rows / cells(1);

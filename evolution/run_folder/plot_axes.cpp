@@ -46,16 +46,17 @@ std::string with_raised_digits(std::string_view unit) {
 }  // namespace
 
 Range widened(Range range) {
-  if (range.high > range.low) return range;
-  const double half = range.low == 0 ? 1 : 0.1 * std::abs(range.low);
+  const double size = std::max(std::abs(range.low), std::abs(range.high));
+  if (range.high - range.low > 1e-9 * size) return range;
+  const double half = size == 0 ? 1 : 0.1 * size;
   return {range.low - half, range.low + half};
 }
 
 std::vector<double> ticks_in(Range range, int most) {
   const double step = step_for(range, most);
+  const double first = std::ceil(range.low / step - 1e-9);
   std::vector<double> ticks;
-  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * step; ++k)
-    ticks.push_back(k * step);
+  for (int i = 0; i <= most && (first + i) * step <= range.high + 1e-9 * step; ++i) ticks.push_back((first + i) * step);
   return ticks;
 }
 

@@ -26,11 +26,14 @@ std::vector<const GenerationSummary*> drawn(std::span<const GenerationSummary> g
   return chosen;
 }
 
+// The worst score is minus infinity.
+bool can_be_drawn(double score) { return std::abs(score) < 1e300; }
+
 Range finite_range(std::span<const GenerationSummary> generations, std::size_t objective, Member member) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const GenerationSummary& generation : generations) {
     const double value = generation.scores[objective].*member;
-    if (!std::isfinite(value)) continue;
+    if (!can_be_drawn(value)) continue;
     range = {std::min(range.low, value), std::max(range.high, value)};
   }
   return range;
@@ -67,7 +70,7 @@ void draw_labels(Svg& svg, const Box& box, const Scale& y, const ScoreSpread& la
   };
   std::vector<Label> labels;
   const auto add = [&](std::string_view name, double value, std::string_view color) {
-    if (std::isfinite(value)) labels.push_back({name, value, std::clamp(y(value), box.y, box.bottom()), color});
+    if (can_be_drawn(value)) labels.push_back({name, value, std::clamp(y(value), box.y, box.bottom()), color});
   };
   add("best", last.highest, best_color);
   add("median", last.median, median_color);
@@ -97,8 +100,10 @@ void draw_scores(Svg& svg, const Box& box, const RunHistory& run, std::size_t ob
   const std::vector<const GenerationSummary*> chosen = drawn(generations);
   const auto line = [&](Member member) {
     std::vector<Point> points;
-    for (const GenerationSummary* generation : chosen)
-      points.push_back({x(generation->number), y(generation->scores[objective].*member)});
+    for (const GenerationSummary* generation : chosen) {
+      const double score = generation->scores[objective].*member;
+      points.push_back({x(generation->number), can_be_drawn(score) ? y(score) : std::nan("")});
+    }
     return points;
   };
   std::vector<Point> band = line(&ScoreSpread::upper_quartile), lower = line(&ScoreSpread::lower_quartile);

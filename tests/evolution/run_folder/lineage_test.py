@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 
 def rows_of(path):
@@ -50,6 +51,8 @@ def check_standard(run):
     for row in generations:
         fates = sum(int(row[name]) for name in ("sound", "stopped", "exploded", "overstretched", "failed"))
         assert fates == int(row["born"])
+    picture = ElementTree.parse(run / "progress.svg")
+    assert picture.getroot().tag == "{http://www.w3.org/2000/svg}svg"
     if run.name == "afpo":
         assert any(len(ancestors_of(row)) == 2 for row in rows), "nobody has two parents"
 
