@@ -21,6 +21,11 @@ struct ArrowRecord {
   Vector4f from, vector, color;
 };
 
+// The layout of shaders/tile.vert.
+struct TileRecord {
+  Vector4f center, half_width, half_height, fill, frame;
+};
+
 // The layout of shaders/path.vert.
 struct PathPoint {
   Vector4f position, color;
@@ -30,6 +35,8 @@ Vector4f linear(Color color, float alpha = 1) {
   const auto light = linear_of(color);
   return {light[0], light[1], light[2], alpha};
 }
+
+Vector4f with(const Vector3f& v, float w) { return {v.x(), v.y(), v.z(), w}; }
 
 float bits_of(std::uint32_t value) { return std::bit_cast<float>(value); }
 
@@ -58,9 +65,10 @@ class Blending {
 
 }  // namespace
 
-AnnotationPass::AnnotationPass()
+AnnotationPass::AnnotationPass(const std::string& defines)
     : empty_(make_vertex_array()), arrow_(make_program({"arrow.vert", "arrow.frag"})),
-      path_(make_program({"path.vert", "path.frag"})), particle_(make_program({"particle.vert", "particle.frag"})) {}
+      path_(make_program({"path.vert", "path.frag"})), particle_(make_program({"particle.vert", "particle.frag"})),
+      tile_(make_program({"tile.vert", "tile.frag"}, defines)) {}
 
 void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
   if (arrows.empty()) return;
@@ -77,6 +85,23 @@ void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
   glEnable(GL_CLIP_DISTANCE0);
   glDrawArrays(GL_TRIANGLES, 0, GLsizei(9 * arrows.size()));
   glDisable(GL_CLIP_DISTANCE0);
+}
+
+void AnnotationPass::draw_tiles(std::span<const Tile> tiles) {
+  if (tiles.empty()) return;
+  std::vector<TileRecord> records;
+  records.reserve(tiles.size());
+  for (const Tile& t : tiles)
+    records.push_back(
+        {with(t.center, 0), with(t.half_width, 0), with(t.half_height, 0), linear(t.fill), linear(t.frame)});
+  tiles_.write(records);
+  tiles_.bind_storage(binding::first_free);
+  const Blending blending;
+  glUseProgram(tile_.get());
+  glBindVertexArray(empty_.get());
+  glDepthFunc(GL_GEQUAL);  // bodies are nearer than tiles; the backdrop is as far
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * tiles.size()));
+  glDepthFunc(GL_GREATER);
 }
 
 void AnnotationPass::draw_paths(std::span<const Path> paths, float width) {

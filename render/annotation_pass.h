@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawings that explain the scene: arrows, paths, and particles that drift with the water.
+// Drawings that explain the scene: tiles, arrows, paths, and particles that drift with the water.
 #pragma once
+
+#include <string>
 
 #include "render/camera.h"
 #include "render/gl_objects.h"
@@ -10,9 +12,11 @@ namespace mercury::render {
 
 class AnnotationPass {
  public:
-  AnnotationPass();
+  // `defines`: of the samples of soft shadows (QualitySettings).
+  explicit AnnotationPass(const std::string& defines);
   void draw_arrows(std::span<const Arrow> arrows);
   // Translucent: call them after everything solid, with the depth test on. Blending is off before and after.
+  void draw_tiles(std::span<const Tile> tiles);
   void draw_paths(std::span<const Path> paths, float width);
   // Two sets of particles, one of twice the size, fade into each other as the camera's distance changes.
   void draw_particles(const Scene& scene, const Camera& camera, int count) const;
@@ -21,8 +25,8 @@ class AnnotationPass {
   void draw_particles(const Scene& scene, const Camera& camera, int count, float half_side, float share) const;
 
   VertexArray empty_;
-  Program arrow_, path_, particle_;
-  StreamBuffer arrows_, points_;
+  Program arrow_, path_, particle_, tile_;
+  StreamBuffer arrows_, points_, tiles_;
 };
 
 }  // namespace mercury::render

@@ -49,7 +49,7 @@ PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& ca
     const Eigen::Vector3f seen = camera.project(point, width, height);
     if (seen.z() > 0) top = std::min(top, seen.y());
   }
-  return {&label, middle.x(), 0.75f * top + 0.25f * middle.y(), middle.z()};
+  return {&label, middle.x(), 0.9f * top + 0.1f * middle.y(), middle.z()};
 }
 
 constexpr float small = 0.82f;  // size of second lines
@@ -157,6 +157,14 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
     if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(area, other); })) continue;
     taken.push_back(area);
     label(area, lines);
+  }
+}
+
+void Overlay::texts(std::span<const Text> texts, const Camera& camera) {
+  for (const Text& t : texts) {
+    const Eigen::Vector3f at = camera.project(t.at, int(width_), int(height_));
+    const float size = t.size * text_size_;
+    if (at.z() > camera.near) text(t.text, at.x(), at.y() - t.align_y * size, size, t.align_x);
   }
 }
 

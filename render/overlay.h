@@ -49,6 +49,7 @@ class Overlay {
   // Labels above bodies, given each body's box in the picture. Leaves out labels outside the picture and those that
   // would cover the label of a nearer body.
   void labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera);
+  void texts(std::span<const Text> texts, const Camera& camera);
   void legend(const Legend& legend);
   void clock(std::string_view text);
   void caption(std::string_view text);

@@ -44,6 +44,7 @@ std::string skin_variant(const Scene& scene) {
 Overlay overlay_of(const Scene& scene, const Camera& camera, std::span<const Bounds> bodies, const Style& style,
                    int width, int height, float text_size) {
   Overlay overlay(width, height, text_size, style);
+  overlay.texts(scene.texts, camera);
   overlay.labels(scene.labels, bodies, camera);
   if (scene.legend) overlay.legend(*scene.legend);
   if (!scene.clock.empty()) overlay.clock(scene.clock);
@@ -139,10 +140,11 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.draw_light(scene, camera);
   p.draw_solid(scene, camera);
   glDepthFunc(GL_GREATER);
+  p.passes->annotation.draw_tiles(scene.tiles);
   p.passes->annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
   if (scene.surroundings == Surroundings::water)
     p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
-  p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), style.vignette);
+  p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), scene.tiles.empty() ? style.vignette : 0);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.
   const std::vector<Bounds> boxes =
       scene.labels.empty() ? std::vector<Bounds>() : placed(p.bounds.read(), scene.placements);

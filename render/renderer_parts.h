@@ -46,8 +46,8 @@ namespace mercury::render {
 struct Passes {
   explicit Passes(const QualitySettings& settings)
       : skin(settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "")),
-        lattice(settings.skin_defines()), light(settings), front(settings), occlusion(settings), finish(settings),
-        backdrop("backdrop.frag") {}
+        lattice(settings.skin_defines()), annotation(settings.defines()), light(settings), front(settings),
+        occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
   void resize(int width, int height) {
     front.resize(width, height);
     occlusion.resize(width, height);

@@ -77,6 +77,20 @@ struct Label {
   std::string text;
 };
 
+// A flat rectangle behind bodies, with round corners: a cell of a table. It takes shadows, but no other light.
+struct Tile {
+  Eigen::Vector3f center{0, 0, 0}, half_width{1, 0, 0}, half_height{0, 0, 1};  // in the picture's coordinates [m]
+  Color fill, frame;
+};
+
+// A line of text at a point in the picture's coordinates.
+struct Text {
+  Eigen::Vector3f at{0, 0, 0};
+  std::string text;
+  float align_x = 0.5f, align_y = 0.5f;  // where the point is in the line: 0 = left and upper end, 1 = right and lower
+  float size = 1;                        // of the picture's usual size of text
+};
+
 // Explains the colours, at the right edge of the picture: a bar for a scale, or swatches with names.
 struct Legend {
   std::string title;           // "strain"
@@ -120,6 +134,8 @@ struct Scene {
   Eigen::Vector3f flow{0, 0, 0};  // of the water; particles drift with it [m/s]
   double time = 0;                // moves caustics and particles [s]
 
+  std::span<const Tile> tiles;
+  std::span<const Text> texts;
   std::span<const Arrow> arrows;
   std::span<const Path> paths;
   std::span<const Label> labels;

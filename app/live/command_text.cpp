@@ -63,6 +63,7 @@ std::string shown_text(const Shown& shown) {
                                                 {"contact", shown.arrows.contact},
                                                 {"path", shown.path},
                                                 {"labels", shown.labels},
+                                                {"captions", shown.captions},
                                                 {"legend", shown.legend},
                                                 {"clock", shown.clock},
                                                 {"scale", shown.scale_bar}};
@@ -160,6 +161,7 @@ OptionValues options_of(const ViewSettings& settings) {
   shown.labels = shown.path = race;
   const std::string text = shown_text(settings.shown);
   if (!text.empty()) options.text("--show", text, shown_text(shown));
+  options.text("--caption", settings.caption, "");
   options.text("--theme", settings.theme == render::Theme::light ? "light" : "dark", "dark");
   options.flag("--smooth", settings.smooth);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");

@@ -53,6 +53,7 @@ Shown shown_from(const std::string& text) {
                                                               {"contact", &shown.arrows.contact},
                                                               {"path", &shown.path},
                                                               {"labels", &shown.labels},
+                                                              {"captions", &shown.captions},
                                                               {"legend", &shown.legend},
                                                               {"clock", &shown.clock},
                                                               {"scale", &shown.scale_bar}};
@@ -76,11 +77,12 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_value(command, "--scale", scale_, "Ends of the colours' scale (default: fits)", "LOW,HIGH", range_from));
   add(add_value(command, "--show", shown_,
                 "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
-                "path,labels,legend,clock,scale (default skin,clock)",
+                "path,labels,captions,legend,clock,scale (default skin,clock)",
                 "LIST", [](const std::string&, const std::string& text) {
                   shown_from(text);
                   return text;
                 }));
+  add(add_text(command, "--caption", caption_, "Text in the upper left corner; further lines are smaller", "TEXT"));
   add(add_choice(command, "--theme", theme_, {"dark", "light"}, "Colours of the surroundings (default dark)"));
   add(command.add_flag("--smooth", smooth_, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", cut_, "Cut away what lies beyond a plane, as in y:0.2", "AXIS[:M]", cut_from));
@@ -101,6 +103,7 @@ void ViewOptions::add_to(CLI::App& command) {
 ViewSettings ViewOptions::settings() const {
   ViewSettings settings{
       .color = &color_quantity(color_), .scale = scale_, .smooth = smooth_, .cut = cut_, .grid = grid_};
+  settings.caption = caption_;
   settings.theme = theme_ == "light" ? render::Theme::light : render::Theme::dark;
   settings.layout = layout_ == "race" ? Layout::race : Layout::grid;
   if (follow_ && !camera_.empty()) throw InputError("--follow", "not together with --camera; give one of them");

@@ -19,9 +19,10 @@ class ViewOptions {
 
   // The settings that the options describe. Throws InputError that names an option that cannot be used.
   ViewSettings settings() const;
+  bool chooses_what_is_shown() const { return shown_.has_value(); }
 
  private:
-  std::string color_{material_color().key}, theme_ = "dark", layout_ = "grid", camera_;
+  std::string color_{material_color().key}, theme_ = "dark", layout_ = "grid", camera_, caption_;
   std::optional<std::pair<float, float>> scale_;
   std::optional<std::string> shown_;
   std::optional<render::CutPlane> cut_;

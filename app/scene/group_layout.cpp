@@ -35,23 +35,17 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
   return best;
 }
 
-namespace {
-
-// The directions to the right and up in the picture.
-struct Axes {
-  Eigen::Vector3f right, up;
-};
-
-Axes axes_of(const render::Orbit& view) {
+PictureAxes picture_axes(const render::Orbit& view) {
   const float sin_a = std::sin(view.azimuth), cos_a = std::cos(view.azimuth);
   const float sin_e = std::sin(view.elevation), cos_e = std::cos(view.elevation);
   return {{-sin_a, cos_a, 0}, {-cos_a * sin_e, -sin_a * sin_e, cos_e}};
 }
 
-// The extent of a box along a direction.
-float extent(const render::Bounds& box, const Eigen::Vector3f& direction) {
+float extent_along(const render::Bounds& box, const Eigen::Vector3f& direction) {
   return box.empty() ? 0 : (box.high - box.low).dot(direction.cwiseAbs());
 }
+
+namespace {
 
 // The middles of strips with these widths, side by side and centred at 0.
 std::vector<float> middles_of(const std::vector<float>& widths) {
@@ -67,11 +61,11 @@ std::vector<float> middles_of(const std::vector<float>& widths) {
 }  // namespace
 
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options) {
-  const Axes axes = axes_of(options.view);
+  const PictureAxes axes = picture_axes(options.view);
   float width = 1e-3f, height = 1e-3f;
   for (const render::Bounds& robot : robots) {
-    width = std::max(width, options.spacing * extent(robot, axes.right));
-    height = std::max(height, options.spacing * extent(robot, axes.up));
+    width = std::max(width, options.spacing * extent_along(robot, axes.right));
+    height = std::max(height, options.spacing * extent_along(robot, axes.up));
   }
   Grid grid = options.grid.value_or(grid_for(robots.size(), options.aspect, width / height));
   if (options.layout == Layout::race) grid = {1, static_cast<int>(robots.size())};
@@ -82,8 +76,8 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   // The largest robot of each column and row decides its size.
   std::vector<float> widths(columns, 0.4f * width), heights(rows, 0.4f * height);
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    widths[i % columns] = std::max(widths[i % columns], options.spacing * extent(robots[i], axes.right));
-    heights[i / columns] = std::max(heights[i / columns], options.spacing * extent(robots[i], axes.up));
+    widths[i % columns] = std::max(widths[i % columns], options.spacing * extent_along(robots[i], axes.right));
+    heights[i / columns] = std::max(heights[i / columns], options.spacing * extent_along(robots[i], axes.up));
   }
   const std::vector<float> across = middles_of(widths), down = middles_of(heights);
   Eigen::Vector3f up = axes.up;

@@ -16,6 +16,15 @@ namespace mercury {
 // The box around a robot at rest.
 render::Bounds rest_bounds(const Robot& robot);
 
+// The directions to the right and up in the picture.
+struct PictureAxes {
+  Eigen::Vector3f right, up;
+};
+PictureAxes picture_axes(const render::Orbit& view);
+
+// The extent of a box along a direction; 0 if it is empty.
+float extent_along(const render::Bounds& box, const Eigen::Vector3f& direction);
+
 struct Grid {
   int columns = 1, rows = 1;
 };

@@ -113,7 +113,7 @@ void GroupScene::place_floor() {
 
 // The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {
-  scene_.surroundings = surroundings_of(environment_);
+  scene_.surroundings = tiles_.empty() ? surroundings_of(environment_) : render::Surroundings::none;
   scene_.flow = eigen(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;
@@ -187,6 +187,14 @@ void GroupScene::use_table(std::size_t robot, std::size_t table) {
   placements_[robot].first_material = static_cast<std::uint32_t>(tables_[table].first_material);
 }
 
+void GroupScene::set_background(std::vector<render::Tile> tiles, std::vector<render::Text> texts) {
+  tiles_ = std::move(tiles);
+  texts_ = std::move(texts);
+  scene_.tiles = tiles_;
+  scene_.texts = texts_;
+  show_surroundings();
+}
+
 void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
   placements_[robot].selected = selected;
   placements_[robot].hidden = hidden;
@@ -219,7 +227,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
   place(telemetry);
   if (settings_.shown.path) lengthen_paths(telemetry);
-  if (settings_.shown.labels) write_labels(telemetry);
+  if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(std::move(details));
 }
 
@@ -266,7 +274,7 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
     std::string text = names_[i];
     if (telemetry[i].exploded)
       text += fmt::format("\nexploded at {:.1f} s", telemetry[i].exploded_at);
-    else
+    else if (settings_.shown.labels)
       text += fmt::format("\n{}{}", distance_text(distances[i]), ranked ? fmt::format("   #{}", rank) : "");
     labels_.push_back({static_cast<std::uint32_t>(i), text});
   }
@@ -281,8 +289,11 @@ void GroupScene::color(SceneDetails details) {
   scene_.spring_values = details_.values.spring;
   scene_.scale = scale_.scale();
   scene_.arrows = details_.arrows;
-  scene_.caption = details_.arrow_key;
-  if (!settings_.shown.legend) return;
+  scene_.caption = settings_.caption;
+  if (!scene_.caption.empty() && !details_.arrow_key.empty()) scene_.caption += "\n";
+  scene_.caption += details_.arrow_key;
+  if (settings_.board) scene_.legend = settings_.board->legend;
+  if (settings_.board || !settings_.shown.legend) return;
   scene_.legend = settings_.color->has_values()
                       ? scale_.legend()
                       : render::Legend{.title = std::string(settings_.color->key), .swatches = swatches_};

@@ -52,6 +52,8 @@ class GroupScene {
   void set_offsets(std::span<const Eigen::Vector3f> offsets);
   void set_materials(std::size_t robot, std::span<const Material> materials);
   void set_name(std::size_t robot, const std::string& name) { names_[robot] = name; }
+  // What is drawn behind the robots, in plain surroundings.
+  void set_background(std::vector<render::Tile> tiles, std::vector<render::Text> texts);
   void mark(std::size_t robot, bool selected, bool hidden);
   // Starts all trails again at these positions.
   void restart(std::span<const Telemetry> telemetry);
@@ -105,6 +107,8 @@ class GroupScene {
   std::vector<Trail> trails_;
   std::vector<render::Path> paths_;
   std::vector<render::Label> labels_;
+  std::vector<render::Tile> tiles_;
+  std::vector<render::Text> texts_;
   std::vector<std::pair<render::Color, std::string>> swatches_;  // the legend of materials
   SceneDetails details_;
   render::Scene scene_;

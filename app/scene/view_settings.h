@@ -2,10 +2,13 @@
 // What is shown of a group, and how: the settings that windows and videos share.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "app/scene/arrows.h"
+#include "app/scene/board.h"
 #include "app/scene/camera_plan.h"
 #include "app/scene/color_quantity.h"
 #include "app/scene/group_layout.h"
@@ -15,9 +18,10 @@ namespace mercury {
 
 struct Shown {
   bool skin = true, springs = false, masses = false;
-  bool path = false;    // of each centre of mass
-  bool labels = false;  // name, distance and rank at each robot
-  bool legend = false;  // of the colours
+  bool path = false;      // of each centre of mass
+  bool labels = false;    // name, distance and rank at each robot
+  bool captions = false;  // name at each robot
+  bool legend = false;    // of the colours
   bool clock = true;
   bool scale_bar = false;
   ArrowKinds arrows;
@@ -33,8 +37,10 @@ struct ViewSettings {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;
-  bool interop = true;  // let CUDA write into OpenGL's memory if possible
-  double speed = 1;     // simulated seconds per second of the video, for the clock
+  std::string caption;                 // text in the upper left corner; further lines are smaller
+  std::shared_ptr<const Board> board;  // the robots are drawn in its cells; nullptr = no board
+  bool interop = true;                 // let CUDA write into OpenGL's memory if possible
+  double speed = 1;                    // simulated seconds per second of the video, for the clock
 };
 
 }  // namespace mercury

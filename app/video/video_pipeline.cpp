@@ -22,24 +22,26 @@ float aspect_of(const render::Renderer& renderer) {
   return static_cast<float>(renderer.width()) / static_cast<float>(renderer.height());
 }
 
-std::vector<Eigen::Vector3f> offsets_of(const Simulation& simulation, const ViewSettings& settings, float aspect) {
+GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
   for (std::size_t i = 0; i < simulation.size(); ++i) bounds.push_back(rest_bounds(simulation.robot(i)));
+  if (settings.board) return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
   const bool land = on_land(simulation);
   // From straight above, robots that swim are laid out as if on the ground.
   const bool flat = land || settings.camera.mode == CameraMode::top;
-  return grid_layout(bounds, {.layout = settings.layout,
-                              .grid = settings.grid,
-                              .aspect = aspect,
-                              .view = direction_of(settings.camera, land),
-                              .on_ground = flat});
+  return {.offsets = grid_layout(bounds, {.layout = settings.layout,
+                                          .grid = settings.grid,
+                                          .aspect = aspect,
+                                          .view = direction_of(settings.camera, land),
+                                          .on_ground = flat}),
+          .camera = settings.camera};
 }
 
 // The edges of the picture where text is written and no robot should be, as shares of its sides.
 render::Insets free_edges(const ViewSettings& settings) {
   render::Insets free;
   if (settings.shown.legend) free.right = 0.1f;
-  if (settings.shown.labels) free.top = 0.07f;
+  if (settings.shown.labels || settings.shown.captions) free.top = 0.07f;
   if (settings.shown.clock || settings.shown.scale_bar) free.bottom = 0.03f;
   return free;
 }
@@ -53,14 +55,18 @@ OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize 
   return {std::move(context), std::move(renderer)};
 }
 
-VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings)
+VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
+                             std::span<const std::string> names)
     : offscreen_(offscreen), simulation_(std::move(simulation)),
-      scene_(simulation_, offsets_of(simulation_, settings, aspect_of(offscreen.renderer)), settings),
+      placement_(placement_of(simulation_, settings, aspect_of(offscreen.renderer))),
+      scene_(simulation_, placement_.offsets, settings),
       camera_(
-          settings.camera,
+          placement_.camera,
           {.aspect = aspect_of(offscreen.renderer), .free = free_edges(settings), .on_ground = on_land(simulation_)},
           names_of(simulation_)),
       details_(simulation_, settings) {
+  for (std::size_t i = 0; i < names.size(); ++i) scene_.set_name(i, names[i]);
+  if (settings.board) scene_.set_background(placement_.tiles, placement_.texts);
   scene_.set_bodies(offscreen.renderer);
   bridge_ = choose_bridge(simulation_, offscreen.renderer, settings.interop);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,10 @@ OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize 
 // renderer.
 class VideoPipeline {
  public:
-  // Throws InputError for a setting that does not suit the robots or their environment.
-  VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings);
+  // `names`: one per robot, shown instead of its own; empty = its own. Throws InputError for a setting that does not
+  // suit the robots or their environment.
+  VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
+                std::span<const std::string> names = {});
 
   const Simulation& simulation() const { return simulation_; }
   // Whether positions go from the simulation to the picture without leaving the GPU.
@@ -42,6 +45,7 @@ class VideoPipeline {
  private:
   OffscreenRenderer& offscreen_;
   Simulation simulation_;
+  GroupPlacement placement_;
   GroupScene scene_;
   CameraController camera_;
   DetailObserver details_;

@@ -36,5 +36,26 @@ TEST_F(AnnotationTest, ArrowsAndPathsAreDrawnAtTheirProjectedPositions) {
   EXPECT_GT(changed, 0);
 }
 
+TEST_F(AnnotationTest, TilesHaveTheirColorsBehindBodies) {
+  Renderer renderer = make_renderer(640, 480);
+  const Mesh mesh = triangle();
+  renderer.set_bodies(std::array{mesh.body()});
+  Scene scene = plain();
+  const Image without = drawn(renderer, scene);
+  // Nearer to the eye than the triangle.
+  const std::array tiles{Tile{{0, -0.2f, 0}, {1.2f, 0, 0}, {0, 0, 0.7f}, rgb(0x30508c), rgb(0x21918c)}};
+  scene.tiles = tiles;
+  const Image with = drawn(renderer, scene);
+  const auto at = [](const Image& image, const Eigen::Vector3f& point) {
+    const Vector2f p = pinhole(front(), point, 640, 480);
+    return pixel(image, int(p.x()), int(p.y()));
+  };
+  const Eigen::Vector3i fill = at(with, {0.8f, -0.2f, 0.5f});
+  EXPECT_LE(largest_difference(fill, {0x30, 0x50, 0x8c}), 3);
+  EXPECT_LE(largest_difference(at(with, {1.18f, -0.2f, 0.2f}), {0x21, 0x91, 0x8c}), 3);  // the frame
+  EXPECT_LE(largest_difference(at(with, {0.1f, 0, 0}), at(without, {0.1f, 0, 0})), 40);  // the triangle
+  EXPECT_GT(largest_difference(at(with, {0.1f, 0, 0}), fill), 60);
+}
+
 }  // namespace
 }  // namespace mercury::render

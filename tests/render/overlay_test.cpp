@@ -68,6 +68,23 @@ TEST(Overlay, LabelIsAboveItsBody) {
   EXPECT_LT(boxes[0].y + boxes[0].height, middle.y());
 }
 
+TEST(Overlay, TextIsAlignedToItsPoint) {
+  const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
+  const Vector3f point = orbit.camera().project({0.3f, 0, 0.2f}, 640, 360);
+  const auto middle_of = [&](float align_x) {
+    Overlay overlay = make_overlay();
+    const std::vector<Text> texts{{.at = {0.3f, 0, 0.2f}, .text = "HH", .align_x = align_x}};
+    overlay.texts(texts, orbit.camera());
+    const Rectangle &first = overlay.quads()[0].rectangle, &last = overlay.quads()[1].rectangle;
+    EXPECT_NEAR(first.y + first.height / 2, point.y(), 3);
+    return (first.x + last.x + last.width) / 2;
+  };
+  const float width = text_width("HH", 16);
+  EXPECT_NEAR(middle_of(0.5f), point.x(), 1.5f);
+  EXPECT_NEAR(middle_of(0), point.x() + width / 2, 1.5f);
+  EXPECT_NEAR(middle_of(1), point.x() - width / 2, 1.5f);
+}
+
 TEST(Overlay, OfTwoOverlappingLabelsTheNearerStays) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.02f, .distance = 5};
   Overlay overlay = make_overlay();
