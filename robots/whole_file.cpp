@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
-#include <utility>
 
 #include "mercury/error.h"
 
@@ -30,6 +29,12 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return descriptor_; }
   bool is_open() const { return descriptor_ >= 0; }
+  // Some file systems report a full disk only now. Returns 0, or the error.
+  int close() {
+    const int result = ::close(descriptor_);
+    descriptor_ = -1;
+    return result == 0 ? 0 : errno;
+  }
 
  private:
   int descriptor_;
@@ -43,7 +48,7 @@ int write_all(int descriptor, std::string_view content) {
     if (written < 0) return errno;
     content.remove_prefix(static_cast<std::size_t>(written));
   }
-  return 0;
+  return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
 }
 
 // The end of a chain of links, even if no file exists there yet.
@@ -59,6 +64,14 @@ std::filesystem::path follow_links(std::filesystem::path path) {
 bool is_special(const std::filesystem::path& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+void write_into(const std::filesystem::path& path, std::string_view content) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.is_open()) fail(path, errno);
+  int error = write_all(file.get(), content);
+  if (const int at_close = file.close(); error == 0) error = at_close;
+  if (error != 0) fail(path, error);
 }
 
 // A name in the folder of `path` that no other writer uses.
@@ -93,48 +106,22 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {
-  WholeFile file(path);
-  file.append(content);
-  file.finish();
-}
-
-WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(follow_links(path)) {
-  if (is_special(target_)) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) fail(path, errno);
-    return;
+  const std::filesystem::path target = follow_links(path);
+  if (is_special(target)) return write_into(path, content);
+  std::filesystem::path temporary;
+  int descriptor = -1;
+  for (int attempt = 0; descriptor < 0; ++attempt) {
+    temporary = temporary_name(target, attempt);
+    descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno != EEXIST) fail(path, errno);
   }
-  for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = temporary_name(target_, attempt);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && errno != EEXIST) fail(path, errno);
-  }
-}
-
-WholeFile::~WholeFile() { discard(); }
-
-void WholeFile::append(std::string_view piece) {
-  if (const int error = write_all(descriptor_, piece); error != 0) fail_with(error);
-}
-
-void WholeFile::finish(Sync sync) {
-  int error = sync == Sync::no || ::fsync(descriptor_) == 0 || errno == EINVAL ? 0 : errno;
-  // Some file systems report a full disk only at close.
-  if (::close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
-  if (error == 0 && !temporary_.empty() && ::rename(temporary_.c_str(), target_.c_str()) != 0) error = errno;
-  if (error != 0) fail_with(error);
-  temporary_.clear();
-}
-
-void WholeFile::discard() {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  temporary_.clear();
-}
-
-void WholeFile::fail_with(int error) {
-  discard();
-  fail(path_, error);
+  Descriptor file(descriptor);
+  int error = write_all(file.get(), content);
+  if (const int at_close = file.close(); error == 0) error = at_close;
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(temporary.c_str());
+  fail(path, error);
 }
 
 }  // namespace mercury

@@ -17,25 +17,4 @@ std::string read_whole_file(const std::filesystem::path& path);
 // permission, a full disk) throws InputError with the path and the system's reason, and leaves nothing behind.
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
-// The same for a file that is written piece by piece. Without finish(), the file stays as it was.
-class WholeFile {
- public:
-  enum class Sync { yes, no };  // whether finish() waits until the disk has the file, so that it survives a power cut
-
-  explicit WholeFile(const std::filesystem::path& path);
-  ~WholeFile();
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
-
-  void append(std::string_view piece);
-  void finish(Sync sync = Sync::yes);
-
- private:
-  void discard();
-  [[noreturn]] void fail_with(int error);
-
-  std::filesystem::path path_, target_, temporary_;  // no temporary: it is written directly
-  int descriptor_ = -1;
-};
-
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury info: describes robot files and recordings, or what this machine can do.
+// mercury info: describes robot files, recordings and runs of evolutions, or what this machine can do.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 
 #include "app/base/version.h"
 #include "app/commands/commands.h"
+#include "app/commands/description.h"
 #include "app/commands/machine.h"
 #include "app/options/option_values.h"
-#include "app/recording/configuration_json.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/cuda_devices.h"
@@ -19,6 +19,7 @@
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/robot_file.h"
+#include "mercury/run_folder.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
@@ -50,8 +51,6 @@ std::string surface_text(const Inspection& inspection) {
   return text;
 }
 
-void line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, text); }
-
 std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", static_cast<double>(bytes) / 1024); }
 
 // Whether a GPU can step the robot in the fast memory of a block (docs/performance.md): on any device, and on each GPU
@@ -61,20 +60,20 @@ void describe_fit(const Robot& robot) {
   Configuration configuration;
   if (environment_of(robot) == Land::name) configuration.environment = Land{};
   const std::size_t bytes = chip_bytes(robot, configuration);
-  line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
-                                environment_of(robot) == Land::name ? "on land" : "in water",
-                                bytes <= smallest ? "fits every CUDA device, which has 48 kB or more"
-                                                  : "more than the 48 kB of the smallest CUDA devices"));
+  print_line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
+                                      environment_of(robot) == Land::name ? "on land" : "in water",
+                                      bytes <= smallest ? "fits every CUDA device, which has 48 kB or more"
+                                                        : "more than the 48 kB of the smallest CUDA devices"));
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
     const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
                         : !fit.contacts_on_chip && std::holds_alternative<Land>(configuration.environment)
                             ? "fits but for its contacts"
                             : "fits";
-    line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
-                         kilobytes(fit.most_bytes), where, fit.robots_at_once));
+    print_line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
+                               kilobytes(fit.most_bytes), where, fit.robots_at_once));
   }
-  line("", "the CPU takes any size");
+  print_line("", "the CPU takes any size");
 }
 
 void describe(const Robot& robot) {
@@ -83,19 +82,21 @@ void describe(const Robot& robot) {
   const Generator* generator = find_generator(kind);
   fmt::print("{}\n", robot.name);
   if (!kind.empty() || !environment.empty())
-    line("made",
-         fmt::format("{}{}{}", kind.empty() ? "" : "as " + (generator ? generator->noun : "a " + kind + " robot"),
-                     kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
-  line("masses", fmt::format("{}{}", found.masses,
-                             found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
-  line("springs", fmt::format("{}, {:.1f} per mass, {:.3g} to {:.3g} m, {} muscles", found.springs,
-                              found.springs_a_mass, found.shortest_spring, found.longest_spring, found.muscles));
-  line("faces", fmt::to_string(found.faces));
-  line("surface", surface_text(found));
-  line("materials", materials_text(found));
-  line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
+    print_line(
+        "made",
+        fmt::format("{}{}{}", kind.empty() ? "" : "as " + (generator ? generator->noun : "a " + kind + " robot"),
+                    kind.empty() || environment.empty() ? "" : ", ", environment.empty() ? "" : "for " + environment));
+  print_line("masses",
+             fmt::format("{}{}", found.masses,
+                         found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
+  print_line("springs", fmt::format("{}, {:.1f} per mass, {:.3g} to {:.3g} m, {} muscles", found.springs,
+                                    found.springs_a_mass, found.shortest_spring, found.longest_spring, found.muscles));
+  print_line("faces", fmt::to_string(found.faces));
+  print_line("surface", surface_text(found));
+  print_line("materials", materials_text(found));
+  print_line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
   describe_fit(robot);
-  if (found.components > 1) line("parts", fmt::format("{} that no spring joins", found.components));
+  if (found.components > 1) print_line("parts", fmt::format("{} that no spring joins", found.components));
 }
 
 int describe_machine(const std::string& ffmpeg) {
@@ -107,29 +108,20 @@ int describe_machine(const std::string& ffmpeg) {
   return 0;
 }
 
-// "ocean, density 1000, ...", with the names of the options.
-std::string environment_text(const Configuration& configuration) {
-  std::string text(name_of(configuration.environment));
-  const nlohmann::ordered_json json = json_of(configuration);
-  for (auto item = std::next(json.find("environment")); item != json.end(); ++item)
-    text += fmt::format(", {} {}", item.key(), item.value().dump());
-  return text;
-}
-
 void describe(const TrajectoryReader& trajectory) {
   constexpr std::size_t shown = 20;
   const Configuration& configuration = trajectory.configuration();
   fmt::print("{}\n", trajectory.path().string());
-  line("recorded by", trajectory.program() + " on " + trajectory.device_name());
-  line("frames", trajectory.frames() == 0
-                     ? "none"
-                     : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(), trajectory.every(),
-                                   trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
-  line("solver", fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt,
-                             configuration.damping));
-  line("environment", environment_text(configuration));
-  if (trajectory.seed()) line("seed", fmt::to_string(*trajectory.seed()));
-  line("robots", fmt::format("{}, {} masses", trajectory.robots().size(), trajectory.mass_count()));
+  print_line("recorded by", trajectory.program() + " on " + trajectory.device_name());
+  print_line("frames",
+             trajectory.frames() == 0
+                 ? "none"
+                 : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(), trajectory.every(),
+                               trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
+  print_line("solver", solver_text(configuration));
+  print_line("environment", environment_text(configuration));
+  if (trajectory.seed()) print_line("seed", fmt::to_string(*trajectory.seed()));
+  print_line("robots", fmt::format("{}, {} masses", trajectory.robots().size(), trajectory.mass_count()));
   for (std::size_t i = 0; i < std::min(shown, trajectory.robots().size()); ++i) {
     const auto& [robot, group, exploded_at, bad_spring] = trajectory.robots()[i];
     std::string text =
@@ -146,6 +138,8 @@ int info(const InfoOptions& options) {
   for (const std::filesystem::path path : options.paths) {
     if (is_trajectory_name(path)) {
       describe(TrajectoryReader(path));
+    } else if (is_run_folder(path)) {
+      describe(RunHistory(path));
     } else {
       for (const Robot& robot : load_robots(std::span(&path, 1))) describe(robot);
     }
@@ -158,8 +152,10 @@ int info(const InfoOptions& options) {
 void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
-      program.add_subcommand("info", "Describe robot files and recordings; without a file, this machine");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor), folders of them, recordings (.h5)")
+      program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
+  command
+      ->add_option("ROBOTS", options->paths,
+                   "Robot files (.json, .cbor), folders of them, recordings (.h5), runs of mercury evolve")
       ->type_name("PATH");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");

@@ -43,7 +43,6 @@ void RobotOptions::add_to(CLI::App& command) {
   generators_.add_to(command);
 }
 
-// A file of a kind that is given without others.
 std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const std::filesystem::path&),
                                                          const char* why) const {
   const auto found = std::find_if(paths_.begin(), paths_.end(), [&](const auto& path) { return is_such(path); });

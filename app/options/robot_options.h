@@ -43,6 +43,10 @@ class RobotOptions {
   // The *.repro file, if one was given. Throws InputError if robots were given with it.
   std::optional<std::filesystem::path> repro() const;
 
+  // The file or folder of a kind that is given alone, if there is one. Throws InputError(its name, why) if robots were
+  // given with it.
+  std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
+
   // The same in parts: the robots of the files, the files' names, and the random robots to make.
   std::vector<Robot> load_files() const;
   std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
@@ -55,7 +59,6 @@ class RobotOptions {
 
  private:
   void require_robots() const;
-  std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
   RandomRobots random_from(const std::string& request) const;
 
   std::vector<std::string> paths_;   // files and folders

@@ -93,6 +93,7 @@ void add_parameters(CLI::App& command, Struct& values) {
 }  // namespace
 
 void SimulationOptions::add_to(CLI::App& command) {
+  command_ = &command;
   const auto add = [](CLI::Option* option) { option->group(simulation_group); };
   add(command
           .add_option_function<std::string>(
@@ -146,11 +147,9 @@ void SimulationOptions::add_environment_parameters(CLI::App& command) {
   for_each_environment([&](const auto& kind) { for_each_parameter(kind, add); });
 }
 
-Configuration SimulationOptions::configuration_in(std::string_view environment) const {
-  Configuration configuration = given_;
-  configuration.environment = environment_named(environment);
+void SimulationOptions::set_parameters(Environment& environment) const {
   std::set<std::string> applicable;
-  for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, Value& value) {
+  for_each_parameter(environment, [&]<class Value>(const auto& parameter, Value& value) {
     const std::string name(parameter.name);
     applicable.insert(name);
     const auto option = parameter_options_.find(name);
@@ -158,8 +157,29 @@ Configuration SimulationOptions::configuration_in(std::string_view environment) 
   });
   for (const auto& [name, option] : parameter_options_)
     if (option.value && !applicable.contains(name))
-      throw InputError(option.option,
-                       fmt::format("{} has no such parameter; it applies to {}", environment, environments_with(name)));
+      throw InputError(option.option, fmt::format("{} has no such parameter; it applies to {}", name_of(environment),
+                                                  environments_with(name)));
+}
+
+Configuration SimulationOptions::configuration_in(std::string_view environment) const {
+  Configuration configuration = given_;
+  configuration.environment = environment_named(environment);
+  set_parameters(configuration.environment);
+  validate(configuration);
+  return configuration;
+}
+
+Configuration SimulationOptions::configuration_over(const Configuration& base) const {
+  Configuration configuration = base;
+  configuration.device = given_.device;
+  if (command_->count("--solver") > 0) configuration.solver = given_.solver;
+  const auto take_given = [&](const auto& parameter, auto& value) {
+    if (command_->count(option_of(parameter.name)) > 0) value = given_.*parameter.member;
+  };
+  for_each_parameter(configuration, take_given);
+  if (environment_ && *environment_ != name_of(base.environment))
+    configuration.environment = environment_named(*environment_);
+  set_parameters(configuration.environment);
   validate(configuration);
   return configuration;
 }

@@ -33,6 +33,9 @@ class SimulationOptions {
   // The same with the environments that the robots are made for; a name that is none, or empty, has no effect.
   Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
 
+  // The same over the configuration of a run: what the command line does not say is as there, except for the device.
+  Configuration configuration_over(const Configuration& base) const;
+
   // The value of --environment; empty = not given.
   std::string chosen_environment() const { return environment_.value_or(""); }
 
@@ -49,7 +52,10 @@ class SimulationOptions {
 
   void add_environment_parameters(CLI::App& command);
   Configuration configuration_in(std::string_view environment) const;
+  // Writes the options of its parameters into an environment. Throws InputError for options that do not apply to it.
+  void set_parameters(Environment& environment) const;
 
+  const CLI::App* command_ = nullptr;
   Configuration given_;  // all but the environment
   std::optional<std::string> environment_;
   std::map<std::string, ParameterOption> parameter_options_;  // by the parameter's name

@@ -65,6 +65,10 @@ void VideoOptions::validate() const {
   if (still_ && contact_sheet_) throw InputError("--still", "not together with --contact-sheet; give one of them");
 }
 
+void VideoOptions::set_usual_still(double seconds) {
+  if (!single_picture() && std::filesystem::path(output_).extension() == ".png") still_ = seconds;
+}
+
 PictureSize VideoOptions::asked_size() const {
   return size_.value_or(contact_sheet_ ? PictureSize{1920, 1080} : PictureSize{});
 }

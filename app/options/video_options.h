@@ -34,8 +34,12 @@ class VideoOptions {
   // The file or folder that open() writes.
   std::string output_of(const std::string& name) const;
 
+  // From now on: one picture, of this moment, unless the options ask for another kind of output [s].
+  void set_usual_still(double seconds);
+
   double speed() const { return speed_; }
   bool each() const { return each_; }
+  std::optional<Grid> contact_sheet() const { return contact_sheet_; }
   bool single_picture() const { return still_ || contact_sheet_; }
   PictureSize asked_size() const;
   render::ContextKind context_kind() const { return render::context_kind_named(gl_); }

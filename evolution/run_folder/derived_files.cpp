@@ -19,9 +19,7 @@ void DerivedFiles::write(const RunHistory& run) {
   write_champions(run);
   write_lineage(run);
   write_generations(run);
-  WholeFile plot(run.folder() / progress_name);
-  plot.append(progress_plot(run));
-  plot.finish(WholeFile::Sync::no);
+  write_whole_file(run.folder() / progress_name, progress_plot(run));
   const Clock::time_point end = Clock::now();
   next_ = end + pauses * (end - start);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files of a run folder that follow from run.toml and the journal. Each is written whole, so readers find the whole
-// old file or the whole new one; nobody waits for the disk, since a file that a power cut takes is made again.
+// old file or the whole new one, and a file that is lost or damaged is made again.
 #pragma once
 
 #include <array>

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/tables.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <span>
 #include <string>
 
 #include "evolution/run_folder/derived_files.h"
@@ -72,7 +69,14 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
-std::string lineage_header(const RunHistory& run) {
+// Numbers that an individual may lack.
+void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
+}
+
+}  // namespace
+
+void write_lineage(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
   Csv csv;
   for (const char* name :
@@ -82,47 +86,18 @@ std::string lineage_header(const RunHistory& run) {
   csv.cell("hash");
   for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
   csv.end_line();
-  return csv.text();
-}
-
-std::string lineage_lines(const RunHistory& run, std::span<const Individual> individuals) {
-  const std::size_t objectives = run.settings().evolution.objectives.size();
-  Csv csv;
-  for (const Individual& individual : individuals) {
+  for (const Individual& individual : run.individuals()) {
     const Assessment& assessment = individual.assessment;
     const std::optional<int> died = run.died(individual.id);
     csv.cell(individual.id).cell(ancestor_list(individual)).cell(individual.generation);
     csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
     csv.cell(individual.seed).cell(name_of(assessment.fate));
-    for (std::size_t i = 0; i < objectives; ++i)
-      csv.cell(i < assessment.scores.size() ? shortest_text(assessment.scores[i]) : std::string());
+    add_cells(csv, assessment.scores, objectives);
     csv.cell(hexadecimal(assessment.hash));
-    // In single precision, which takes half the space.
-    for (std::size_t i = 0; i < quantities().size(); ++i)
-      csv.cell(i < assessment.values.size() ? shortest_text(static_cast<float>(assessment.values[i])) : std::string());
+    add_cells(csv, assessment.values, quantities().size());
     csv.end_line();
   }
-  return csv.text();
-}
-
-}  // namespace
-
-void write_lineage(const RunHistory& run) {
-  constexpr std::size_t block = 2048, blocks_at_a_time = 64;  // individuals; so that memory is bounded
-  const std::span<const Individual> individuals = run.individuals();
-  WholeFile file(run.folder() / lineage_name);
-  file.append(lineage_header(run));
-  std::vector<std::string> blocks(blocks_at_a_time);
-  for (std::size_t first = 0; first < individuals.size(); first += block * blocks_at_a_time) {
-    const std::span<const Individual> next =
-        individuals.subspan(first, std::min(block * blocks_at_a_time, individuals.size() - first));
-    const std::size_t count = (next.size() + block - 1) / block;
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      blocks[i] = lineage_lines(run, next.subspan(i * block, std::min(block, next.size() - i * block)));
-    });
-    for (std::size_t i = 0; i < count; ++i) file.append(blocks[i]);
-  }
-  file.finish(WholeFile::Sync::no);
+  write_whole_file(run.folder() / lineage_name, csv.text());
 }
 
 void write_generations(const RunHistory& run) {
@@ -151,9 +126,7 @@ void write_generations(const RunHistory& run) {
         .cell(generation.times.device);
     csv.end_line();
   }
-  WholeFile file(run.folder() / generations_name);
-  file.append(csv.text());
-  file.finish(WholeFile::Sync::no);
+  write_whole_file(run.folder() / generations_name, csv.text());
 }
 
 }  // namespace mercury

@@ -43,7 +43,7 @@ ALLOWED = {
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
     "app/window/panels": "sim/api robots/api app/options app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
-    "app/commands": "sim/api robots/api evolution/api evolution robots render app/base app/recording app/video app/options app/window/toolkit app/window",
+    "app/commands": "sim/api robots/api evolution/api evolution robots render app/base app/recording app/scene app/video app/options app/window/toolkit app/window",
     "bench": "*",
     "tests": "*",
     "examples": "sim/api robots/api evolution/api",

@@ -10,8 +10,6 @@
 #include <fstream>
 
 #include "evolution/run_folder/derived_files.h"
-#include "mercury/generator.h"
-#include "mercury/origin.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/evolution/run_folder/test_run.h"
@@ -90,45 +88,6 @@ TEST_F(RunFolders, AKilledRunEndsAsOneThatWasNotInterrupted) {
   }
   EXPECT_GT(kills, 0);
   expect_same_run(history("whole"), history("killed"));
-}
-
-TEST_F(RunFolders, HoldRobotsOfAllKinds) {
-  for (const Generator& generator : generators()) {
-    if (generator.kind == "nn" && !MERCURY_NN) continue;
-    RunSettings settings = test_settings(3);
-    settings.evolution.algorithm.population = 4;
-    settings.space = {.kind = generator.kind, .genes = Genes::both};
-    if (generator.kind == "nn") settings.space.values["points"] = std::int64_t{100};
-    const fs::path folder = path(generator.kind);
-    std::string best;
-    {
-      RunFolder run = RunFolder::create(folder, settings);
-      evolve(run, 2);
-      best = serialize_robot(run.history().grow(run.history().champion(0)), RobotFormat::json);
-    }
-    RunFolder run = RunFolder::open(folder);
-    evolve(run);
-    const RunHistory& history = run.history();
-    EXPECT_EQ(history.generations().size(), 4u);
-    EXPECT_EQ(serialize_robot(history.grow(history.champion(0)), RobotFormat::json), best);
-    const Robot last = history.grow(history.champion(3));
-    const std::optional<Ancestry> ancestry = ancestry_of(last);
-    ASSERT_TRUE(ancestry);
-    EXPECT_EQ(ancestry->parents.size(), history.individuals()[history.champion(3)].parents.size());
-  }
-}
-
-TEST_F(RunFolders, BeginWithFounders) {
-  RunSettings settings = test_settings(1);
-  settings.space = {.genes = Genes::muscles, .founders = {random_voxel_robot({}, 3), random_voxel_robot({}, 4)}};
-  {
-    RunFolder run = RunFolder::create(path("run"), settings);
-    evolve(run);
-  }
-  const RunHistory run(path("run"));
-  EXPECT_EQ(run.settings().space.founders, settings.space.founders);
-  EXPECT_EQ(run.grow(0).masses, settings.space.founders[0].masses);
-  EXPECT_EQ(run.grow(1).masses, settings.space.founders[1].masses);
 }
 
 TEST_F(RunFolders, GenerationsCanBeRaised) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Descriptions as mercury info prints them: a heading, then lines of what and how.
+#pragma once
+
+#include <string>
+
+#include "mercury/configuration.h"
+#include "mercury/run_folder.h"
+
+namespace mercury {
+
+// "  masses      300"
+void print_line(const std::string& what, const std::string& text);
+
+// "ocean, density 1000, ...", with the names of the options.
+std::string environment_text(const Configuration& configuration);
+// "force, dt 0.001 s, damping 0.1 1/s"
+std::string solver_text(const Configuration& configuration);
+
+// A run of an evolution, which may be going on.
+void describe(const RunHistory& run);
+
+}  // namespace mercury

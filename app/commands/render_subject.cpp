@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/render_subject.h"
+
+#include <algorithm>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+Subject recording_of(const RenderOptions& options, const std::filesystem::path& file) {
+  if (options.video.each()) throw InputError("--each", "does not work with a recording; it is played as a whole");
+  Subject subject{.clips = std::vector<Clip>(1), .recording = std::make_shared<TrajectoryReader>(file)};
+  const TrajectoryReader& recording = *subject.recording;
+  if (recording.frames() == 0) throw InputError(file.string(), "holds no frames");
+  subject.configuration = recording.configuration();
+  subject.seconds = options.simulation.seconds(recording.time(recording.frames() - 1) - recording.time(0));
+  return subject;
+}
+
+Subject robots_of(const RenderOptions& options) {
+  options.simulation.configuration();  // errors in options come before those in files
+  Subject subject;
+  Clip& clip = subject.clips.emplace_back();
+  clip.robots = options.robots.load();
+  subject.configuration = options.simulation.configuration(clip.robots, subject.notes);
+  subject.seconds = options.simulation.seconds();
+  return subject;
+}
+
+// How a run is shown, where the options do not say otherwise.
+void set_view_of_run(const RenderOptions& options, const RunFilm& film, ViewSettings& view) {
+  view.board = film.board;
+  if (film.board) {
+    if (view.color->has_values()) throw InputError("--color", "not together with --map, where colors show scores");
+    if (view.camera.mode != CameraMode::group)
+      throw InputError("--camera", "not together with --map; --azimuth and --elevation turn the robots");
+    if (view.grid || view.layout == Layout::race)
+      throw InputError(view.grid ? "--grid" : "--layout", "not together with --map, which has a layout of its own");
+    if (!options.view.chooses_what_is_shown()) view.shown.clock = !options.video.single_picture();
+    return;
+  }
+  if (options.film.row() && !view.grid && view.layout == Layout::grid)
+    view.grid = Grid{.columns = static_cast<int>(film.clips.front().robots.size()), .rows = 1};
+  if (options.view.chooses_what_is_shown()) return;
+  view.shown.captions = view.shown.path = view.shown.scale_bar = true;
+}
+
+// A contact sheet of a lineage has one moment per ancestor, the end of its clip.
+void plan_sheet_of_clips(const Subject& subject, VideoOptions::Plan& plan) {
+  plan.timing.frames = 1;
+  plan.timing.start = subject.seconds;
+}
+
+Subject run_of(RenderOptions& options, const std::filesystem::path& folder, ViewSettings& view) {
+  constexpr double seconds_of_an_ancestor = 5;
+  if (options.film.map() && options.video.each()) throw InputError("--each", "not together with --map");
+  const RunHistory run(folder);
+  const bool still = options.video.single_picture() && !options.video.contact_sheet();
+  const bool in_order = options.film.lineage() && !still;
+  const auto sheet = options.video.contact_sheet();
+  RunFilm film = options.film.film(
+      run,
+      {.at_once = !in_order,
+       .most_clips = sheet ? static_cast<std::size_t>(sheet->columns) * static_cast<std::size_t>(sheet->rows) : 0});
+  set_view_of_run(options, film, view);
+  return {.configuration = options.simulation.configuration_over(run.settings().evolution.configuration),
+          .clips = std::move(film.clips),
+          .seconds = in_order ? options.simulation.seconds(seconds_of_an_ancestor) : options.simulation.seconds(),
+          .notes = std::move(film.notes)};
+}
+
+Subject subject_of(RenderOptions& options, ViewSettings& view) {
+  options.film.validate();
+  if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
+    return run_of(options, *run, view);
+  if (const std::string option = options.film.given(); !option.empty())
+    throw InputError(option, "works with the folder of a run, which mercury evolve makes");
+  if (const auto file = options.robots.recording()) return recording_of(options, *file);
+  return robots_of(options);
+}
+
+}  // namespace
+
+Simulation Subject::simulation_of(const Clip& clip) const {
+  return recording ? playback(recording) : Simulation(configuration, clip.robots);
+}
+
+RenderTask render_task(RenderOptions& options) {
+  if (options.film.map()) options.video.set_usual_still(0);
+  options.video.plan(options.simulation.seconds());
+  RenderTask task{.view = options.view.settings()};
+  task.subject = subject_of(options, task.view);
+  task.plan = options.video.plan(task.subject.seconds);
+  if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
+  task.view.interop = options.video.interop();
+  task.view.speed = options.video.single_picture() ? 1 : options.video.speed();
+  return task;
+}
+
+}  // namespace mercury

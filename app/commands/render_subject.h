@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What mercury render films: robots to simulate, a recording to play back, or a run of an evolution.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands/run_film.h"
+#include "app/options/robot_options.h"
+#include "app/options/simulation_options.h"
+#include "app/options/video_options.h"
+#include "app/options/view_options.h"
+#include "app/recording/trajectory_playback.h"
+
+namespace mercury {
+
+struct RenderOptions {
+  RobotOptions robots;
+  SimulationOptions simulation;
+  VideoOptions video;
+  ViewOptions view;
+  RunFilmOptions film;
+  std::string config;
+  bool quiet = false;
+};
+
+struct Subject {
+  Configuration configuration;
+  std::vector<Clip> clips;                      // one after the other
+  std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
+  double seconds = 0;                           // of each clip
+  std::vector<std::string> notes;
+
+  Simulation simulation_of(const Clip& clip) const;
+};
+
+// What the options ask for, checked before expensive work begins.
+struct RenderTask {
+  Subject subject;
+  VideoOptions::Plan plan;  // of each clip
+  ViewSettings view;
+};
+
+// May change options that have another default for this subject. Throws InputError.
+RenderTask render_task(RenderOptions& options);
+
+}  // namespace mercury

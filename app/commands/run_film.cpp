@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/run_film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "app/commands/run_board.h"
+#include "app/options/option_values.h"
+#include "mercury/error.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t usual_ancestors = 12, usual_best = 12;
+constexpr const char* group = "Evolution";
+
+std::string count_text(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+const Individual& individual(const RunHistory& run, std::uint64_t id) {
+  return run.individuals()[static_cast<std::size_t>(id)];
+}
+
+// "best" or an id.
+std::uint64_t id_from(const std::string& option, const std::string& text, const RunHistory& run) {
+  if (text == "best") return run.living().front();
+  std::uint64_t id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw InputError(option, fmt::format("\"{}\" is not accepted; give best, or the number of a robot", text));
+  if (id >= run.individuals().size())
+    throw InputError(option, fmt::format("the run has no robot {}; give best, or a number from 0 to {}", text,
+                                         run.individuals().size() - 1));
+  return id;
+}
+
+// The ancestors of a line that raised the score above that of all before them, at most `most` of them: those that
+// raised it most, and always the first and the last of the line.
+std::vector<std::uint64_t> steps_of(const RunHistory& run, std::vector<std::uint64_t> line, std::size_t most) {
+  if (line.size() <= most) return line;
+  std::vector<std::pair<double, std::size_t>> rises;  // and the place in the line
+  double highest = individual(run, line.front()).score();
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    const double score = individual(run, line[i]).score();
+    if (!(score > highest)) continue;
+    rises.emplace_back(score - highest, i);
+    highest = score;
+  }
+  std::ranges::stable_sort(rises, std::greater{}, &std::pair<double, std::size_t>::first);
+  rises.resize(std::min(rises.size(), most - std::min<std::size_t>(most, 2)));
+  std::vector<std::size_t> places{0, line.size() - 1};
+  for (const auto& rise : rises) places.push_back(rise.second);
+  std::ranges::sort(places);
+  std::vector<std::uint64_t> steps;
+  for (const std::size_t place : places) steps.push_back(line[place]);
+  return steps;
+}
+
+void add(Clip& clip, const RunHistory& run, std::uint64_t id, std::string caption) {
+  clip.robots.push_back(run.grow(id));
+  clip.captions.push_back(std::move(caption));
+}
+
+// Zooms so that the clips show their robots at one scale, the largest with room to move.
+void show_at_one_scale(std::vector<Clip>& clips) {
+  constexpr float room = 0.6f;
+  std::vector<float> radii;
+  for (const Clip& clip : clips) radii.push_back(rest_bounds(clip.robots.front()).radius());
+  const float largest = *std::ranges::max_element(radii);
+  for (std::size_t i = 0; i < clips.size() && largest > 0; ++i) clips[i].zoom = room * radii[i] / largest;
+}
+
+RunFilm film_of_champions(const RunHistory& run, std::size_t most) {
+  Clip clip{.title = fmt::format("{}\nthe best of generation {}", name_of_run(run), run.generations().back().number)};
+  for (const std::uint64_t id : run.living().first(std::min(most, run.living().size())))
+    add(clip, run, id, fmt::format("{}\nrobot {}", score_text(run.settings(), individual(run, id)), id));
+  return {.clips = {std::move(clip)}};
+}
+
+RunFilm film_of_generations(const RunHistory& run, const std::string& list) {
+  Clip clip;
+  for (const std::string_view text : split(list, ',')) {
+    const int last = run.generations().back().number;
+    const int number = text == "last" ? last : number_from<int>("--generation", text);
+    if (number < 0 || number > last)
+      throw InputError("--generation",
+                       fmt::format("the run has no generation {}; give numbers from 0 to {}, or last", text, last));
+    const std::uint64_t id = run.champion(number);
+    add(clip, run, id,
+        fmt::format("generation {}\n{}\nrobot {}", number, score_text(run.settings(), individual(run, id)), id));
+  }
+  return {.clips = {std::move(clip)}};
+}
+
+RunFilm film_of_lineage(const RunHistory& run, std::uint64_t id, std::size_t most, bool at_once) {
+  const std::vector<std::uint64_t> line = run.line_of(id), steps = steps_of(run, line, most);
+  RunFilm film;
+  if (at_once) film.clips.push_back({.title = fmt::format("{}\nthe ancestors of robot {}", name_of_run(run), id)});
+  for (const std::uint64_t step : steps) {
+    const Individual& ancestor = individual(run, step);
+    const std::string score = score_text(run.settings(), ancestor);
+    if (at_once) {
+      add(film.clips.front(), run, step, fmt::format("generation {}\n{}\nrobot {}", ancestor.generation, score, step));
+      continue;
+    }
+    Clip& clip = film.clips.emplace_back();
+    add(clip, run, step, "");
+    clip.title = fmt::format("generation {}\n{}\nrobot {}", ancestor.generation, score, step);
+  }
+  if (!at_once) show_at_one_scale(film.clips);
+  film.notes.push_back(
+      fmt::format("robot {} is the last of {} in its line; {}", id, line.size(),
+                  steps.size() == line.size()
+                      ? "all are shown"
+                      : fmt::format("{} in whose step the score rose are shown (--ancestors)", steps.size())));
+  return film;
+}
+
+RunFilm film_of_map(const RunHistory& run) {
+  const RunBoard map = board_of(run);
+  Clip clip;
+  for (const std::uint64_t id : map.robots) clip.robots.push_back(run.grow(id));
+  clip.title =
+      fmt::format("{}\ngeneration {}: {} of {}, the best {}", name_of_run(run), run.generations().back().number,
+                  map.robots.size(), count_text(map.board->values.size(), "cell", "cells"),
+                  score_text(run.settings(), individual(run, run.living().front())));
+  return {.clips = {std::move(clip)}, .board = map.board, .notes = map.notes};
+}
+
+}  // namespace
+
+void RunFilmOptions::add_to(CLI::App& command) {
+  const auto add = [](CLI::Option* option) { option->group(group); };
+  add(add_text(command, "--lineage", lineage_,
+               "The ancestors of a robot of a run in order, of its best or of one with that number", "best|ROBOT"));
+  add(add_number(
+      command, "--ancestors", ancestors_,
+      fmt::format("Of --lineage: at most that many, in whose step the score rose most (default {})", usual_ancestors),
+      "N"));
+  add(add_text(command, "--generation", generations_, "The best of these generations of a run, in a row", "N,N,..."));
+  add(command.add_flag("--map", map_, "The map of elites of a run as a table, with a robot per cell"));
+  add(add_number(command, "--best", best_,
+                 fmt::format("How many of the living robots of a run, the best first (default {})", usual_best), "N"));
+}
+
+std::string RunFilmOptions::given() const {
+  return !lineage_.empty()       ? "--lineage"
+         : !generations_.empty() ? "--generation"
+         : map_                  ? "--map"
+         : ancestors_ > 0        ? "--ancestors"
+         : best_ > 0             ? "--best"
+                                 : "";
+}
+
+void RunFilmOptions::validate() const {
+  std::vector<std::string> kinds;
+  if (!lineage_.empty()) kinds.push_back("--lineage");
+  if (!generations_.empty()) kinds.push_back("--generation");
+  if (map_) kinds.push_back("--map");
+  if (best_ > 0) kinds.push_back("--best");
+  if (kinds.size() > 1) throw InputError(kinds[1], fmt::format("not together with {}; give one of them", kinds[0]));
+  if (ancestors_ > 0 && lineage_.empty()) throw InputError("--ancestors", "works with --lineage only");
+  if (ancestors_ == 1) throw InputError("--ancestors", "1 is not accepted; give 2 or more, for the first and the last");
+}
+
+RunFilm RunFilmOptions::film(const RunHistory& run, const Room& room) const {
+  if (run.generations().empty() || run.living().empty())
+    throw InputError(run.folder().string(), "has no generation yet; try again when the first one is done");
+  if (lineage()) {
+    const std::size_t most = ancestors_ > 0 ? ancestors_ : room.most_clips > 0 ? room.most_clips : usual_ancestors;
+    if (room.most_clips > 0 && most > room.most_clips)
+      throw InputError("--ancestors", fmt::format("{} do not fit into a contact sheet of {}", most, room.most_clips));
+    return film_of_lineage(run, id_from("--lineage", lineage_, run), most, room.at_once);
+  }
+  if (!generations_.empty()) return film_of_generations(run, generations_);
+  if (map_) return film_of_map(run);
+  return film_of_champions(run, best_ > 0 ? best_ : usual_best);
+}
+
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "undefined" : value > 0 ? "infinite" : "none";
+  const double size = std::abs(value);
+  return size >= 1e6 || size < 999.5 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string score_text(const RunSettings& settings, const Individual& individual) {
+  const Assessment& assessment = individual.assessment;
+  if (assessment.fate != Fate::sound && assessment.fate != Fate::stopped) return std::string(name_of(assessment.fate));
+  std::string text;
+  const std::vector<std::string>& formulas = settings.evolution.objectives;
+  for (std::size_t i = 0; i < formulas.size() && i < assessment.scores.size(); ++i) {
+    const auto quantity = find_quantity(formulas[i]);
+    const std::string_view unit = quantity ? quantities()[*quantity].unit : "";
+    if (i > 0) text += ", ";
+    // A unit says enough about a single objective; formulas and bare numbers need a word.
+    if (formulas.size() > 1 || unit.empty()) text += quantity ? formulas[i] + " " : formulas.size() > 1 ? "" : "score ";
+    text += number_text(assessment.scores[i]);
+    if (!unit.empty()) text += fmt::format(" {}", unit);
+  }
+  return text;
+}
+
+std::string name_of_run(const RunHistory& run) {
+  const std::filesystem::path path = std::filesystem::absolute(run.folder()).lexically_normal();
+  return (path.filename().empty() ? path.parent_path() : path).filename().string();
+}
+
+}  // namespace mercury

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury info RUN: what an evolution looks for, and what it has found so far.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "app/commands/description.h"
+#include "app/commands/run_film.h"
+#include "app/options/generator_options.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+// "12,345"
+std::string grouped(std::size_t number) {
+  std::string digits = fmt::to_string(number);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
+  return digits;
+}
+
+std::string counted(std::size_t number, const char* one, const char* many) {
+  return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
+}
+
+// "53 s", "12 min 5 s", "3 h 7 min".
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
+
+// "voxel robots, --size 6x4x4, their bodies", or "what the user gave"
+std::string genome_text(const GenomeSpaceRequest& space) {
+  std::string text;
+  if (!space.founders.empty()) {
+    text = "from " + counted(space.founders.size(), "given robot", "given robots");
+  } else {
+    const Generator* generator = find_generator(space.kind);
+    text = space.kind + " robots";
+    if (generator)
+      for (const auto& [option, value] : options_of(*generator, space.values))
+        text += fmt::format(", {} {}", option.substr(2), value);
+  }
+  return text +
+         "; what changes: " + (space.genes == Genes::both ? "body and muscles" : std::string(name_of(space.genes)));
+}
+
+std::string trials_text(const TrialSettings& trials) {
+  std::string text = fmt::format("{} of {:g} s", trials.trials, trials.seconds);
+  if (trials.settle > 0) text += fmt::format(", the first {:g} s not measured", trials.settle);
+  if (trials.noise > 0) text += fmt::format(", noise {:g}", trials.noise);
+  if (trials.damage > 0) text += fmt::format(", damage {:g}", trials.damage);
+  text += fmt::format(", strain limit {:g}", trials.strain_limit);
+  return text + (trials.racing ? ", racing" : "");
+}
+
+std::string algorithm_text(const EvolutionSettings& settings) {
+  const AlgorithmSettings& algorithm = settings.algorithm;
+  const std::size_t children = settings.children > 0 ? settings.children : algorithm.population;
+  std::string text = algorithm.name;
+  if (algorithm.name != "map-elites") text += fmt::format(", population {}", algorithm.population);
+  text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
+                      algorithm.crossover, settings.mutation, settings.seed);
+  if (algorithm.name == "map-elites")
+    for (const MapAxis& axis : algorithm.axes)
+      text += fmt::format("; {} {:g} to {:g} in {} cells", axis.quantity, axis.lowest, axis.highest, axis.cells);
+  return text;
+}
+
+struct Totals {
+  std::size_t born = 0;
+  std::map<Fate, std::size_t> fates;
+  double seconds = 0;
+  std::vector<std::string> devices;
+};
+
+Totals totals_of(const RunHistory& run) {
+  Totals totals;
+  for (const GenerationSummary& generation : run.generations()) {
+    totals.born += generation.born;
+    totals.fates[Fate::exploded] += generation.exploded;
+    totals.fates[Fate::overstretched] += generation.overstretched;
+    totals.fates[Fate::stopped] += generation.stopped;
+    totals.fates[Fate::failed] += generation.failed;
+    totals.seconds += generation.times.seconds;
+    const std::string& device = generation.times.device;
+    if (!device.empty() && std::ranges::find(totals.devices, device) == totals.devices.end())
+      totals.devices.push_back(device);
+  }
+  return totals;
+}
+
+std::string individuals_text(const RunHistory& run, const Totals& totals) {
+  std::string text = fmt::format("{}, of which {} live", grouped(totals.born), grouped(run.living().size()));
+  std::string separator = "; ";
+  for (const auto& [fate, count] : totals.fates) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {} ({:.1f} %)", separator, grouped(count), name_of(fate),
+                        100 * static_cast<double>(count) / static_cast<double>(totals.born));
+    separator = ", ";
+  }
+  return text;
+}
+
+// All quantities of a robot, a few per line: "distance 0.731 m".
+void print_quantities(const Individual& individual) {
+  constexpr std::size_t width = 100;
+  std::string text;
+  const std::span<const double> values = individual.assessment.values;
+  for (std::size_t q = 0; q < std::min(values.size(), quantities().size()); ++q) {
+    const Quantity& quantity = quantities()[q];
+    const std::string item = fmt::format("{} {}{}{}", quantity.name, number_text(values[q]),
+                                         quantity.unit.empty() ? "" : " ", quantity.unit);
+    if (!text.empty() && text.size() + item.size() + 2 > width) {
+      print_line("", text + ",");
+      text.clear();
+    }
+    if (!text.empty()) text += ", ";
+    text += item;
+  }
+  if (!text.empty()) print_line("", text);
+}
+
+// Mutants have one parent, children of a crossover two; the line follows the first.
+void print_line_of(const RunHistory& run, std::uint64_t id) {
+  const std::vector<std::uint64_t> line = run.line_of(id);
+  const Individual& oldest = run.individuals()[static_cast<std::size_t>(line.front())];
+  print_line("its line", line.size() == 1 ? fmt::format("no ancestors: drawn in generation {}", oldest.generation)
+                                          : fmt::format("{}, from robot {} of generation {} ({})",
+                                                        counted(line.size() - 1, "ancestor", "ancestors"), oldest.id,
+                                                        oldest.generation, score_text(run.settings(), oldest)));
+}
+
+std::string size_text(double bytes) {
+  return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6);
+}
+
+// "best/ (20 robots), genomes (1.2 MB), ..."
+std::string files_text(const std::filesystem::path& folder) {
+  std::vector<std::string> items;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(".")) continue;
+    if (entry.is_directory(error)) {
+      const auto count = std::distance(std::filesystem::directory_iterator(entry.path(), error), {});
+      items.push_back(fmt::format("{}/ ({})", name, counted(static_cast<std::size_t>(count), "robot", "robots")));
+    } else {
+      items.push_back(fmt::format("{} ({})", name, size_text(static_cast<double>(entry.file_size(error)))));
+    }
+  }
+  std::ranges::sort(items);
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+std::string generations_text(const RunHistory& run) {
+  const int planned = run.settings().evolution.generations;
+  if (run.generations().empty()) return fmt::format("none of {} yet", planned);
+  const int done = run.generations().back().number;
+  return done >= planned ? fmt::format("{}, all done", done) : fmt::format("{} of {} done", done, planned);
+}
+
+}  // namespace
+
+void describe(const RunHistory& run) {
+  const RunSettings& settings = run.settings();
+  const Configuration& configuration = settings.evolution.configuration;
+  const Totals totals = totals_of(run);
+  fmt::print("{}\n", name_of_run(run));
+  print_line("made by", settings.program);
+  print_line("evolves", genome_text(settings.space));
+  print_line("for", fmt::format("{}", fmt::join(settings.evolution.objectives, ", ")));
+  print_line("by", algorithm_text(settings.evolution));
+  print_line("environment", environment_text(configuration));
+  print_line("solver", solver_text(configuration));
+  print_line("trials", trials_text(settings.evolution.trials));
+  print_line("generations", generations_text(run));
+  if (!run.generations().empty()) {
+    print_line("robots", individuals_text(run, totals));
+    if (totals.seconds > 0)
+      print_line("speed", fmt::format("{} robots/s, {} in all, on {}",
+                                      number_text(static_cast<double>(totals.born) / totals.seconds),
+                                      duration_text(totals.seconds), fmt::join(totals.devices, " and ")));
+  }
+  if (!run.living().empty()) {
+    const Individual& best = run.individuals()[static_cast<std::size_t>(run.living().front())];
+    print_line("best",
+               fmt::format("robot {} of generation {}: {}", best.id, best.generation, score_text(settings, best)));
+    print_quantities(best);
+    print_line_of(run, best.id);
+  }
+  print_line("files", files_text(run.folder()));
+}
+
+}  // namespace mercury
