@@ -81,7 +81,8 @@ GroupPlacement place_on_board(const Board& board, std::span<const render::Bounds
                               float aspect, render::Theme theme) {
   const render::Insets edges = edges_for(aspect);
   const float free_width = 1 - edges.left - edges.right, free_height = 1 - edges.top - edges.bottom;
-  const Plane plane = plane_for(board.grid, robots, direction_of(camera, true), aspect * free_width / free_height);
+  const render::Orbit view = direction_of(camera, true);
+  const Plane plane = plane_for(board.grid, robots, view, aspect * free_width / free_height);
   GroupPlacement placement{.camera = camera};
 
   // The camera: the board fills what the edges leave free.
@@ -90,6 +91,8 @@ GroupPlacement place_on_board(const Board& board, std::span<const render::Bounds
       std::max(plane.width / (2 * half * aspect * free_width), plane.height / (2 * half * free_height)) / camera.zoom;
   const float seen = half * distance;  // half the height of what is seen [m]
   placement.camera.mode = CameraMode::still;
+  placement.camera.azimuth = view.azimuth;
+  placement.camera.elevation = view.elevation;
   placement.camera.field_of_view = field_of_view;
   placement.camera.distance = distance;
   placement.camera.target = plane.at(aspect * seen * (edges.right - edges.left), seen * (edges.top - edges.bottom));

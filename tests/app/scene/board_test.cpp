@@ -70,7 +70,9 @@ TEST(Board, TilesAreRectanglesInRowsInsideThePicture) {
       EXPECT_NEAR(next[1], r[1], 1);
       EXPECT_NEAR(next[2] - next[0], r[2] - r[0], 1);
     }
-    if (i < 8) EXPECT_GT(placed.rectangle(placed.placement.tiles[i + 4])[1], r[3]);
+    if (i < 8) {
+      EXPECT_GT(placed.rectangle(placed.placement.tiles[i + 4])[1], r[3]);
+    }
   }
 }
 
