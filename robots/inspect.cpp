@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -120,6 +121,26 @@ Inspection inspect(const Robot& robot) {
   inspect_springs(robot, found);
   inspect_skin(robot, found);
   return found;
+}
+
+std::uint64_t body_hash(const Robot& robot) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](std::uint32_t value) {
+    for (int byte = 0; byte < 4; ++byte) hash = (hash ^ (value >> 8 * byte & 0xff)) * 0x100000001b3u;
+  };
+  const auto add_float = [&](float value) { add(std::bit_cast<std::uint32_t>(value)); };
+  const auto add_size = [&](std::size_t size) { add(static_cast<std::uint32_t>(size)); };
+  add_size(robot.masses.size());
+  for (const Vec3& place : robot.masses) add_float(place.x), add_float(place.y), add_float(place.z);
+  add_size(robot.springs.size());
+  for (const Spring& spring : robot.springs)
+    add(spring.a), add(spring.b), add(spring.material), add_float(spring.rest_length);
+  add_size(robot.faces.size());
+  for (const Face& face : robot.faces) add(face.a), add(face.b), add(face.c);
+  for (const Material& material : materials_of(robot))
+    add_float(material.stiffness), add_float(material.amplitude), add_float(material.frequency),
+        add_float(material.phase);
+  return hash;
 }
 
 }  // namespace mercury

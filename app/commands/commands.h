@@ -21,6 +21,9 @@ void add_view_command(CLI::App& program, const Choose& choose);
 void add_render_command(CLI::App& program, const Choose& choose);
 void add_evolve_command(CLI::App& program, const Choose& choose);
 void add_new_command(CLI::App& program, const Choose& choose);
+void add_mutate_command(CLI::App& program, const Choose& choose);
+void add_cross_command(CLI::App& program, const Choose& choose);
+void add_grow_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);
 void add_info_command(CLI::App& program, const Choose& choose);
 

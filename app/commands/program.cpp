@@ -57,6 +57,9 @@ class Program {
     add_run_command(app_, choose);
     add_evolve_command(app_, choose);
     add_new_command(app_, choose);
+    add_mutate_command(app_, choose);
+    add_cross_command(app_, choose);
+    add_grow_command(app_, choose);
     add_bench_command(app_, choose);
     add_info_command(app_, choose);
   }

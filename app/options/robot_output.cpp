@@ -33,10 +33,14 @@ std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, st
   return made;
 }
 
-void RobotOutput::add_to(CLI::App& command) {
-  add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), or a folder", "FILE|FOLDER")->required();
-  add_number(command, "--count", count_, "How many robots (default 1)", "N");
+void RobotOutput::add_to(CLI::App& command, const std::string& count_help) {
+  add_files_to(command);
+  add_number(command, "--count", count_, count_help, "N");
   add_number(command, "--seed", seed_, "Seed (default 1)", "N");
+}
+
+void RobotOutput::add_files_to(CLI::App& command) {
+  add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), or a folder", "FILE|FOLDER")->required();
   add_choice(command, "--format", format_, {"json", "cbor"}, "Of the files in a folder (default json)");
   command.add_flag("--force", force_, "Replace files that exist");
   add_text(command, "--config", config_, "Read options from a TOML file; those given here count more", "FILE.toml");
@@ -47,12 +51,16 @@ bool RobotOutput::names_file() const {
   return (extension == ".json" || extension == ".cbor") && !fs::is_directory(path_);
 }
 
-void RobotOutput::prepare() const {
+std::optional<std::string> RobotOutput::file_stem() const {
+  return names_file() ? std::optional(fs::path(path_).stem().string()) : std::nullopt;
+}
+
+void RobotOutput::prepare(std::uint64_t robots) const {
   const fs::path path(path_);
   if (count_ < 1) throw InputError("--count", "0 is not accepted; give 1 or more");
   if (path.empty()) throw InputError("-o", "give a file (.json, .cbor) or a folder");
   if (names_file()) {
-    if (count_ > 1) throw InputError("-o", path_ + " is one file; give a folder for several robots");
+    if (robots > 1) throw InputError("-o", path_ + " is one file; give a folder for several robots");
   } else if (!path.extension().empty() && !path.filename().empty() && !fs::is_directory(path)) {
     throw InputError("-o", fmt::format("{}: \"{}\" is not a robot file; give .json, .cbor or a folder", path_,
                                        path.extension().string()));

@@ -30,14 +30,18 @@ std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, st
 // Where new robots go, and how many.
 class RobotOutput {
  public:
-  // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  // Adds the options to a command, with --count and --seed, or without. The object must outlive it.
+  void add_to(CLI::App& command, const std::string& count_help = "How many robots (default 1)");
+  void add_files_to(CLI::App& command);
 
   std::uint64_t count() const { return count_; }
   std::uint64_t seed() const { return seed_; }
 
-  // Creates the folders. Throws InputError if the name cannot be used for this number of robots.
-  void prepare() const;
+  // Creates the folders. Throws InputError if --count is 0, or if the name cannot be used for this number of robots.
+  void prepare(std::uint64_t robots) const;
+  void prepare() const { prepare(count_); }
+  // The name of the one file without folder and extension; none if the robots go into a folder.
+  std::optional<std::string> file_stem() const;
   // Writes one robot to the file, or to NAME.json in the folder, and prints the file's name. On an error no partial
   // file is left. Throws InputError if the file exists, unless --force is given.
   void write(const Robot& robot) const;

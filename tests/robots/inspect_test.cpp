@@ -110,5 +110,24 @@ TEST(Inspection, AgreesWithPlainCountingOnRandomRobots) {
   }
 }
 
+TEST(BodyHash, IsThatOfTheBodyAndItsMaterials) {
+  const Robot robot = random_voxel_robot({}, 1);
+  Robot same = robot;
+  same.name = "another";
+  same.origin.clear();
+  same.materials.assign(default_materials().begin(), default_materials().end());
+  EXPECT_EQ(body_hash(same), body_hash(robot));
+  const auto differs = [&](auto change) {
+    Robot other = same;
+    change(other);
+    return body_hash(other) != body_hash(robot);
+  };
+  EXPECT_TRUE(differs([](Robot& r) { r.masses[3].y += 1e-6f; }));
+  EXPECT_TRUE(differs([](Robot& r) { r.springs[5].material ^= 1; }));
+  EXPECT_TRUE(differs([](Robot& r) { r.springs[5].rest_length *= 1.01f; }));
+  EXPECT_TRUE(differs([](Robot& r) { r.faces.pop_back(); }));
+  EXPECT_TRUE(differs([](Robot& r) { r.materials[2].phase += 0.1f; }));
+}
+
 }  // namespace
 }  // namespace mercury

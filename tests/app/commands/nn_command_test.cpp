@@ -38,7 +38,8 @@ TEST_F(NnCommand, OptionsShapeTheRobots) {
 
 TEST_F(NnCommand, FailedRobotIsReportedAndTheNextOneIsMade) {
   // With this small radius, some of the clouds have no tetrahedron.
-  const Outcome outcome = mercury({"new", "nn", "-o", path("r"), "--count", "30", "--points", "64", "--alpha", "0.05"});
+  const Outcome outcome =
+      mercury({"new", "nn", "-o", path("r"), "--count", "30", "--points", "64", "--alpha", "0.05", "--spacing", "0"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("alpha: no tetrahedron of the cloud is as small as the given radius"));
   EXPECT_GT(listing("r").size(), 0u);
@@ -46,7 +47,8 @@ TEST_F(NnCommand, FailedRobotIsReportedAndTheNextOneIsMade) {
 }
 
 TEST_F(NnCommand, RandomRobotsAreSimulated) {
-  const Outcome outcome = mercury({"run", "--random", "nn:2", "--points", "64", "--seconds", "0.05", "--json"});
+  const Outcome outcome =
+      mercury({"run", "--random", "nn:2", "--points", "64", "--spacing", "0", "--seconds", "0.05", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   const auto report = nlohmann::json::parse(outcome.output);
   ASSERT_EQ(report["robots"].size(), 2u);
@@ -56,7 +58,7 @@ TEST_F(NnCommand, RandomRobotsAreSimulated) {
 }
 
 TEST_F(NnCommand, RunLeavesOutRobotsThatCannotBeMade) {
-  const std::vector<std::string> shape{"--points", "64", "--alpha", "0.05"};
+  const std::vector<std::string> shape{"--points", "64", "--alpha", "0.05", "--spacing", "0"};
   std::vector<std::string> make{"new", "nn", "-o", path("r"), "--count", "30"};
   std::vector<std::string> run{"run", "--random", "nn:30", "--seconds", "0.01", "--json"};
   for (auto* arguments : {&make, &run}) arguments->insert(arguments->end(), shape.begin(), shape.end());

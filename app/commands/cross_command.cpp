@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury cross: children of two robots.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/commands/commands.h"
+#include "app/commands/offspring.h"
+#include "app/options/option_values.h"
+#include "app/options/robot_output.h"
+#include "mercury/generator.h"
+
+namespace mercury {
+namespace {
+
+struct CrossOptions {
+  std::vector<std::string> paths;
+  RobotOutput output;
+  std::string name;
+};
+
+int cross(const CrossOptions& options) {
+  const std::vector<Robot> parents = load_parents(options.paths, "crossed");
+  if (parents.size() != 2)
+    throw InputError("ROBOTS", fmt::format("{} robots are not accepted; give the files of two", parents.size()));
+  const Robot &a = parents[0], &b = parents[1];
+  cross_robots(a, b, options.output.seed(), "child");  // throws for two that are too different
+  const std::optional<std::string> file = options.output.file_stem();
+  return write_children(options.output, options.output.count(), parents, [&](std::uint64_t index, std::uint64_t seed) {
+    const std::string name = options.name.empty() ? a.name + "-x" : options.name + "-";
+    return cross_robots(a, b, seed, file ? *file : name + std::to_string(index));
+  });
+}
+
+}  // namespace
+
+void add_cross_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<CrossOptions>();
+  CLI::App* command = program.add_subcommand("cross", "Make children of two robots of one kind");
+  command->add_option("ROBOTS", options->paths, "Two robot files (.json, .cbor)")->type_name("PATH");
+  options->output.add_to(*command, "How many children (default 1)");
+  add_text(*command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)",
+           "NAME");
+  command->footer(
+      "Body and muscles are mixed; size and environment are those of the first robot. A child differs from its "
+      "parents\n"
+      "and from the other children. The same files and seed give the same children on every machine. Their origin "
+      "names\n"
+      "both parents and the seed. The names of the files are printed.\n\n"
+      "Examples:\n"
+      "  mercury cross paddler.json wriggler.json -o child.json\n"
+      "  mercury cross paddler.json wriggler.json -o children/ --count 20 --seed 3");
+  command->callback([options, choose] { choose([options] { return cross(*options); }); });
+}
+
+}  // namespace mercury

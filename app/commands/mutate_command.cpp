@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury mutate: changed copies of robots.
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+
+#include "app/commands/commands.h"
+#include "app/commands/offspring.h"
+#include "app/options/option_values.h"
+#include "app/options/robot_output.h"
+#include "mercury/generator.h"
+
+namespace mercury {
+namespace {
+
+struct MutateOptions {
+  std::vector<std::string> paths;
+  RobotOutput output;
+  MutationRequest mutation;
+  std::string name;
+};
+
+int mutate(const MutateOptions& options) {
+  validate(options.mutation);
+  if (options.mutation.strength == 0 && options.mutation.muscles == 0)
+    throw InputError("--strength, --muscles", "both are 0, which changes nothing; give one of them above 0");
+  const std::vector<Robot> parents = load_parents(options.paths, "mutated");
+  const std::uint64_t each = options.output.count();
+  if (each > std::numeric_limits<std::uint64_t>::max() / parents.size())
+    throw InputError("--count", fmt::format("{} is not accepted; give fewer", each));
+  const std::optional<std::string> file = options.output.file_stem();
+  return write_children(options.output, each * parents.size(), parents, [&](std::uint64_t index, std::uint64_t seed) {
+    const Robot& parent = parents[static_cast<std::size_t>(index / each)];
+    MutationRequest own = options.mutation;
+    own.seed = seed;
+    const std::string name = options.name.empty() ? parent.name + "-m" : options.name + "-";
+    return mutate_robot(parent, own, file ? *file : name + std::to_string(index));
+  });
+}
+
+}  // namespace
+
+void add_mutate_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<MutateOptions>();
+  CLI::App* command = program.add_subcommand("mutate", "Make changed copies of robots");
+  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  options->output.add_to(*command, "Children of each robot (default 1)");
+  add_number(*command, "--strength", options->mutation.strength,
+             "How much bodies change: 1 = a little, as in a search (default 1); 0 = not at all", "X");
+  add_number(*command, "--muscles", options->mutation.muscles,
+             "How much amplitudes, frequencies and phases of muscles change (default 0)", "X");
+  add_text(*command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: PARENT-m0, ...)",
+           "NAME");
+  command->footer(
+      "A child differs from its parent and from the other children. The same files, options and seed give the same\n"
+      "children on every machine. Their origin names the parent and the seed. The names of the files are printed.\n\n"
+      "Examples:\n"
+      "  mercury mutate eel.json -o children/ --count 20 --seed 3\n"
+      "  mercury mutate eel.json -o late.json --strength 0 --muscles 1\n"
+      "  mercury mutate best/ -o generation-2/ --count 8 --strength 2 --muscles 0.5");
+  command->callback([options, choose] { choose([options] { return mutate(*options); }); });
+}
+
+}  // namespace mercury
