@@ -142,16 +142,15 @@ std::vector<Individual> Evolution::children() const {
 std::vector<double> Evolution::interim_limits() const {
   std::vector<double> limits;
   if (!settings_.trials.racing || living_.empty()) return limits;
-  const auto passed_all = [](const Individual& individual) {
-    return individual.assessment.fate == Fate::sound && individual.assessment.interim_scores.size() == racing_checks;
-  };
   for (std::size_t check = 0; check < racing_checks; ++check) {
+    // Those who were stopped before this check count as the worst. So if many of them live, few more are stopped.
     std::vector<double> scores;
-    for (const Individual& individual : living_)
-      if (passed_all(individual)) scores.push_back(individual.assessment.interim_scores[check]);
-    if (scores.empty()) return {};
+    for (const Individual& individual : living_) {
+      const std::vector<double>& known = individual.assessment.interim_scores;
+      scores.push_back(check < known.size() ? known[check] : worst_score);
+    }
     const auto rank = static_cast<std::ptrdiff_t>(interim_quantile * static_cast<double>(scores.size() - 1));
-    std::nth_element(scores.begin(), scores.begin() + rank, scores.end());
+    std::ranges::nth_element(scores, scores.begin() + rank);
     limits.push_back(scores[static_cast<std::size_t>(rank)]);
   }
   return limits;
