@@ -153,6 +153,16 @@ int ChildProcess::finish() {
   return status_;
 }
 
+bool ChildProcess::running() {
+  if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = -1;
+  return pid_ > 0;
+}
+
+void ChildProcess::release() {
+  pid_ = -1;
+  close_input();
+}
+
 void ChildProcess::kill() {
   if (pid_ > 0) {
     ::kill(pid_, SIGKILL);

@@ -34,8 +34,12 @@ class ChildProcess {
 
   // Closes the child's standard input and waits for the child to end. Returns the status of waitpid().
   int finish();
+  // Whether the child still runs, without waiting for it. finish() then returns at once.
+  bool running();
   // Ends the child at once (SIGKILL).
   void kill();
+  // Leaves the child to itself: the destructor no longer kills it.
+  void release();
   // Sends a signal if the child still runs.
   void signal(int number);
 
