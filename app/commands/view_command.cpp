@@ -2,7 +2,10 @@
 // mercury view: the interactive window.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands/commands.h"
 #include "app/options/option_values.h"
@@ -13,6 +16,7 @@
 #include "app/window/toolkit/embedded.h"
 #include "app/window/viewer.h"
 #include "mercury/error.h"
+#include "mercury/run_folder.h"
 
 namespace mercury {
 namespace {
@@ -39,6 +43,26 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   return result;
 }
 
+// The run folder, if one was given.
+std::optional<std::filesystem::path> run_in(const RobotOptions& robots) {
+  const std::vector<std::filesystem::path> files = robots.files();
+  const auto run = std::ranges::find_if(files, is_run_folder);
+  if (run == files.end()) return std::nullopt;
+  if (files.size() > 1 || robots.seed())
+    throw InputError(run->string(), "a run is opened alone; give it without other robots");
+  return *run;
+}
+
+// Reads the run to report errors before the window opens, and for its configuration. The window reads it again.
+void open_with_run(window::ViewerOptions& viewer, const std::filesystem::path& run,
+                   const SimulationOptions& simulation) {
+  const Device device = viewer.configuration.device;
+  viewer.configuration = RunHistory(run).settings().evolution.configuration;
+  viewer.configuration.device = device;
+  if (!simulation.chosen_environment().empty()) viewer.configuration = simulation.configuration();
+  viewer.run = run;
+}
+
 int view(const ViewCommandOptions& options) {
   window::ViewerOptions viewer = viewer_options(options);
   viewer.configuration = options.simulation.configuration();
@@ -46,6 +70,10 @@ int view(const ViewCommandOptions& options) {
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
     // There are no samples for the simple ocean; use those of the ocean.
     if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
+    return window::run_viewer(std::move(viewer));
+  }
+  if (const auto run = run_in(options.robots)) {
+    open_with_run(viewer, *run, options.simulation);
     return window::run_viewer(std::move(viewer));
   }
   if (const auto file = options.robots.repro()) {
@@ -83,10 +111,12 @@ void add_view_command(CLI::App& program, const Choose& choose) {
            "FILE.toml");
   command->footer(
       "Without ROBOTS the window shows the sample robots. Press F1 for a list of all keys.\n"
+      "A RUN of mercury evolve opens with its scores, champions and families; it may still be running.\n"
       "Examples:\n"
       "  mercury view\n"
       "  mercury view my-robots --environment land\n"
-      "  mercury view --random voxel:12 --seed 3 --color strain");
+      "  mercury view --random voxel:12 --seed 3 --color strain\n"
+      "  mercury view swim                 (a run)");
   command->callback([options, choose] { choose([options] { return view(*options); }); });
 }
 

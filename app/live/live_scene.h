@@ -86,7 +86,10 @@ class LiveScene {
   // Robots.
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
-  void add(std::vector<Robot> robots, bool unsaved = true);  // `unsaved`: they are in no file
+  // Returns the ids of those that can be used. `unsaved`: they are in no file.
+  std::vector<RobotId> add(std::vector<Robot> robots, bool unsaved = true);
+  // Shows these robots alone, in this configuration (but on the same device), as one edit. They need no saving.
+  void show(std::vector<Robot> robots, const Configuration& configuration, const std::string& edit);
   // Opens robot files, folders of them, the robots of recordings, or one repro, in the background.
   void open(const std::vector<std::filesystem::path>& paths);
   // Makes random robots in the background. `replace`: they replace all robots.

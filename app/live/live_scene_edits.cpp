@@ -42,23 +42,43 @@ RobotId LiveScene::Parts::append(Robot robot, RobotProvenance source) {
   return id;
 }
 
-void LiveScene::add(std::vector<Robot> robots, bool unsaved) {
+void LiveScene::Parts::remove_invalid(std::vector<Robot>& robots) {
   std::erase_if(robots, [&](const Robot& robot) {
     try {
       validate(robot);
       return false;
     } catch (const InputError& error) {
-      parts_->report(Severity::error, (robot.name.empty() ? "robot" : robot.name) + ": " + error.what());
+      report(Severity::error, (robot.name.empty() ? "robot" : robot.name) + ": " + error.what());
       return true;
     }
   });
-  if (robots.empty()) return;
-  parts_->edit("add " + robot_count_text(robots.size()));
+}
+
+std::vector<RobotId> LiveScene::Parts::append_valid(std::vector<Robot> robots, bool unsaved) {
+  std::vector<RobotId> ids;
   for (Robot& robot : robots) {
-    const RobotId id = parts_->append(std::move(robot), {});
-    if (!unsaved) parts_->saved[id] = {"", parts_->document.robots.back().body};
+    ids.push_back(append(std::move(robot), {}));
+    if (!unsaved) saved[ids.back()] = {"", document.robots.back().body};
   }
-  parts_->apply_document();
+  apply_document();
+  return ids;
+}
+
+std::vector<RobotId> LiveScene::add(std::vector<Robot> robots, bool unsaved) {
+  parts_->remove_invalid(robots);
+  if (robots.empty()) return {};
+  parts_->edit("add " + robot_count_text(robots.size()));
+  return parts_->append_valid(std::move(robots), unsaved);
+}
+
+void LiveScene::show(std::vector<Robot> robots, const Configuration& configuration, const std::string& edit) {
+  parts_->remove_invalid(robots);
+  parts_->edit(edit);
+  const Device device = parts_->document.configuration.device;
+  parts_->document.configuration = configuration;
+  parts_->document.configuration.device = device;
+  parts_->document.robots.clear();
+  parts_->append_valid(std::move(robots), false);
 }
 
 void LiveScene::remove(const std::vector<RobotId>& robots) {

@@ -72,6 +72,9 @@ struct LiveScene::Parts {
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                         const std::function<bool(DocumentRobot&)>& change);
   RobotId append(Robot robot, RobotProvenance source);
+  // Reports robots that break a rule and leaves them out.
+  void remove_invalid(std::vector<Robot>& robots);
+  std::vector<RobotId> append_valid(std::vector<Robot> robots, bool unsaved);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void place_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;

@@ -10,10 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/interrupt.h"
+#include "app/live/live_run.h"
 #include "app/live/live_scene.h"
 #include "app/live/session_settings.h"
 #include "app/scene/camera_controller.h"
 #include "app/window/frame_report.h"
+#include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/video_recorder.h"
 #include "app/window/toolkit/imgui_layer.h"
@@ -89,13 +91,14 @@ class Viewer {
   ImGuiLayer imgui_;
   Viewport viewport_;
   LiveScene scene_;
+  LiveRun run_;
   OrbitController camera_;
   Toasts toasts_;
   Dialogs dialogs_;
   VideoRecorder recorder_;
   FrameHistory frame_history_;
-  PanelContext context_{scene_,   camera_, preferences_, log_,      toasts_,
-                        dialogs_, window_, viewport_,    recorder_, frame_history_};
+  PanelContext context_{scene_,   run_,    camera_,   preferences_, log_,          toasts_,
+                        dialogs_, window_, viewport_, recorder_,    frame_history_};
   Panels panels_{context_};
   MouseController mouse_{scene_, camera_, log_, toasts_};
   Screenshot screenshot_;
@@ -159,6 +162,7 @@ void Viewer::fill_scene() {
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
   for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
+  if (!options_.run.empty()) open_first_run(context_, options_.run);
   for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
   if (options_.playing) scene_.play();
 }
@@ -188,7 +192,7 @@ bool Viewer::anything_moves() const {
 
 void Viewer::handle_input(const std::vector<InputEvent>& events) {
   if (const auto files = window_.take_dropped_files(); !files.empty()) {
-    scene_.open(files);
+    open_paths(context_, files);
     log_.write("dropped", {{"files", files.size()}});
   }
   const bool typing = ImGui::GetIO().WantTextInput;
@@ -211,7 +215,9 @@ void Viewer::frame(double dt) {
   handle_input(events);
   const auto scene_begin = Clock::now();
   scene_.frame(area_.aspect());
+  run_.frame();
   for (const Message& message : scene_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
+  for (const Message& message : run_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
   times_.scene = since(scene_begin);
   const auto work_begin = Clock::now();
   panels_.work(0.004);

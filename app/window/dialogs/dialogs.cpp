@@ -66,8 +66,10 @@ void Dialogs::draw_question(EventLog& log) {
     accepted |= text_field("##text", text_);
     log.item("dialog.text");
   }
+  const bool acceptable = !question_.form || question_.form(log);
+  if (!acceptable) accepted = accepted_ = false;
   just_opened_ = false;
-  Button pressed = draw_buttons(log);
+  Button pressed = draw_buttons(log, acceptable);
   if (cancelled_) pressed = Button::cancel;
   if (accepted && pressed == Button::none) pressed = Button::accept;
   if (pressed != Button::none) {
@@ -78,7 +80,7 @@ void Dialogs::draw_question(EventLog& log) {
   answer(pressed);
 }
 
-Dialogs::Button Dialogs::draw_buttons(EventLog& log) {
+Dialogs::Button Dialogs::draw_buttons(EventLog& log, bool acceptable) {
   Button pressed = Button::none;
   const float text = ImGui::GetFontSize();
   const float width = std::max(7 * text, ImGui::CalcTextSize(question_.button.c_str()).x + 2 * text);
@@ -95,8 +97,10 @@ Dialogs::Button Dialogs::draw_buttons(EventLog& log) {
     log.item("dialog.other");
     ImGui::SameLine();
   }
+  ImGui::BeginDisabled(!acceptable);
   if (ImGui::Button(question_.button.c_str(), {width, 0})) pressed = Button::accept;
   log.item("dialog.accept");
+  ImGui::EndDisabled();
   return pressed;
 }
 

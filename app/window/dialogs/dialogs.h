@@ -10,7 +10,7 @@
 
 namespace mercury::window {
 
-// A message with a button, perhaps a second one, and "Cancel".
+// A message with a button, perhaps a second one, and "Cancel"; perhaps with controls below the text.
 struct Question {
   std::string title, text;
   std::string button;
@@ -18,6 +18,8 @@ struct Question {
   std::string other_button = {};
   std::function<void()> on_other = {};
   std::function<void()> on_cancel = {};  // Cancel or Esc; may be empty
+  // Draws controls; returns whether their values can be accepted. May be empty.
+  std::function<bool(EventLog& log)> form = {};
 };
 
 class Dialogs {
@@ -43,7 +45,7 @@ class Dialogs {
  private:
   enum class Button { none, accept, other, cancel };
   void draw_question(EventLog& log);
-  Button draw_buttons(EventLog& log);
+  Button draw_buttons(EventLog& log, bool acceptable);
   void answer(Button pressed);
 
   Question question_;

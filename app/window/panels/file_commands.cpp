@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/panels/saving.h"
 
@@ -67,19 +68,43 @@ std::vector<RobotId> robots_to_lose(const LiveScene& scene) {
   return lost;
 }
 
+// Asks what becomes of the window's own evolution before it goes on to `quit`.
+void end_evolution(PanelContext& context, std::function<void()> quit) {
+  LiveRun& run = context.run;
+  if (run.activity() != LiveRun::Activity::running) {
+    quit();
+    return;
+  }
+  context.log.write("asks", {{"what", "evolution"}});
+  context.dialogs.ask({.title = "An evolution is running",
+                       .text = run.evolving().string() + " can be resumed later if it stops now.",
+                       .button = "Stop it",
+                       .on_accept =
+                           [&run, quit] {
+                             run.stop();
+                             quit();
+                           },
+                       .other_button = "Leave it running",
+                       .on_other =
+                           [&run, quit] {
+                             run.leave_running();
+                             quit();
+                           }});
+}
+
 }  // namespace
 
 void open_robots(PanelContext& context) {
   context.dialogs.ask_files({.kind = FileRequest::Kind::open,
                              .title = "Open robots",
                              .button = "Open",
-                             .extensions = {".json", ".cbor", ".repro", ".h5"},
+                             .extensions = {".json", ".cbor", ".repro", ".h5", ".toml"},
                              .folder = context.preferences.open_folder,
                              .name = "",
                              .formats = {}},
                             [&context](const FileChoice& answer) {
                               context.preferences.open_folder = answer.paths.front().parent_path().string();
-                              context.scene.open(answer.paths);
+                              open_paths(context, answer.paths);
                             });
 }
 
@@ -98,9 +123,10 @@ void save_robots(PanelContext& context) {
 }
 
 void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
+  const auto then = [&context, quit = std::move(quit)] { end_evolution(context, quit); };
   const std::vector<RobotId> lost = robots_to_lose(context.scene);
   if (lost.empty()) {
-    quit();
+    then();
     return;
   }
   context.log.write("asks", {{"what", "quit"}});
@@ -109,7 +135,7 @@ void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
   context.dialogs.ask({.title = "Quit without saving?",
                        .text = question,
                        .button = "Quit",
-                       .on_accept = std::move(quit),
+                       .on_accept = then,
                        .other_button = "Save...",
                        .on_other = [&context, lost] {
                          context.scene.clear_selection();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/theme.h"
@@ -38,6 +39,7 @@ void Panels::draw_file_menu() {
   if (ImGui::BeginMenu("File")) {
     const LiveScene& scene = context_.scene;
     menu_item("Open...", Action::open);
+    if (ImGui::MenuItem("Open a run...")) choose_run(context_);
     menu_item(scene.selection().empty() ? "Save all..." : "Save selected...", Action::save, !scene.entries().empty());
     menu_item("Save a screenshot", Action::screenshot);
     if (ImGui::MenuItem("Copy as command")) copy_as_command(context_, "view");
@@ -59,6 +61,7 @@ void Panels::draw_edit_menu() {
     menu_item("New random robots", Action::new_random);
     menu_item("Duplicate", Action::duplicate, selected);
     menu_item("Mutate", Action::mutate, selected);
+    menu_item("Evolve...", Action::evolve, selected);
     menu_item("Remove", Action::remove, selected);
     menu_item("Select all", Action::select_all, !scene.entries().empty());
     ImGui::EndMenu();

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "app/window/panels/color_section.h"
+#include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_commands.h"
@@ -27,6 +28,7 @@ void Panels::execute(const Command& command) {
     case Action::duplicate:
     case Action::remove:
     case Action::mutate:
+    case Action::evolve:
     case Action::select_all:
     case Action::undo:
     case Action::redo:
@@ -89,6 +91,7 @@ void Panels::change_robots(Action action) {
   if (action == Action::duplicate) scene.duplicate(scene.selection());
   if (action == Action::remove) scene.remove(scene.selection());
   if (action == Action::mutate) mutate_selected(context_);
+  if (action == Action::evolve) evolve_selected(context_);
   if (action == Action::select_all) scene.select_all();
   if (action == Action::open) open_robots(context_);
   if (action == Action::save) save_robots(context_);

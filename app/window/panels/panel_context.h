@@ -2,6 +2,7 @@
 // What a panel may read and change. The viewer owns all of it and passes it to each panel in each frame.
 #pragma once
 
+#include "app/live/live_run.h"
 #include "app/live/live_scene.h"
 #include "app/window/dialogs/dialogs.h"
 #include "app/window/panels/frame_history.h"
@@ -25,6 +26,7 @@ struct RobotCreation {
 
 struct PanelContext {
   LiveScene& scene;          // robots, physics, undo, colours
+  LiveRun& run;              // the evolution that is open
   OrbitController& camera;   // the camera of the viewport
   Preferences& preferences;  // window settings, kept for the next start
   EventLog& log;             // names items for tests and logs events
@@ -35,6 +37,7 @@ struct PanelContext {
   VideoRecorder& recorder;
   FrameHistory& frame_history;
   RobotCreation creation = {};
+  EvolveRequest evolve = {};          // the settings of the last evolution
   float aspect = 16.0f / 9;           // width / height of the viewport in this frame
   bool screenshot_requested = false;  // set it to take one at the end of the frame
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/theme.h"
@@ -56,7 +57,7 @@ void RobotsPanel::draw_list(PanelContext& context) {
   // As many whole rows as fit above the rest of the panel, and the heading.
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   const float below =
-      2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random_.height(context);
+      3 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random_.height(context);
   const float most = std::max(5.0f, std::floor((ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - below) / line) - 1);
   const float height = (std::clamp(static_cast<float>(entries.size()), 3.0f, most) + 1) * line + 2;
   if (!ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
@@ -144,6 +145,9 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   if (ImGui::Button("Remove", {width, 0})) scene.remove(selection);
   context.log.item("remove");
   tooltip("remove the selected robots (Delete)");
+  if (ImGui::Button("Evolve these...", {-1, 0})) evolve_selected(context);
+  context.log.item("evolve");
+  tooltip("let the selected robots evolve, in the background (key E)");
   ImGui::EndDisabled();
   if (ImGui::Button("Open...", {width, 0})) open_robots(context);
   context.log.item("open");

@@ -25,6 +25,7 @@ constexpr KeyBinding table[] = {
 
     {Action::new_random, "N", "new random robots", "Robots", U'n', 0, false, false},
     {Action::mutate, "M", "mutate: a changed copy of each selected robot", "Robots", U'm', 0, false, false},
+    {Action::evolve, "E", "evolve the selected robots, in the background", "Robots", U'e', 0, false, false},
     {Action::duplicate, "Ctrl D", "duplicate the selected robots", "Robots", U'd', 0, true, false},
     {Action::remove, "Delete", "remove the selected robots", "Robots", 0, GLFW_KEY_DELETE, false, false},
     {Action::select_all, "Ctrl A", "select all", "Robots", U'a', 0, true, false},
@@ -56,7 +57,7 @@ constexpr MouseGesture mouse_table[] = {
     {"Double click", "follow a robot"},
     {"Ctrl drag", "pull a mass; its force is shown"},
     {"Rest on a robot", "details of the mass and spring there"},
-    {"Drop files", "open their robots"},
+    {"Drop files", "open their robots, or a run"},
 };
 
 }  // namespace

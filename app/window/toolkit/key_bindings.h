@@ -26,6 +26,7 @@ enum class Action {
   duplicate,
   remove,
   mutate,
+  evolve,
   select_all,
   deselect,
   undo,

@@ -58,7 +58,8 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     list.AddText({p.x - ImGui::CalcTextSize(label.c_str()).x - 0.3f * text, p.y - 0.5f * text}, palette().faint,
                  label.c_str());
   }
-  const auto x_ticks = render::ticks(static_cast<float>(frame.x.low), static_cast<float>(frame.x.high), 5);
+  auto x_ticks = render::ticks(static_cast<float>(frame.x.low), static_cast<float>(frame.x.high), 5);
+  if (axes.x_whole) std::erase_if(x_ticks, [](float tick) { return std::abs(tick - std::round(tick)) > 1e-3f; });
   for (const float tick : x_ticks) {
     const ImVec2 p = frame.at(tick, frame.y.low);
     list.AddLine({p.x, frame.low.y}, {p.x, frame.high.y}, palette().grid);
@@ -81,6 +82,8 @@ void draw_line(const Frame& frame, const PlotLine& line) {
     if (points.size() > 1)
       list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0,
                        1.6f * ImGui::GetFontSize() / 17);
+    else if (!points.empty())
+      list.AddCircleFilled(points.front(), 0.2f * ImGui::GetFontSize(), packed(line.color));
     points.clear();
   };
   const std::size_t count = std::min(line.x.size(), line.y.size());

@@ -23,7 +23,8 @@ struct PlotAxes {
   std::string title;  // "speed"
   std::string unit;   // "m/s"
   std::string x_title = "time [s]", x_unit = "s";
-  float height = 140;  // [pixels]
+  float height = 140;    // [pixels]
+  bool x_whole = false;  // x are whole numbers
 };
 
 // Draws a plot over the remaining width. Hovering shows the values under the cursor.

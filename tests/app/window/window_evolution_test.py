@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of an evolution in the real window: window_evolution_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import csv
+import shutil
+import subprocess
+
+from window_case import PROGRAM, WindowCase, main
+from window_driver import scratch
+
+
+def evolve(folder, *more):
+    """A small run."""
+    subprocess.run([PROGRAM, "evolve", str(folder), "--from", "voxel:3x2x2", "--device", "cpu", "--population", "8",
+                    "--generations", "4", "--seconds", "0.2", "--quiet", *more],
+                   check=True, stdout=subprocess.DEVNULL)
+
+
+def individuals(folder):
+    with open(folder / "lineage.csv") as file:
+        return {int(row["id"]): row for row in csv.DictReader(file)}
+
+
+class EvolutionTest(WindowCase):
+    def open_run(self, *more):
+        folder = scratch() / "swim"
+        evolve(folder, *more)
+        window = self.open(str(folder), "--paused")
+        return window, folder
+
+    def test_a_run_opens_with_its_best_robots(self):
+        window, folder = self.open_run("--dt", "0.002")
+        run = window.wait("run", 0, lambda event: event["generation"] == 4)
+        self.assertEqual((run["generations"], run["folder"]), (4, str(folder)))
+        self.assertGreater(run["champions"], 0)
+        names = window.wait("robots", 0, lambda event: event["count"] > 0)["names"]
+        born = individuals(folder)
+        scores = [float(born[int(name.removeprefix("swim-"))]["distance"]) for name in names]
+        self.assertEqual(scores, sorted(scores, reverse=True))
+        self.assertEqual(scores[0], max(float(row["distance"]) for row in born.values()))
+        window.place("panel.Evolution")
+        # The simulation has the time step of the run.
+        since = window.mark()
+        window.key("period")
+        self.assertAlmostEqual(window.frame(lambda frame: frame["steps"] == 1, since)["time"], 0.002, places=6)
+        self.finish(window)
+
+    def test_a_click_on_a_robot_of_the_run_puts_it_into_the_scene(self):
+        window, _ = self.open_run()
+        count = window.wait("robots", 0, lambda event: event["count"] > 0)["count"]
+        window.key("ctrl+a", "Delete")
+        window.frame(lambda frame: not frame["where"])
+        since = window.mark()
+        window.click("champion.0")
+        name = window.wait("robots", since, lambda event: event["count"] == 1)["names"][0]
+        self.assertTrue(name.startswith("swim-"), name)
+        window.click("champion.0")  # it is there already
+        window.frame(lambda frame: frame["selected"] == 1 and len(frame["where"]) == 1)
+        since = window.mark()
+        window.key("ctrl+z", "ctrl+z")
+        window.wait("robots", since, lambda event: event["count"] == count)
+        self.finish(window)
+
+    def test_a_run_that_grows_is_followed_and_one_that_vanishes_is_reported(self):
+        window, folder = self.open_run()
+        window.wait("run", 0, lambda event: event["generation"] == 4)
+        since = window.mark()
+        subprocess.run([PROGRAM, "evolve", str(folder), "--resume", "--generations", "6", "--device", "cpu", "--quiet"],
+                       check=True, stdout=subprocess.DEVNULL)
+        window.wait("run", since, lambda event: event["generation"] == 6)
+        since = window.mark()
+        shutil.rmtree(folder)
+        message = window.wait("message", since, lambda event: event["tone"] == "error")
+        self.assertIn(str(folder), message["text"])
+        window.frame()
+        self.finish(window)
+
+    def test_a_folder_that_is_dropped_is_opened_as_a_run(self):
+        folder = scratch() / "swim"
+        evolve(folder)
+        window = self.small("--paused")
+        since = window.mark()
+        window.drop(folder)
+        window.wait("run", since)
+        names = window.wait("robots", since, lambda event: event["names"][0].startswith("swim-"))["names"]
+        window.key("ctrl+z")  # brings back the scene before
+        window.wait("robots", since, lambda event: event["names"] == ["eel", "fish"])
+        self.assertNotIn("eel", names)
+        self.finish(window)
+
+    def test_selected_robots_evolve_stop_and_go_on(self):
+        window = self.small("--paused")
+        window.key("ctrl+a")
+        window.frame(lambda frame: frame["selected"] == 2)
+        window.key("e")
+        window.place("evolve.name")
+        for item, text in (("evolve.name", "mine"), ("evolve.objective", "path"), ("evolve.population", "4"),
+                           ("evolve.generations", "1000"), ("evolve.seconds", "0.1")):
+            window.click(item)
+            window.key("ctrl+a")
+            window.type(text + "\t")
+        since = window.mark()
+        window.click("dialog.accept")
+        folder = self.folder / "mine"
+        self.assertEqual(window.wait("evolving", since), {"event": "evolving", "folder": str(folder), "robots": 2})
+        window.wait("run", since, lambda event: event["generation"] >= 1)
+        window.click("evolution.stop")
+        window.wait("message", since, lambda event: "stopped" in event["text"])
+        settings = (folder / "run.toml").read_text()
+        self.assertIn("path", settings)
+        self.assertEqual(len(list((folder / "founders").iterdir())), 2)
+        since = window.mark()
+        window.click("evolution.resume")
+        stopped_at = window.wait("run", since)["generation"]
+        window.wait("run", since, lambda event: event["generation"] > stopped_at)
+        # The end of the window stops it, too, and leaves a run that can be read.
+        since = window.mark()
+        window.key("ctrl+q")
+        self.assertEqual(window.wait("asks", since)["what"], "evolution")
+        window.click("dialog.accept")
+        self.assertEqual(window.process.wait(60), 0, window.stderr())
+        subprocess.run([PROGRAM, "evolve", str(folder), "--resume", "--generations", "0", "--device", "cpu", "--quiet"],
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.assertGreater(len(individuals(folder)), 8)
+
+    def test_a_run_that_cannot_be_read_is_refused_before_the_window_opens(self):
+        folder = scratch() / "swim"
+        evolve(folder)
+        text = (folder / "run.toml").read_text()
+        (folder / "run.toml").write_text(text.replace("version = 1", "version = 999"))
+        self.assertNotEqual((folder / "run.toml").read_text(), text)
+        refused = subprocess.run([PROGRAM, "view", str(folder)], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(refused.stderr.count("\n"), 1, refused.stderr)
+        self.assertIn("run.toml", refused.stderr)
+
+
+if __name__ == "__main__":
+    main()
