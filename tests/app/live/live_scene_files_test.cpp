@@ -249,7 +249,9 @@ TEST_F(LiveFiles, SettingsAreRestoredAndInvalidFilesAreRenamed) {
   Messages messages;
   const auto file = folder_ / "mercury" / "scene.toml";
   EXPECT_EQ(load_session_settings(file, messages).generation.count, RandomRobots{}.count);
-  SessionSettings settings{.pause_on_explosion = true, .folder = "/tmp/with \"quotes\" \\ and\tmore"};
+  SessionSettings settings;
+  settings.pause_on_explosion = true;
+  settings.folder = "/tmp/with \"quotes\" \\ and\tmore";
   settings.view.color = &color_quantity("force");
   settings.view.shown = {.skin = false, .springs = true, .scale_bar = true};
   settings.view.theme = render::Theme::light;
