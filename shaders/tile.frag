@@ -24,5 +24,5 @@ void main() {
   float inside = clamp(0.5 - (outside + max(thickness, 1.5 * pixel)) / pixel, 0.0, 1.0);
   vec3 normal = normalize(cross(tile.half_width.xyz, tile.half_height.xyz));
   float lit = key_visibility(world, normal, pixel_noise(gl_FragCoord.xy));
-  color = vec4(mix(tile.frame.rgb, tile.fill.rgb * mix(0.45, 1.0, lit), inside), cover);
+  color = vec4(mix(tile.frame.rgb, tile.fill.rgb * mix(0.55, 1.0, lit), inside), cover);
 }

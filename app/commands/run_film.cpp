@@ -70,7 +70,7 @@ void add(Clip& clip, const RunHistory& run, std::uint64_t id, std::string captio
 
 // Zooms so that the clips show their robots at one scale, the largest with room to move.
 void show_at_one_scale(std::vector<Clip>& clips) {
-  constexpr float room = 0.6f;
+  constexpr float room = 0.7f;
   std::vector<float> radii;
   for (const Clip& clip : clips) radii.push_back(rest_bounds(clip.robots.front()).radius());
   const float largest = *std::ranges::max_element(radii);
