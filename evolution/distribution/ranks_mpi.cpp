@@ -21,10 +21,10 @@
 #include <thread>
 #include <utility>
 
+#include "evolution/bytes.h"
 #include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
 #include "evolution/run_folder/assessment_bytes.h"
-#include "evolution/run_folder/record_bytes.h"
 #include "evolution/run_folder/run_file.h"
 #include "mercury/error.h"
 
@@ -112,7 +112,7 @@ class DistributedAssessor : public Assessor {
  private:
   void deal_out(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) const {
     for (std::size_t rank = 1; rank < ranks_; ++rank) {
-      RecordWriter writer;
+      ByteWriter writer;
       writer.numbers(std::vector<double>(interim_limits.begin(), interim_limits.end()));
       writer.count((candidates.size() + ranks_ - 1 - rank) / ranks_);
       for (std::size_t i = rank; i < candidates.size(); i += ranks_) writer.text(candidates[i]->encode());
@@ -142,8 +142,8 @@ class DistributedAssessor : public Assessor {
       const std::string bytes = receive(status);
       const auto rank = static_cast<std::size_t>(status.MPI_SOURCE);
       --missing;
-      RecordReader reader(bytes);
-      const auto outcome = static_cast<Outcome>(reader.number<std::uint8_t>());
+      ByteReader reader(bytes);
+      const auto outcome = static_cast<Outcome>(reader.read<std::uint8_t>());
       if (outcome == Outcome::done) put(all, rank, decode_assessments(reader));
       if (outcome != Outcome::device_failed && outcome != Outcome::failed) continue;
       const std::string message = "rank " + std::to_string(rank) + ": " + std::string(reader.text());
@@ -168,7 +168,7 @@ class DistributedAssessor : public Assessor {
 // --- The others
 
 std::string answer(Assessor& assessor, const GenomeSpace& space, const std::string& work) {
-  RecordReader reader(work);
+  ByteReader reader(work);
   const std::vector<double> limits = reader.numbers<double>();
   std::vector<GenomePointer> genomes(reader.count(sizeof(std::uint32_t)));
   for (GenomePointer& genome : genomes) genome = space.decode(reader.text());
@@ -181,15 +181,15 @@ std::string answer(Assessor& assessor, const GenomeSpace& space, const std::stri
     }
     return !stopped;
   });
-  RecordWriter writer;
-  writer.number(static_cast<std::uint8_t>(assessments ? Outcome::done : Outcome::stopped));
+  ByteWriter writer;
+  writer.add(static_cast<std::uint8_t>(assessments ? Outcome::done : Outcome::stopped));
   if (assessments) encode(writer, *assessments);
   return writer.bytes();
 }
 
 std::string failed(Outcome outcome, const char* message) {
-  RecordWriter writer;
-  writer.number(static_cast<std::uint8_t>(outcome));
+  ByteWriter writer;
+  writer.add(static_cast<std::uint8_t>(outcome));
   writer.text(message);
   return writer.bytes();
 }
@@ -229,7 +229,7 @@ int Ranks::rank_on_host() const { return parts_->rank_on_host; }
 
 void Ranks::share(const RunSettings& settings) {
   const RunFileTexts texts = run_file_texts(settings);
-  RecordWriter writer;
+  ByteWriter writer;
   writer.text(texts.run);
   writer.count(texts.founders.size());
   for (const std::string& founder : texts.founders) writer.text(founder);
@@ -241,7 +241,7 @@ void Ranks::abandon() { broadcast({}); }
 std::optional<RunSettings> Ranks::receive_settings() {
   const std::string bytes = broadcast({});
   if (bytes.empty()) return std::nullopt;
-  RecordReader reader(bytes);
+  ByteReader reader(bytes);
   RunFileTexts texts{.run = std::string(reader.text()), .founders = {}};
   texts.founders.resize(reader.count(sizeof(std::uint32_t)));
   for (std::string& founder : texts.founders) founder = reader.text();

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <map>
 
+#include "evolution/bytes.h"
 #include "evolution/run_folder/assessment_bytes.h"
 #include "evolution/run_folder/checksum.h"
-#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 #include "mercury/shards.h"
 #include "robots/whole_file.h"
@@ -48,13 +48,13 @@ std::optional<Name> parsed(std::string_view text) {
 
 // Equal for the same children, assessed in the same way.
 std::uint64_t fingerprint(const Evolution& evolution, std::span<const Individual> children) {
-  RecordWriter writer;
+  ByteWriter writer;
   for (const std::string& objective : evolution.settings().objectives) writer.text(objective);
   writer.numbers(evolution.interim_limits());
   for (const Individual& child : children) {
-    writer.number(child.id);
-    writer.number(child.seed);
-    writer.number(child.genome->identity());
+    writer.add(child.id);
+    writer.add(child.seed);
+    writer.add(child.genome->identity());
   }
   return checksum_of(writer.bytes());
 }
@@ -65,14 +65,14 @@ std::vector<Assessment> read(const fs::path& file, std::uint64_t wanted_fingerpr
     return InputError(file.string(), why + "; remove it and run this shard again");
   };
   try {
-    RecordReader reader(bytes);
+    ByteReader reader(bytes);
     if (reader.take(magic.size()) != magic) throw refuse("is not a shard");
-    if (reader.number<std::uint32_t>() > version) throw refuse("is of a newer version of Mercury");
+    if (reader.read<std::uint32_t>() > version) throw refuse("is of a newer version of Mercury");
     if (bytes.size() < sizeof(std::uint64_t) ||
-        RecordReader(std::string_view(bytes).substr(bytes.size() - sizeof(std::uint64_t))).number<std::uint64_t>() !=
+        ByteReader(std::string_view(bytes).substr(bytes.size() - sizeof(std::uint64_t))).read<std::uint64_t>() !=
             checksum_of(std::string_view(bytes).substr(0, bytes.size() - sizeof(std::uint64_t))))
       throw refuse("is damaged");
-    if (reader.number<std::uint64_t>() != wanted_fingerprint) throw refuse("belongs to another run");
+    if (reader.read<std::uint64_t>() != wanted_fingerprint) throw refuse("belongs to another run");
     std::vector<Assessment> assessments = decode_assessments(reader);
     if (assessments.size() != wanted_count) throw refuse("has another number of robots");
     return assessments;
@@ -110,12 +110,12 @@ std::optional<fs::path> assess_shard(const fs::path& folder, const Evolution& ev
   for (std::size_t i = shard - 1; i < children.size(); i += count) mine.push_back(children[i].genome);
   const std::optional<std::vector<Assessment>> assessments = assessor.assess(mine, evolution.interim_limits(), watch);
   if (!assessments) return std::nullopt;
-  RecordWriter writer;
-  for (const char letter : magic) writer.number(static_cast<std::uint8_t>(letter));
-  writer.number(version);
-  writer.number(fingerprint(evolution, children));
+  ByteWriter writer;
+  writer.append(magic);
+  writer.add(version);
+  writer.add(fingerprint(evolution, children));
   encode(writer, *assessments);
-  writer.number(checksum_of(writer.bytes()));
+  writer.add(checksum_of(writer.bytes()));
   fs::create_directories(folder_of_shards(folder));
   const fs::path file = folder_of_shards(folder) / name_of(evolution.next_generation(), shard, count);
   write_whole_file(file, writer.bytes());

@@ -13,7 +13,8 @@
 #include <cstdint>
 #include <string>
 
-#include "evolution/genomes/bytes.h"
+#include "evolution/bytes.h"
+#include "evolution/genomes/identity_hash.h"
 #include "evolution/genomes/material_genes.h"
 #include "mercury/cppn.h"
 #include "mercury/genome.h"

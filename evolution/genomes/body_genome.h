@@ -83,12 +83,14 @@ class BodySpace : public GenomeSpace {
     return genome(std::move(genes));
   }
   std::size_t founders() const override { return founders_.size(); }
-  GenomePointer decode(std::string_view bytes) const override {
+  GenomePointer decode(std::string_view bytes) const override try {
     ByteReader reader(bytes);
     read_head(reader, BodyGenes::tag);
     BodyGenes genes = BodyGenes::read(reader);
     reader.end();
     return genome(std::move(genes));
+  } catch (const DamagedBytes& error) {
+    throw InputError("genome", error.what());
   }
 
  private:

@@ -2,7 +2,7 @@
 // The first two bytes of every genome: its kind and the version of its encoding.
 #pragma once
 
-#include "evolution/genomes/bytes.h"
+#include "evolution/bytes.h"
 
 namespace mercury {
 

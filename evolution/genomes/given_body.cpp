@@ -88,7 +88,7 @@ class GivenBodySpace : public GenomeSpace {
     return founder->mutate(strength, random.bits());
   }
   std::size_t founders() const override { return bodies_->size(); }
-  GenomePointer decode(std::string_view bytes) const override {
+  GenomePointer decode(std::string_view bytes) const override try {
     ByteReader reader(bytes);
     read_head(reader, tag);
     const auto body = reader.read<std::uint32_t>();
@@ -100,6 +100,8 @@ class GivenBodySpace : public GenomeSpace {
       throw InputError("genome", "has " + std::to_string(materials.size()) + " materials, its body " +
                                      std::to_string((*bodies_)[body].materials.size()));
     return std::make_shared<GivenBodyGenome>(bodies_, body, std::move(materials));
+  } catch (const DamagedBytes& error) {
+    throw InputError("genome", error.what());
   }
 
  private:

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evolution/genomes/bytes.h"
+#include "evolution/bytes.h"
+#include "evolution/genomes/identity_hash.h"
 #include "mercury/material.h"
 #include "mercury/robot.h"
 

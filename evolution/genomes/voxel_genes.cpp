@@ -61,7 +61,7 @@ Robot VoxelGenes::grown(const std::string& name, const std::string& environment)
 void VoxelGenes::write(ByteWriter& writer) const {
   for (const int n : {grid.nx, grid.ny, grid.nz}) writer.add(static_cast<std::uint32_t>(n));
   writer.add(grid.edge);
-  writer.add(grid.cells);
+  writer.append(grid.cells);
   mercury::write(writer, materials);
 }
 

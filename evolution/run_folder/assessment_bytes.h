@@ -4,16 +4,16 @@
 
 #include <vector>
 
-#include "evolution/run_folder/record_bytes.h"
+#include "evolution/bytes.h"
 #include "mercury/individual.h"
 
 namespace mercury {
 
-void encode(RecordWriter& writer, const Assessment& assessment);
+void encode(ByteWriter& writer, const Assessment& assessment);
 // Throws DamagedBytes.
-Assessment decode_assessment(RecordReader& reader);
+Assessment decode_assessment(ByteReader& reader);
 
-void encode(RecordWriter& writer, const std::vector<Assessment>& assessments);
-std::vector<Assessment> decode_assessments(RecordReader& reader);
+void encode(ByteWriter& writer, const std::vector<Assessment>& assessments);
+std::vector<Assessment> decode_assessments(ByteReader& reader);
 
 }  // namespace mercury

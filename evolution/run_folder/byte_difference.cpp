@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "evolution/run_folder/record_bytes.h"
+#include "evolution/bytes.h"
 
 namespace mercury {
 namespace {
@@ -17,10 +17,10 @@ void put(std::string& bytes, std::size_t value) {
   bytes.push_back(static_cast<char>(value));
 }
 
-std::size_t take_number(RecordReader& reader) {
+std::size_t take_number(ByteReader& reader) {
   std::size_t value = 0;
   for (int shift = 0; shift < 63; shift += 7) {
-    const auto byte = reader.number<std::uint8_t>();
+    const auto byte = reader.read<std::uint8_t>();
     value |= static_cast<std::size_t>(byte & 0x7f) << shift;
     if (byte < 0x80) return value;
   }
@@ -50,7 +50,7 @@ std::string difference_of(std::string_view base, std::string_view target) {
 }
 
 std::string with_difference(std::string_view base, std::string_view difference) {
-  RecordReader reader(difference);
+  ByteReader reader(difference);
   const std::size_t size = take_number(reader);
   if (size > base.size() + difference.size()) throw DamagedBytes("a difference gives more bytes than it has");
   std::string target;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/generation_record.h"
 
+#include "evolution/bytes.h"
 #include "evolution/run_folder/assessment_bytes.h"
 #include "evolution/run_folder/checksum.h"
-#include "evolution/run_folder/record_bytes.h"
 
 namespace mercury {
 
@@ -13,75 +13,75 @@ namespace {
 
 enum class Form : std::uint8_t { whole, difference };
 
-void encode(RecordWriter& writer, const Individual& individual, const StoredGenome& genome) {
+void encode(ByteWriter& writer, const Individual& individual, const StoredGenome& genome) {
   writer.numbers(individual.parents);
-  writer.number(static_cast<std::uint32_t>(individual.line_began));
-  writer.number(individual.seed);
+  writer.add(static_cast<std::uint32_t>(individual.line_began));
+  writer.add(individual.seed);
   encode(writer, individual.assessment);
-  writer.number(static_cast<std::uint8_t>(genome.base == StoredGenome::none ? Form::whole : Form::difference));
-  writer.number(genome.size);
-  writer.number(genome.checksum);
+  writer.add(static_cast<std::uint8_t>(genome.base == StoredGenome::none ? Form::whole : Form::difference));
+  writer.add(genome.size);
+  writer.add(genome.checksum);
 }
 
-Individual decode_individual(RecordReader& reader, int generation, std::uint64_t first_id) {
+Individual decode_individual(ByteReader& reader, int generation, std::uint64_t first_id) {
   Individual individual;
   individual.generation = generation;
   individual.parents = reader.numbers<std::uint64_t>();
   for (const std::uint64_t parent : individual.parents)
     if (parent >= first_id) throw DamagedBytes("a parent was not born before its child");
-  const auto line_began = reader.number<std::uint32_t>();
+  const auto line_began = reader.read<std::uint32_t>();
   if (line_began > static_cast<std::uint32_t>(generation)) throw DamagedBytes("a line begins after its individual");
   individual.line_began = static_cast<int>(line_began);
-  individual.seed = reader.number<std::uint64_t>();
+  individual.seed = reader.read<std::uint64_t>();
   individual.assessment = decode_assessment(reader);
   return individual;
 }
 
-StoredGenome decode_genome(RecordReader& reader, const Individual& individual) {
+StoredGenome decode_genome(ByteReader& reader, const Individual& individual) {
   StoredGenome genome;
-  const auto form = reader.number<std::uint8_t>();
+  const auto form = reader.read<std::uint8_t>();
   if (form > static_cast<std::uint8_t>(Form::difference)) throw DamagedBytes("a genome has an unknown form");
   if (form == static_cast<std::uint8_t>(Form::difference)) {
     if (individual.parents.empty()) throw DamagedBytes("a genome without parents differs from one");
     genome.base = individual.parents.front();
   }
-  genome.size = reader.number<std::uint32_t>();
-  genome.checksum = reader.number<std::uint32_t>();
+  genome.size = reader.read<std::uint32_t>();
+  genome.checksum = reader.read<std::uint32_t>();
   return genome;
 }
 
 }  // namespace
 
 std::string encode_head(const RecordHead& head) {
-  RecordWriter writer;
-  for (const char letter : head_mark) writer.number(static_cast<std::uint8_t>(letter));
-  writer.number(head.index_size);
-  writer.number(head.genomes_size);
-  writer.number(head.index_checksum);
-  writer.number(head.genomes_checksum);
-  writer.number(checksum_of(writer.bytes()));
+  ByteWriter writer;
+  writer.append(head_mark);
+  writer.add(head.index_size);
+  writer.add(head.genomes_size);
+  writer.add(head.index_checksum);
+  writer.add(head.genomes_checksum);
+  writer.add(checksum_of(writer.bytes()));
   return writer.bytes();
 }
 
 std::optional<RecordHead> decode_head(std::string_view bytes) {
   if (bytes.size() < RecordHead::size || !bytes.starts_with(head_mark)) return std::nullopt;
-  RecordReader reader(bytes.substr(head_mark.size()));
+  ByteReader reader(bytes.substr(head_mark.size()));
   RecordHead head;
-  head.index_size = reader.number<std::uint64_t>();
-  head.genomes_size = reader.number<std::uint64_t>();
-  head.index_checksum = reader.number<std::uint64_t>();
-  head.genomes_checksum = reader.number<std::uint64_t>();
+  head.index_size = reader.read<std::uint64_t>();
+  head.genomes_size = reader.read<std::uint64_t>();
+  head.index_checksum = reader.read<std::uint64_t>();
+  head.genomes_checksum = reader.read<std::uint64_t>();
   const std::string_view checked = bytes.substr(0, RecordHead::size - sizeof(std::uint64_t));
-  if (reader.number<std::uint64_t>() != checksum_of(checked)) return std::nullopt;
+  if (reader.read<std::uint64_t>() != checksum_of(checked)) return std::nullopt;
   return head;
 }
 
 std::string encode_index(const GenerationRecord& record) {
-  RecordWriter writer;
+  ByteWriter writer;
   const Generation& generation = record.generation;
-  writer.number(static_cast<std::uint32_t>(generation.number));
-  writer.number(record.first_id);
-  writer.number(record.times.seconds);
+  writer.add(static_cast<std::uint32_t>(generation.number));
+  writer.add(record.first_id);
+  writer.add(record.times.seconds);
   writer.text(record.times.device);
   writer.count(generation.born.size());
   for (std::size_t i = 0; i < generation.born.size(); ++i) encode(writer, generation.born[i], record.genomes[i]);
@@ -91,14 +91,14 @@ std::string encode_index(const GenerationRecord& record) {
 
 GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size) {
   constexpr std::size_t smallest_individual = 50;  // bytes
-  RecordReader reader(index);
+  ByteReader reader(index);
   GenerationRecord record;
-  if (reader.number<std::uint32_t>() != static_cast<std::uint32_t>(number))
+  if (reader.read<std::uint32_t>() != static_cast<std::uint32_t>(number))
     throw DamagedBytes("the record is of another generation");
   record.generation.number = number;
   record.first_id = first_id;
-  if (reader.number<std::uint64_t>() != first_id) throw DamagedBytes("the ids do not go on where they ended");
-  record.times.seconds = reader.number<double>();
+  if (reader.read<std::uint64_t>() != first_id) throw DamagedBytes("the ids do not go on where they ended");
+  record.times.seconds = reader.read<double>();
   record.times.device = reader.text();
   const std::size_t born = reader.count(smallest_individual);
   record.generation.born.reserve(born);
@@ -115,7 +115,7 @@ GenerationRecord decode_index(std::string_view index, int number, std::uint64_t 
   record.generation.living = reader.numbers<std::uint64_t>();
   for (const std::uint64_t id : record.generation.living)
     if (id >= first_id + born) throw DamagedBytes("someone lives who was not born");
-  if (!reader.is_at_end()) throw DamagedBytes("the record goes on behind its end");
+  reader.end();
   return record;
 }
 

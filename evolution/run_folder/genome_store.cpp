@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/genome_store.h"
 
+#include "evolution/bytes.h"
 #include "evolution/run_folder/byte_difference.h"
-#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 
 namespace mercury {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "evolution/bytes.h"
 #include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/journal_header.h"
-#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -16,15 +16,15 @@ JournalReader::JournalReader(const std::filesystem::path& path) : path_(path), f
   const std::string header = file_.read(0, journal_header_size);
   if (!header.starts_with(journal_mark)) fail("is not a journal of genomes");
   if (header.size() < journal_header_size) fail("is cut off in its header");
-  RecordReader reader(std::string_view(header).substr(journal_mark.size()));
-  const auto version = reader.number<std::uint32_t>();
+  ByteReader reader(std::string_view(header).substr(journal_mark.size()));
+  const auto version = reader.read<std::uint32_t>();
   if (version > journal_version)
     fail("version " + std::to_string(version) + " is newer than this program, which reads up to version " +
          std::to_string(journal_version));
-  reader.number<std::uint32_t>();
-  fingerprint_ = reader.number<std::uint64_t>();
+  reader.read<std::uint32_t>();
+  fingerprint_ = reader.read<std::uint64_t>();
   const std::string_view checked = std::string_view(header).substr(0, journal_header_size - sizeof(std::uint64_t));
-  if (reader.number<std::uint64_t>() != checksum_of(checked) || version == 0) fail("the header is damaged");
+  if (reader.read<std::uint64_t>() != checksum_of(checked) || version == 0) fail("the header is damaged");
   end_ = journal_header_size;
 }
 

@@ -5,10 +5,10 @@
 
 #include <cerrno>
 
+#include "evolution/bytes.h"
 #include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/journal_header.h"
-#include "evolution/run_folder/record_bytes.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -22,12 +22,12 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, int flags) : fil
 
 JournalWriter JournalWriter::create(const std::filesystem::path& path, std::uint64_t fingerprint) {
   JournalWriter writer(path, O_CREAT | O_EXCL);
-  RecordWriter header;
-  for (const char letter : journal_mark) header.number(static_cast<std::uint8_t>(letter));
-  header.number(journal_version);
-  header.number(std::uint32_t{0});
-  header.number(fingerprint);
-  header.number(checksum_of(header.bytes()));
+  ByteWriter header;
+  header.append(journal_mark);
+  header.add(journal_version);
+  header.add(std::uint32_t{0});
+  header.add(fingerprint);
+  header.add(checksum_of(header.bytes()));
   if (const int error = writer.write(header.bytes(), 0); error != 0) {
     ::unlink(path.c_str());
     writer.file_.fail(error);

@@ -16,8 +16,8 @@ class Objective {
   explicit Objective(const std::string& formula);
 
   const std::string& formula() const { return formula_; }
-  // Its value; `values` has one number per quantity, in the order of quantities(). NaN and infinities become worst_score:
-  // what divides by zero does not win. Throws std::invalid_argument for another number of values.
+  // Its value; `values` has one number per quantity, in the order of quantities(). NaN and infinities become
+  // worst_score: what divides by zero does not win. Throws std::invalid_argument for another number of values.
   double score(std::span<const double> values) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One evolution on several hosts, in parts that any scheduler can start (docs/evolution.md): each of N processes assesses
-// a shard of the next generation and writes a file; then one process merges the files and selects. An assessment depends
-// on the genome alone, so the lineage is the same for any number of shards on one kind of device.
+// One evolution on several hosts, in parts that any scheduler can start (docs/evolution.md): each of N processes
+// assesses a shard of the next generation and writes a file; then one process merges the files and selects. An
+// assessment depends on the genome alone, so the lineage is the same for any number of shards on one kind of device.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 namespace mercury {
 
 // Assesses part `shard` (1 .. count) of the next generation and writes the result into the run folder's `shards`.
-// Returns the file, or nothing if `watch` said to stop. `evolution` stands where the run ended; nothing else is written,
-// so many processes may do this at the same time.
+// Returns the file, or nothing if `watch` said to stop. `evolution` stands where the run ended; nothing else is
+// written, and several processes may do this at the same time.
 std::optional<std::filesystem::path> assess_shard(const std::filesystem::path& folder, const Evolution& evolution,
                                                   Assessor& assessor, std::size_t shard, std::size_t count,
                                                   const Watch& watch = {});

@@ -141,7 +141,7 @@ TEST_P(EveryGenome, RefusesBytesThatBreakOffOrGoOn) {
   const std::string bytes = space_->random(1, 1)->encode();
   for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 500)
     EXPECT_THROW(space_->decode(std::string_view(bytes).substr(0, length)), InputError) << length;
-  EXPECT_EQ(refusal([&] { space_->decode(bytes + "x"); }), "genome: is followed by 1 bytes that are not of it");
+  EXPECT_EQ(refusal([&] { space_->decode(bytes + "x"); }), "genome: 1 bytes follow its end");
   std::string newer = bytes;
   newer[1] = 2;
   EXPECT_EQ(refusal([&] { space_->decode(newer); }), "genome: has version 2; this program reads version 1");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "evolution/run_folder/record_bytes.h"
+#include "evolution/bytes.h"
 #include "mercury/random.h"
 
 namespace mercury {
