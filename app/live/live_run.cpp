@@ -247,15 +247,14 @@ void LiveRun::leave_running() {
 void LiveRun::Parts::watch_process() {
   if (!process || process->running()) return;
   const std::string failure = process->failure(), name = folder_name(evolving);
-  if (!failure.empty()) {
-    messages.add(Severity::error, failure);
-    if (evolving == folder && !view) {
-      open({});
-      problem = failure;
-    }
+  const bool made = is_run_folder(evolving);
+  if (evolving == folder && !view && !made) {
+    open({});
+    problem = failure;
   }
+  if (!failure.empty()) messages.add(Severity::error, failure);
   if (failure.empty() && process->stopped())
-    messages.add(Severity::note, name + ": the evolution has stopped; \"Go on\" resumes it");
+    messages.add(Severity::note, name + (made ? ": the evolution has stopped; \"Go on\" resumes it" : ": stopped"));
   else if (failure.empty())
     messages.add(Severity::note, name + ": the evolution is finished");
   process.reset();

@@ -242,7 +242,7 @@ void EvolutionPanel::draw_champions(PanelContext& context, const RunView& view) 
   const std::size_t objectives = std::min(most_scores, view.settings.objectives.size());
   const int columns = 2 + static_cast<int>(objectives + quantities().size());
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-  const float height = (std::clamp(static_cast<float>(view.champions.size()), 2.0f, 7.0f) + 1) * line +
+  const float height = (std::clamp(static_cast<float>(view.champions.size()), 2.0f, 5.0f) + 1) * line +
                        ImGui::GetStyle().ScrollbarSize + 2;
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_Hideable |
@@ -334,7 +334,7 @@ void EvolutionPanel::draw_family_section(PanelContext& context, const RunView& v
   note(text.c_str());
   const float rest = ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - 2.4f * ImGui::GetFrameHeightWithSpacing();
   std::uint64_t id = 0;
-  if (draw_family(context, *family, view.settings, std::max(rest, 9 * ImGui::GetFontSize()), id)) choose(context, id);
+  if (draw_family(context, *family, view.settings, std::max(rest, 13 * ImGui::GetFontSize()), id)) choose(context, id);
 }
 
 }  // namespace mercury::window

@@ -116,6 +116,7 @@ bool draw_family(PanelContext& context, const Family& family, const EvolutionSet
   const Tree tree(family, ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize);
   tree.draw_headings();
   bool chosen = false;
+  const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
   if (ImGui::BeginChild("family", {0, height})) {
     ImGuiListClipper clipper;
@@ -129,8 +130,11 @@ bool draw_family(PanelContext& context, const Family& family, const EvolutionSet
         const bool clicked =
             ImGui::Selectable("##row", false, ImGuiSelectableFlags_AllowDoubleClick, {0, tree.row_height()});
         if (i < 20) context.log.item(fmt::format("family.{}", i));
-        if (ImGui::IsItemHovered() && pointer_rests())
+        if (ImGui::IsItemHovered() && pointer_rests()) {
+          ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
           show_individual(individual, settings, "click: into the scene; double click: its family");
+          ImGui::PopStyleVar();
+        }
         tree.draw_row(index, corner);
         ImGui::PopID();
         if (clicked && ImGui::IsMouseDoubleClicked(0)) {

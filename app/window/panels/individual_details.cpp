@@ -55,7 +55,8 @@ void show_individual(const Individual& individual, const EvolutionSettings& sett
   const float text = ImGui::GetFontSize();
   // Beside the panel, so that it covers none of its rows.
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x + text;
-  ImGui::SetNextWindowPos({right, ImGui::GetIO().MousePos.y}, ImGuiCond_Always, {0, 0.5f});
+  const float y = ImGui::GetIO().MousePos.y, share = std::clamp(y / ImGui::GetIO().DisplaySize.y, 0.0f, 1.0f);
+  ImGui::SetNextWindowPos({right, y}, ImGuiCond_Always, {0, share});
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(fmt::format("Robot {}", individual.id).c_str());
   if (ImGui::BeginTable("origin", 2, ImGuiTableFlags_SizingFixedFit)) {
