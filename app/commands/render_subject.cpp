@@ -74,8 +74,11 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
   options.film.validate();
   if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
     return run_of(options, *run, view);
-  if (const std::string option = options.film.given(); !option.empty())
-    throw InputError(option, "works with the folder of a run, which mercury evolve makes");
+  if (const std::string option = options.film.given(); !option.empty()) {
+    const auto files = options.robots.files();
+    throw InputError(option, "films a run of mercury evolve" +
+                                 (files.empty() ? "; give its folder" : ", and " + files[0].string() + " is none"));
+  }
   if (const auto file = options.robots.recording()) return recording_of(options, *file);
   return robots_of(options);
 }

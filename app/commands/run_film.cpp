@@ -154,8 +154,8 @@ std::string RunFilmOptions::given() const {
   return !lineage_.empty()       ? "--lineage"
          : !generations_.empty() ? "--generation"
          : map_                  ? "--map"
-         : ancestors_ > 0        ? "--ancestors"
-         : best_ > 0             ? "--best"
+         : ancestors_            ? "--ancestors"
+         : best_                 ? "--best"
                                  : "";
 }
 
@@ -164,24 +164,27 @@ void RunFilmOptions::validate() const {
   if (!lineage_.empty()) kinds.push_back("--lineage");
   if (!generations_.empty()) kinds.push_back("--generation");
   if (map_) kinds.push_back("--map");
-  if (best_ > 0) kinds.push_back("--best");
+  if (best_) kinds.push_back("--best");
   if (kinds.size() > 1) throw InputError(kinds[1], fmt::format("not together with {}; give one of them", kinds[0]));
-  if (ancestors_ > 0 && lineage_.empty()) throw InputError("--ancestors", "works with --lineage only");
-  if (ancestors_ == 1) throw InputError("--ancestors", "1 is not accepted; give 2 or more, for the first and the last");
+  if (ancestors_ && lineage_.empty()) throw InputError("--ancestors", "works with --lineage only");
+  if (ancestors_ && *ancestors_ < 2)
+    throw InputError("--ancestors",
+                     fmt::format("{} is not accepted; give 2 or more, for the first and the last", *ancestors_));
+  if (best_ && *best_ < 1) throw InputError("--best", "0 is not accepted; give 1 or more");
 }
 
 RunFilm RunFilmOptions::film(const RunHistory& run, const Room& room) const {
   if (run.generations().empty() || run.living().empty())
     throw InputError(run.folder().string(), "has no generation yet; try again when the first one is done");
   if (lineage()) {
-    const std::size_t most = ancestors_ > 0 ? ancestors_ : room.most_clips > 0 ? room.most_clips : usual_ancestors;
+    const std::size_t most = ancestors_.value_or(room.most_clips > 0 ? room.most_clips : usual_ancestors);
     if (room.most_clips > 0 && most > room.most_clips)
       throw InputError("--ancestors", fmt::format("{} do not fit into a contact sheet of {}", most, room.most_clips));
     return film_of_lineage(run, id_from("--lineage", lineage_, run), most, room.at_once);
   }
   if (!generations_.empty()) return film_of_generations(run, generations_);
   if (map_) return film_of_map(run);
-  return film_of_champions(run, best_ > 0 ? best_ : usual_best);
+  return film_of_champions(run, best_.value_or(usual_best));
 }
 
 std::string number_text(double value) {

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ class RunFilmOptions {
 
  private:
   std::string lineage_, generations_;
-  std::size_t ancestors_ = 0, best_ = 0;  // 0 = not given
+  std::optional<std::size_t> ancestors_, best_;
   bool map_ = false;
 };
 

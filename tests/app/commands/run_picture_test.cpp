@@ -137,6 +137,7 @@ TEST_F(RunPicture, OptionsThatDoNotGoTogetherAreRefused) {
   refused({"--ancestors", "3"}, "--ancestors: works with --lineage only");
   refused({"--lineage", "best", "--ancestors", "1"},
           "--ancestors: 1 is not accepted; give 2 or more, for the first and the last");
+  refused({"--best", "0"}, "--best: 0 is not accepted; give 1 or more");
   refused({"--map", "--each"}, "--each: not together with --map");
   refused({"--map", "--color", "strain"}, "--color: not together with --map, where colors show scores");
   refused({"--map", "--camera", "top"}, "--camera: not together with --map; --azimuth and --elevation turn the robots");
@@ -147,8 +148,11 @@ TEST_F(RunPicture, OptionsThatDoNotGoTogetherAreRefused) {
 TEST_F(RunPicture, OptionsOfRunsNeedARun) {
   ASSERT_EQ(mercury({"new", "voxel", "--count", "2", "-o", path("robots")}).status, 0);
   for (const auto& [option, value] : {std::pair{"--lineage", "best"}, {"--generation", "0"}, {"--best", "2"}})
-    EXPECT_EQ(refusal("robots", "a.gif", {option, value}),
-              "mercury: " + std::string(option) + ": works with the folder of a run, which mercury evolve makes\n");
+    EXPECT_EQ(
+        refusal("robots", "a.gif", {option, value}),
+        "mercury: " + std::string(option) + ": films a run of mercury evolve, and " + path("robots") + " is none\n");
+  EXPECT_EQ(mercury({"render", "--map", "-o", path("a.png")}).messages,
+            "mercury: --map: films a run of mercury evolve; give its folder\n");
   EXPECT_EQ(render("robots", "a.gif", {"--seconds", "0.1"}).status, 0);
 }
 
