@@ -116,10 +116,8 @@ class EvolutionTest(WindowCase):
         since = window.mark()
         window.key("ctrl+q")
         self.assertEqual(window.wait("asks", since)["what"], "evolution")
-        window.click("dialog.accept")
+        window.key("Return")
         self.assertEqual(window.process.wait(60), 0, window.stderr())
-        subprocess.run([PROGRAM, "evolve", str(folder), "--resume", "--generations", "0", "--device", "cpu", "--quiet"],
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.assertGreater(len(individuals(folder)), 8)
 
     def test_a_run_that_cannot_be_read_is_refused_before_the_window_opens(self):
