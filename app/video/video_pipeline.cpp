@@ -25,8 +25,13 @@ float aspect_of(const render::Renderer& renderer) {
 GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
   for (std::size_t i = 0; i < simulation.size(); ++i) bounds.push_back(rest_bounds(simulation.robot(i)));
-  if (settings.board) return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
   const bool land = on_land(simulation);
+  if (settings.board) {
+    // The simulation sets robots down on the floor.
+    for (render::Bounds& robot : bounds)
+      if (land && !robot.empty()) robot = robot.moved({0, 0, -robot.low.z()});
+    return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
+  }
   // From straight above, robots that swim are laid out as if on the ground.
   const bool flat = land || settings.camera.mode == CameraMode::top;
   return {.offsets = grid_layout(bounds, {.layout = settings.layout,
