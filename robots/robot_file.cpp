@@ -56,6 +56,8 @@ std::string serialize_robot(const Robot& robot, RobotFormat format) {
 }
 
 Robot load_robot(const std::filesystem::path& path) {
+  std::error_code missing;
+  if (!std::filesystem::exists(path, missing) && !missing) throw InputError(path.string(), "No such file or directory");
   const RobotFormat format = robot_format_of(path);
   const std::string document = read_whole_file(path);
   try {

@@ -8,16 +8,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 #include <system_error>
 
 #include "mercury/error.h"
 
 namespace mercury {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& path, int error) {
-  throw InputError(path.string(), std::generic_category().message(error));
-}
 
 class Descriptor {
  public:
@@ -82,6 +79,13 @@ std::filesystem::path temporary_name(const std::filesystem::path& path, int atte
 }
 
 }  // namespace
+
+void fail(const std::filesystem::path& path, int error) {
+  const std::string reason = std::generic_category().message(error);
+  for (const int machine : {ENOSPC, EDQUOT, EIO, ENOMEM, EMFILE, ENFILE})
+    if (error == machine) throw std::runtime_error(path.string() + ": " + reason);
+  throw InputError(path.string(), reason);
+}
 
 std::string read_whole_file(const std::filesystem::path& path) {
   // Opening a FIFO would block until someone writes.

@@ -15,7 +15,9 @@
 #include "app/commands/evolution_progress.h"
 #include "app/options/evolution_options.h"
 #include "app/options/option_values.h"
+#include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
+#include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 #include "mercury/run_folder.h"
@@ -55,6 +57,9 @@ RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
   std::vector<std::string> notes;
   const RunSettings settings = options.run.settings(notes);
   for (const std::string& note : notes) say(note);
+  // A device that is not there is noticed before a folder is made or replaced.
+  if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
+    make_backend(settings.evolution.configuration.device);
   return RunFolder::create(folder, settings, options.force);
 }
 
@@ -148,8 +153,9 @@ int evolve_as_other_rank(const EvolveOptions& options, const CLI::App& command, 
   EvolutionSettings settings = settings_here(options, command, *run);
   choose_gpu_of_rank(ranks, settings.configuration.device);
   const std::unique_ptr<GenomeSpace> space = make_genome_space(run->space);
-  ranks.serve([&] { return make_assessor(settings); }, *space);
-  return 0;
+  if (ranks.serve([&] { return make_assessor(settings); }, *space, interrupted)) return 0;
+  if (ranks.rank() == 1) say(fmt::format("rank 0 no longer answers; {} is whole, --resume goes on", options.folder));
+  return 1;
 }
 
 // --- In shards
@@ -163,6 +169,13 @@ std::pair<std::size_t, std::size_t> shard_from(const std::string& text) {
   return {number(0), number(1)};
 }
 
+void require_more_generations(const EvolveOptions& options, const Evolution& evolution) {
+  if (evolution.is_over())
+    throw InputError(options.folder, fmt::format("has all its {} generations; mercury evolve {} --merge "
+                                                 "--generations N raises their number",
+                                                 evolution.settings().generations, options.folder));
+}
+
 int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
   const auto [shard, count] = shard_from(options.shard);
   options.run.require_only_what_may_change(command);
@@ -170,10 +183,7 @@ int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
   const EvolutionSettings settings = settings_here(options, command, history.settings());
   Evolution evolution(settings, history.space());
   restore(history, evolution);
-  if (evolution.is_over())
-    throw InputError(options.folder, fmt::format("has all its {} generations; mercury evolve {} --merge "
-                                                 "--generations N raises their number",
-                                                 settings.generations, options.folder));
+  require_more_generations(options, evolution);
   Progress progress(fmt::format("generation {}, shard {}/{}", evolution.next_generation(), shard, count), "robots",
                     static_cast<std::int64_t>(evolution.children().size() / count + 1), options.quiet);
   const std::optional<std::filesystem::path> file = assess_shard(options.folder, evolution, *make_assessor(settings),
@@ -192,9 +202,13 @@ int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
 int merge(const EvolveOptions& options, const CLI::App& command) {
   options.run.require_only_what_may_change(command);
   RunFolder run = RunFolder::open(options.folder);
+  const auto finished = static_cast<int>(run.history().generations().size());
+  const bool was_over = finished > run.history().settings().evolution.generations;
   if (options.run.generations()) run.set_generations(*options.run.generations());
   Evolution evolution(run.history().settings().evolution, run.space());
   restore(run.history(), evolution);
+  require_more_generations(options, evolution);
+  if (was_over) return 0;  // there is nothing to merge before more generations are wanted
   run.append(merge_shards(options.folder, evolution), {.seconds = 0, .device = "shards"});
   remove_shards(options.folder, evolution.next_generation());
   run.write_all();
@@ -206,8 +220,10 @@ int evolve(const EvolveOptions& options, const CLI::App& command) {
   if (options.resume + options.prepare + options.merge + !options.shard.empty() > 1)
     throw InputError("--resume, --prepare, --shard and --merge", "give one of them");
   if (!options.shard.empty()) return evolve_shard(options, command);
+  const bool alone = options.merge || options.prepare;  // of several processes, only the first has something to do
+  if (alone && rank_by_launcher() > 0) return 0;
   if (options.merge) return merge(options, command);
-  if (!Ranks::launched()) return evolve_here(options, command);
+  if (alone || !Ranks::launched()) return evolve_here(options, command);
   Ranks ranks;
   return ranks.rank() == 0 ? evolve_as_rank_0(options, command, ranks) : evolve_as_other_rank(options, command, ranks);
 }

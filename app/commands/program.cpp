@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <thread>
 
 #include "app/base/interrupt.h"
 #include "app/base/suggestion.h"
@@ -14,6 +16,7 @@
 #include "app/commands/commands.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
+#include "evolution/distribution/launcher.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -42,7 +45,19 @@ std::string shortened(const std::string& text) {
   return text.size() <= longest ? text : text.substr(0, end) + " ... " + text.substr(text.size() - end);
 }
 
-void print_message(const std::string& message) { fmt::print(stderr, "mercury: {}\n", shortened(one_line(message))); }
+// Whether the launcher ends this process because another one has failed, which takes a moment.
+bool launcher_ends_all() {
+  for (int wait = 0; wait < 500 && !interrupted(); ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return interrupted();
+}
+
+// Among the processes of an MPI launcher, all come upon the same mistake of the user, and the first reports it.
+void print_message(const std::string& message) {
+  const int rank = rank_by_launcher();
+  if (rank > 0 && launcher_ends_all()) return;
+  const std::string place = rank > 0 ? fmt::format("rank {}: ", rank) : "";
+  fmt::print(stderr, "mercury: {}{}\n", place, shortened(one_line(message)));
+}
 
 class Program {
  public:
@@ -134,7 +149,7 @@ class Program {
     } catch (const CLI::Success& request) {  // --help or --version
       help_ = true;
       body_ = nullptr;
-      app_.exit(request);
+      if (rank_by_launcher() == 0) app_.exit(request);
     } catch (const CLI::ExtrasError&) {
       throw unknown_argument(*command);
     } catch (const CLI::ArgumentMismatch& error) {

@@ -14,4 +14,11 @@ bool launched_by_mpi() {
   return std::getenv("PMIX_RANK") && tasks && std::atoi(tasks) > 1;
 }
 
+int rank_by_launcher() {
+  if (!launched_by_mpi()) return 0;
+  for (const char* rank : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"})
+    if (const char* value = std::getenv(rank)) return std::atoi(value);
+  return 0;
+}
+
 }  // namespace mercury

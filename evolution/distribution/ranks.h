@@ -43,8 +43,9 @@ class Ranks {
   // names the rank whose device failed. `local` and the ranks must outlive it.
   std::unique_ptr<Assessor> distribute(Assessor& local);
   // For the others: assesses what rank 0 sends, until it ends. `make_assessor` is called once. What it or the assessor
-  // throws goes to rank 0.
-  void serve(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space);
+  // throws goes to rank 0. Returns false if rank 0 was lost: it says nothing after `interrupted` has become true.
+  bool serve(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space,
+             const std::function<bool()>& interrupted);
 
  private:
   struct Parts;

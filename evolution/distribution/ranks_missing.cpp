@@ -24,6 +24,8 @@ void Ranks::share(const RunSettings&) {}
 void Ranks::abandon() {}
 std::optional<RunSettings> Ranks::receive_settings() { return std::nullopt; }
 std::unique_ptr<Assessor> Ranks::distribute(Assessor&) { return nullptr; }
-void Ranks::serve(const std::function<std::unique_ptr<Assessor>()>&, const GenomeSpace&) {}
+bool Ranks::serve(const std::function<std::unique_ptr<Assessor>()>&, const GenomeSpace&, const std::function<bool()>&) {
+  return false;
+}
 
 }  // namespace mercury

@@ -11,12 +11,13 @@
 // looks for messages in turns with short sleeps; MPI would keep a core busy.
 //
 // If a rank is lost, the launcher asks the others to end, and kills them soon after. Rank 0 then waits for answers only
-// as long as ranks need to stop.
+// as long as ranks need to stop, and the others for a message of rank 0.
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -40,10 +41,20 @@ void require(int status, const char* what) {
   if (status != MPI_SUCCESS) throw std::runtime_error(std::string("MPI: ") + what + " failed");
 }
 
-void send(int rank, Tag tag, const std::string& bytes) {
+// Begins to send. The bytes must live until the request is done, which is never if the rank was lost.
+MPI_Request send(int rank, Tag tag, const std::string& bytes) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::runtime_error("MPI: the genomes of a generation take more than 2 GB; use more ranks or fewer children");
-  require(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD), "sending");
+  MPI_Request request;
+  require(MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, rank, tag, MPI_COMM_WORLD, &request),
+          "sending");
+  return request;
+}
+
+bool is_sent(MPI_Request& request) {
+  int flag = 0;
+  require(MPI_Test(&request, &flag, MPI_STATUS_IGNORE), "sending");
+  return flag != 0;
 }
 
 // Whether a message waits; then `status` describes it.
@@ -110,31 +121,48 @@ class DistributedAssessor : public Assessor {
   }
 
  private:
-  void deal_out(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) const {
+  void deal_out(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) {
+    work_.assign(ranks_, {});
+    sending_.assign(ranks_, MPI_REQUEST_NULL);
     for (std::size_t rank = 1; rank < ranks_; ++rank) {
       ByteWriter writer;
       writer.numbers(std::vector<double>(interim_limits.begin(), interim_limits.end()));
       writer.count((candidates.size() + ranks_ - 1 - rank) / ranks_);
       for (std::size_t i = rank; i < candidates.size(); i += ranks_) writer.text(candidates[i]->encode());
-      send(static_cast<int>(rank), work_tag, writer.bytes());
+      work_[rank] = std::move(writer).take();
+      sending_[rank] = send(static_cast<int>(rank), work_tag, work_[rank]);
     }
   }
 
   void stop() {
     stopped_ = true;
     stopped_at_ = std::chrono::steady_clock::now();
-    for (std::size_t rank = 1; rank < ranks_; ++rank) send(static_cast<int>(rank), stop_tag, {});
+    for (std::size_t rank = 1; rank < ranks_; ++rank) {
+      MPI_Request request;  // without bytes, so nothing needs to live until it is done
+      if (MPI_Isend(nullptr, 0, MPI_BYTE, static_cast<int>(rank), stop_tag, MPI_COMM_WORLD, &request) == MPI_SUCCESS)
+        MPI_Request_free(&request);
+    }
+  }
+
+  // "rank 3 no longer answers"
+  static std::string loss(const std::vector<bool>& has_answered) {
+    std::string lost;
+    int count = 0;
+    for (std::size_t rank = 1; rank < has_answered.size(); ++rank)
+      if (!has_answered[rank]) lost += (count++ == 0 ? "" : ", ") + std::to_string(rank);
+    return (count == 1 ? "rank " : "ranks ") + lost + " no longer " + (count == 1 ? "answers" : "answer") +
+           "; the run folder is whole, --resume goes on";
   }
 
   template <class GoOn>
   void collect(std::vector<Assessment>& all, std::exception_ptr& failure, const GoOn& go_on) {
+    std::vector<bool> has_answered(ranks_);
     for (std::size_t missing = ranks_ - 1; missing > 0;) {
       MPI_Status status;
       if (!arrived(MPI_ANY_SOURCE, result_tag, status)) {
         if (!go_on(all.size()) && std::chrono::steady_clock::now() - stopped_at_ > longest_stop) {
           lost_ = true;
-          throw std::runtime_error(std::to_string(missing) +
-                                   " of the other ranks no longer answer; the run folder is whole, --resume goes on");
+          throw std::runtime_error(loss(has_answered));
         }
         std::this_thread::sleep_for(turn);
         continue;
@@ -142,6 +170,7 @@ class DistributedAssessor : public Assessor {
       const std::string bytes = receive(status);
       const auto rank = static_cast<std::size_t>(status.MPI_SOURCE);
       --missing;
+      has_answered[rank] = true;
       ByteReader reader(bytes);
       const auto outcome = static_cast<Outcome>(reader.read<std::uint8_t>());
       if (outcome == Outcome::done) put(all, rank, decode_assessments(reader));
@@ -152,6 +181,8 @@ class DistributedAssessor : public Assessor {
                                                     : std::make_exception_ptr(std::runtime_error(message));
       if (!stopped_) stop();
     }
+    // Who has answered has received the work.
+    require(MPI_Waitall(static_cast<int>(ranks_), sending_.data(), MPI_STATUSES_IGNORE), "sending");
   }
 
   void put(std::vector<Assessment>& all, std::size_t rank, std::vector<Assessment> part) const {
@@ -161,13 +192,38 @@ class DistributedAssessor : public Assessor {
   Assessor& local_;
   const std::size_t ranks_;
   bool& lost_;
+  std::vector<std::string> work_;     // per rank, while it is sent
+  std::vector<MPI_Request> sending_;  // per rank
   bool stopped_ = false;
   std::chrono::steady_clock::time_point stopped_at_;
 };
 
 // --- The others
 
-std::string answer(Assessor& assessor, const GenomeSpace& space, const std::string& work) {
+struct RankZeroLost {};
+
+// Notices that rank 0 says nothing although all ranks were asked to end.
+class Silence {
+ public:
+  explicit Silence(const std::function<bool()>& interrupted) : interrupted_(interrupted) {}
+
+  // Throws RankZeroLost if it has lasted too long.
+  void check() {
+    if (heard_ || !interrupted_()) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (!since_) since_ = now;
+    if (now - *since_ > longest_stop) throw RankZeroLost();
+  }
+  // A message of rank 0 arrived.
+  void end() { heard_ = since_.has_value(); }
+
+ private:
+  const std::function<bool()>& interrupted_;
+  bool heard_ = false;
+  std::optional<std::chrono::steady_clock::time_point> since_;
+};
+
+std::string answer(Assessor& assessor, const GenomeSpace& space, const std::string& work, Silence& silence) {
   ByteReader reader(work);
   const std::vector<double> limits = reader.numbers<double>();
   std::vector<GenomePointer> genomes(reader.count(sizeof(std::uint32_t)));
@@ -177,8 +233,10 @@ std::string answer(Assessor& assessor, const GenomeSpace& space, const std::stri
     MPI_Status status;
     if (!stopped && arrived(0, stop_tag, status)) {
       receive(status);
+      silence.end();
       stopped = true;
     }
+    silence.check();
     return !stopped;
   });
   ByteWriter writer;
@@ -208,6 +266,7 @@ Ranks::Ranks() : parts_(std::make_unique<Parts>()) {
   // Only the thread that made the ranks calls MPI.
   int provided = 0;
   require(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "starting");
+  MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
   MPI_Comm_rank(MPI_COMM_WORLD, &parts_->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &parts_->count);
   MPI_Comm host;
@@ -252,28 +311,36 @@ std::unique_ptr<Assessor> Ranks::distribute(Assessor& local) {
   return std::make_unique<DistributedAssessor>(local, parts_->count, parts_->lost);
 }
 
-void Ranks::serve(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space) {
+bool Ranks::serve(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space,
+                  const std::function<bool()>& interrupted) try {
   std::unique_ptr<Assessor> assessor;
+  Silence silence(interrupted);
   for (;;) {
     MPI_Status status;
     if (!arrived(0, MPI_ANY_TAG, status)) {
+      silence.check();
       std::this_thread::sleep_for(turn);
       continue;
     }
     const std::string message = receive(status);
-    if (status.MPI_TAG == end_tag) return;
+    silence.end();
+    if (status.MPI_TAG == end_tag) return true;
     if (status.MPI_TAG != work_tag) continue;  // a `stop` that came after the result
     std::string result;
     try {
       if (!assessor) assessor = make_assessor();
-      result = answer(*assessor, space, message);
+      result = answer(*assessor, space, message, silence);
     } catch (const DeviceError& error) {
       result = failed(Outcome::device_failed, error.what());
     } catch (const std::exception& error) {
       result = failed(Outcome::failed, error.what());
     }
-    send(0, result_tag, result);
+    for (MPI_Request request = send(0, result_tag, result); !is_sent(request); std::this_thread::sleep_for(turn))
+      silence.check();
   }
+} catch (const RankZeroLost&) {
+  parts_->lost = true;
+  return false;
 }
 
 }  // namespace mercury

@@ -10,6 +10,7 @@
 #include "evolution/run_folder/file_descriptor.h"
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
+#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {

@@ -7,16 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "mercury/error.h"
+#include "robots/whole_file.h"
 
 namespace mercury {
-
-void fail(const std::filesystem::path& path, int error) {
-  throw InputError(path.string(), std::generic_category().message(error));
-}
 
 FileDescriptor::FileDescriptor(const std::filesystem::path& path, int flags)
     : path_(path), descriptor_(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666)) {

@@ -23,15 +23,13 @@ class FileDescriptor {
   std::uint64_t size() const;
   // Up to `size` bytes from `offset`; fewer at the file's end. Throws InputError if the system cannot read them.
   std::string read(std::uint64_t offset, std::size_t size) const;
-  // Throws InputError(path, the system's reason).
+  // Throws the path and the system's reason (robots/whole_file.h).
   [[noreturn]] void fail(int error) const;
 
  private:
   std::filesystem::path path_;
   int descriptor_ = -1;
 };
-
-[[noreturn]] void fail(const std::filesystem::path& path, int error);
 
 // Makes names in a folder durable: files that were made, renamed or removed in it.
 void sync_folder(const std::filesystem::path& folder);

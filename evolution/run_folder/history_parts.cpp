@@ -7,6 +7,7 @@
 #include "evolution/run_folder/generation_summary.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
+#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {
@@ -22,8 +23,9 @@ void check_run_folder(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::exists(folder, error)) throw InputError(folder.string(), "No such file or directory");
   if (!std::filesystem::is_directory(folder, error)) throw InputError(folder.string(), "is not a folder");
-  if (!is_run_folder(folder))
-    throw InputError(folder.string(), "is not the folder of a run: it has no " + std::string(run_file_name));
+  const bool is_run = std::filesystem::exists(folder / run_file_name, error);
+  if (error) fail(folder, error.value());
+  if (!is_run) throw InputError(folder.string(), "is not the folder of a run: it has no " + std::string(run_file_name));
 }
 
 RunHistory::Parts::Parts(const std::filesystem::path& run, GenomeSpaceMaker maker)

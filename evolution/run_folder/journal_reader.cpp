@@ -97,7 +97,7 @@ void JournalReader::check_not_replaced() const {
   }, there{};
   if (::fstat(file_.get(), &here) != 0 || ::stat(path_.c_str(), &there) != 0 || here.st_ino != there.st_ino ||
       here.st_dev != there.st_dev)
-    fail("the run was replaced or removed; open it again");
+    fail("the run was replaced, moved or removed; open it again");
 }
 
 }  // namespace mercury

@@ -6,6 +6,7 @@
 
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/file_descriptor.h"
+#include "evolution/run_folder/journal_header.h"
 #include "evolution/run_folder/run_file.h"
 #include "mercury/error.h"
 #include "robots/whole_file.h"
@@ -40,6 +41,20 @@ void remove_run(const fs::path& folder) {
   remove_file(folder / journal_name);
 }
 
+// What a process leaves that was killed while it made a folder: a journal without a record, founders, but no settings.
+bool is_unfinished(const fs::path& folder) {
+  if (is_run_folder(folder)) return false;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_journal =
+        name == journal_name && entry.is_regular_file(error) && entry.file_size(error) <= journal_header_size;
+    // ".run.toml..." is a temporary name (robots/whole_file.h).
+    if (!is_journal && name != founders_name && name.find(run_file_name) != 1) return false;
+  }
+  return !error && fs::exists(folder / journal_name, error);
+}
+
 // Locks the journal of a run that is to be replaced, if it has one.
 std::optional<JournalWriter> lock_of(const fs::path& folder) {
   std::error_code error;
@@ -70,7 +85,7 @@ JournalWriter make_run_folder(const fs::path& folder, const RunSettings& setting
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw InputError(folder.string(), "is a file; give a new folder");
   make_folder(folder);
-  if (force && is_run_folder(folder)) {
+  if ((force && is_run_folder(folder)) || is_unfinished(folder)) {
     const std::optional<JournalWriter> lock = lock_of(folder);
     remove_run(folder);
   } else if (fs::directory_iterator(folder, error) != fs::directory_iterator() || error) {

@@ -119,11 +119,15 @@ void RunFolder::append(const Generation& generation, const GenerationTimes& time
   GenerationRecord record{.first_id = run.individuals.size(), .generation = generation, .times = times};
   const std::string genomes = store_genomes(record, run.genomes);
   for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
+  run.journal.check_not_replaced();
   parts_->writer.append(record, genomes);
   run.refresh();
   parts_->derived.write_now_and_then(parts_->history);
 }
 
-void RunFolder::write_all() { parts_->derived.write(parts_->history); }
+void RunFolder::write_all() {
+  parts_->history.parts_->journal.check_not_replaced();
+  parts_->derived.write(parts_->history);
+}
 
 }  // namespace mercury

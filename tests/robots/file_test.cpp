@@ -142,6 +142,9 @@ TEST_F(RobotFiles, WhatCannotBeReadIsNamed) {
   fs::create_directory(folder / "empty");
   EXPECT_EQ(load("empty"), "empty: the folder holds no robot, neither *.json nor *.cbor");
   EXPECT_EQ(load("missing.json"), "missing.json: No such file or directory");
+  EXPECT_EQ(load("missing"), "missing: No such file or directory");
+  put("eel.txt", "");
+  put("eel", "");
   EXPECT_EQ(load("eel.txt"), "eel.txt: extension .txt is not a robot's; give .json or .cbor");
   EXPECT_EQ(load("eel"), "eel: a robot file needs an extension; give .json or .cbor");
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);

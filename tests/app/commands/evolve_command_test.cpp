@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "app/base/child_process.h"
+#include "evolution/distribution/ranks.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
 #include "tests/app/program.h"
@@ -122,6 +124,36 @@ TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
   }
   EXPECT_EQ(lineage("run"), expected_lineage("2"));
   EXPECT_THAT(listing("run"), testing::Not(testing::Contains("shards")));
+  const Outcome over = evolve("run", {"--merge"});
+  EXPECT_EQ(over.status, 2);
+  EXPECT_EQ(over.messages, "mercury: " + path("run") + ": has all its 2 generations; mercury evolve " + path("run") +
+                               " --merge --generations N raises their number\n");
+  ASSERT_EQ(evolve("run", {"--merge", "--generations", "3"}).status, 0);
+  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
+  ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+  EXPECT_EQ(lineage("run"), expected_lineage("3"));
+}
+
+TEST_F(EvolveCommand, RunsWhoseFolderWasRemovedEndWithALine) {
+  for (const bool moved : {false, true}) {
+    ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small("100000")));
+    wait_for_generations("run", 2);
+    std::filesystem::rename(path("run"), path("moved"));
+    if (!moved) std::filesystem::remove_all(path("moved"));
+    const Outcome outcome = outcome_of(child);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+    std::filesystem::remove_all(path("run"));
+  }
+  EXPECT_GE(generations_in("moved"), 2u);
+}
+
+TEST_F(EvolveCommand, MissingDevicesAreNoticedBeforeAFolderIsMade) {
+  if (cuda_device_count() > 0) GTEST_SKIP() << "needs a machine without a GPU";
+  const Outcome outcome = evolve("run", {"--device", "cuda"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+  EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
 TEST_F(EvolveCommand, MissingAndDamagedShardsAreNamed) {
@@ -142,15 +174,88 @@ TEST_F(EvolveCommand, MissingAndDamagedShardsAreNamed) {
   EXPECT_EQ(generations_in("run"), 0u);
 }
 
-TEST_F(EvolveCommand, RanksEndInTheSameLineage) {
-  if (std::system("command -v mpirun > /dev/null") != 0) GTEST_SKIP() << "no mpirun on this machine";
-  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  const Outcome outcome =
-      run_program("mpirun", joined({"-n", "3", "--oversubscribe", MERCURY_PROGRAM, "evolve", path("run")}, small()));
-  if (outcome.messages.find("this build has no MPI") != std::string::npos) GTEST_SKIP() << "a build without MPI";
+class EvolveByMpi : public EvolveCommand {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v mpirun > /dev/null") != 0) GTEST_SKIP() << "no mpirun on this machine";
+    if (!Ranks::available()) GTEST_SKIP() << "a build without MPI";
+    EvolveCommand::SetUp();
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  }
+  // Ranks that are asked to end have `patience` seconds.
+  static Arguments three_ranks(const Arguments& options, const std::string& patience = "1") {
+    return joined(
+        {"-n", "3", "--oversubscribe", "--mca", "odls_base_sigkill_timeout", patience, MERCURY_PROGRAM, "evolve"},
+        options);
+  }
+  static std::size_t lines_of_mercury(const Outcome& outcome) {
+    std::istringstream lines(outcome.messages);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line);) count += line.starts_with("mercury: ");
+    return count;
+  }
+  // The process that evolves in the folder as that rank.
+  static pid_t process_of(int rank, const std::string& folder) {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const auto text = [&](const char* file) {
+        std::ifstream stream(entry.path() / file);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+      };
+      const std::string end(1, '\0');
+      if ((end + text("environ")).find(end + "OMPI_COMM_WORLD_RANK=" + std::to_string(rank) + end) !=
+              std::string::npos &&
+          text("cmdline").find(end + folder + end) != std::string::npos)
+        return std::stoi(entry.path().filename());
+    }
+    return 0;
+  }
+};
+
+TEST_F(EvolveByMpi, RanksEndInTheSameLineage) {
+  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, small())));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(lineage("run"), expected_lineage());
+}
+
+TEST_F(EvolveByMpi, MistakesAreReportedOnce) {
+  for (const Arguments& options : {Arguments{"--algorithm", "luck"},
+                                   {"--charm", "3"},
+                                   {"--resume"},
+                                   {"--merge"},
+                                   {"--prepare", "--trials", "0"}}) {
+    const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, options)));
+    EXPECT_EQ(outcome.status, 2) << outcome.messages;
+    EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
+  }
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+TEST_F(EvolveByMpi, ALostRankEndsTheRunWithALine) {
+  const std::string generations = "40", wanted = expected_lineage(generations);
+  for (const int lost : {1, 0}) {
+    const std::string run = "without-" + std::to_string(lost);
+    ChildProcess child("mpirun", three_ranks(joined({path(run)}, small(generations)), "4"));
+    wait_for_generations(run, 2);
+    const pid_t process = process_of(lost, path(run));
+    ASSERT_GT(process, 0);
+    ::kill(process, SIGKILL);
+    const Outcome outcome = outcome_of(child);
+    EXPECT_NE(outcome.status, 0);
+    EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
+    EXPECT_THAT(outcome.messages, testing::HasSubstr("mercury: rank " + std::to_string(lost) + " no longer answers; "));
+    for (const int rank : {0, 1, 2}) EXPECT_EQ(process_of(rank, path(run)), 0);
+    ASSERT_EQ(evolve(run, {"--resume", "--quiet"}).status, 0);
+    EXPECT_EQ(lineage(run), wanted);
+  }
+}
+
+TEST_F(EvolveByMpi, PreparingAndMergingAreDoneOnce) {
+  ASSERT_EQ(run_program("mpirun", three_ranks(joined({path("run"), "--prepare"}, small("0")))).status, 0);
+  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
+  const Outcome outcome = run_program("mpirun", three_ranks({path("run"), "--merge"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(lineage("run"), expected_lineage("0"));
 }
 
 TEST_F(EvolveCommand, RunsAreReplacedOnlyWithForce) {

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "evolution/run_folder/derived_files.h"
+#include "evolution/run_folder/journal_header.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/evolution/run_folder/test_run.h"
@@ -184,6 +185,36 @@ TEST_F(RunFolders, TwoProcessesCannotWriteTheSameRun) {
   EXPECT_EQ(history("run").generations().size(), 2u);
   evolve(first);
   EXPECT_EQ(history("run").generations().size(), 6u);
+}
+
+// As left by a process that was killed while it made the folder.
+TEST_F(RunFolders, ThatWereNotMadeToTheEndAreMadeAgain) {
+  make_run("whole", test_settings(1));
+  const std::string journal = read("whole/genomes");
+  for (const std::size_t size : {std::size_t{0}, std::size_t{20}, journal_header_size}) {
+    fs::create_directories(path("run") / "founders");
+    write("run/genomes", journal.substr(0, size));
+    write("run/founders/0000.json", "{");
+    make_run("run", test_settings(1));
+    expect_same_run(history("run"), history("whole"));
+    fs::remove_all(path("run"));
+  }
+  fs::create_directories(path("run"));
+  write("run/genomes", journal);  // with a generation
+  EXPECT_THAT(error_of([&] { create("run"); }), EndsWith("is not empty; give a new folder"));
+  EXPECT_EQ(read("run/genomes"), journal);
+}
+
+TEST_F(RunFolders, ThatWereReplacedAreNotWrittenTo) {
+  RunFolder run = create("run", test_settings(4));
+  evolve(run, 2);
+  fs::rename(path("run"), path("moved"));
+  EXPECT_EQ(error_of([&] { evolve(run, 1); }),
+            path("run/genomes").string() + ": the run was replaced, moved or removed; open it again");
+  EXPECT_EQ(error_of([&] { run.write_all(); }),
+            path("run/genomes").string() + ": the run was replaced, moved or removed; open it again");
+  EXPECT_FALSE(fs::exists(path("run")));
+  EXPECT_EQ(history("moved").generations().size(), 2u);
 }
 
 TEST_F(RunFolders, AreNotOverwritten) {
