@@ -15,8 +15,9 @@ std::string_view embedded_file(std::string_view name) {
 std::vector<Robot> sample_robots(std::string_view environment) {
   std::vector<Robot> robots;
   for (const EmbeddedFile& file : embedded_files()) {
-    if (!file.name.ends_with(".json")) continue;
-    Robot robot = parse_robot(file.contents, RobotFormat::json);
+    const bool is_json = file.name.ends_with(".json");
+    if (!is_json && !file.name.ends_with(".cbor")) continue;
+    Robot robot = parse_robot(file.contents, is_json ? RobotFormat::json : RobotFormat::cbor);
     if (environment.empty() || environment_of(robot) == environment) robots.push_back(std::move(robot));
   }
   return robots;
