@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownThing",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
                  "--show: \"bones\" is not accepted; give some of "
-                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,legend,clock,scale"},
+                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,captions,legend,clock,scale"},
         BadInput{
             "UnknownCamera",
             {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "drone"},

@@ -21,6 +21,7 @@ class FilesTest(WindowCase):
             window.key("ctrl+s")
             window.dialog(str(self.folder / "new.json"))
             window.wait(expected, since)
+        window.until("the question alone", lambda: "files.place" not in window.items)  # both dialogs have a dialog.cancel
         window.click("dialog.cancel")
         window.place("files.place")  # the file dialog opens again
         window.key("Escape")
