@@ -158,7 +158,7 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
     load(simulation, portion);
     interval.reset();
     loaded(device, simulation);
-    Trial trial(simulation, request, context, pace, portion);
+    PortionTrial trial(simulation, request, context, pace, portion);
     if (!stopping && trial.run()) {
       interval.emplace(reading);
       result.results = trial.results();

@@ -40,8 +40,8 @@ void load(Simulation& simulation, Portion& portion) {
   simulation.add(portion.robots());
 }
 
-Trial::Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
-             const Portion& portion)
+PortionTrial::PortionTrial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context,
+                           StepPace& pace, const Portion& portion)
     : simulation_(simulation), request_(request), context_(context), pace_(pace),
       sample_every_(request.sample_every > 0 ? request.sample_every : request.steps) {
   results_.reserve(portion.candidates.size());
@@ -53,7 +53,7 @@ Trial::Trial(Simulation& simulation, const EvaluationRequest& request, const Tri
   for (std::size_t i = 0; i < simulation.size(); ++i) size_ += size_of(simulation.robot(i));
 }
 
-bool Trial::run() {
+bool PortionTrial::run() {
   if (simulation_.size() == 0) return true;
   if (!settle()) return false;
   settled_ = simulation_.steps();
@@ -70,7 +70,7 @@ bool Trial::run() {
 }
 
 // Makes the steps before the start, or fewer if the evaluation stops.
-bool Trial::settle() {
+bool PortionTrial::settle() {
   while (simulation_.steps() < request_.settling && !context_.stopping()) {
     if (context_.cancelled()) return false;
     step(std::min(steps_per_call(), request_.settling - simulation_.steps()));
@@ -79,7 +79,7 @@ bool Trial::settle() {
 }
 
 // Goes on to this step of the trial, or not so far if the evaluation stops. Takes the samples on the way.
-bool Trial::advance(std::int64_t end) {
+bool PortionTrial::advance(std::int64_t end) {
   while (simulation_.size() > 0 && steps_done() < end && !context_.stopping()) {
     if (context_.cancelled()) return false;
     const std::int64_t count = std::min(steps_per_call(), end - steps_done());
@@ -94,18 +94,18 @@ bool Trial::advance(std::int64_t end) {
   return !context_.cancelled();
 }
 
-void Trial::step(std::int64_t steps) {
+void PortionTrial::step(std::int64_t steps) {
   timed(steps, [&] { simulation_.step(steps); });
 }
 
-void Trial::step_and_observe(std::int64_t steps) {
+void PortionTrial::step_and_observe(std::int64_t steps) {
   std::vector<Telemetry> samples;
   timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every_); });
   observe(samples, sample_every_);
 }
 
 template <class Call>
-void Trial::timed(std::int64_t steps, Call call) {
+void PortionTrial::timed(std::int64_t steps, Call call) {
   const auto start = std::chrono::steady_clock::now();
   {
     const UnionClock::Interval all(*context_.stepping), device(*context_.device_stepping);
@@ -120,17 +120,19 @@ void Trial::timed(std::int64_t steps, Call call) {
   context_.stepped(steps * static_cast<std::int64_t>(simulation_.size()));
 }
 
-std::int64_t Trial::steps_per_call() const {
+std::int64_t PortionTrial::steps_per_call() const {
   const std::size_t samples = std::max<std::size_t>(1, most_samples / simulation_.size());
   const double most = request_.sample_every > 0 ? static_cast<double>(samples * request_.sample_every) : 1e15;
   return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, most));
 }
 
-double Trial::seconds(std::int64_t steps) const { return simulation_.configuration().dt * static_cast<double>(steps); }
+double PortionTrial::seconds(std::int64_t steps) const {
+  return simulation_.configuration().dt * static_cast<double>(steps);
+}
 
-void Trial::observe_now() { observe(simulation_.telemetry(), steps_done() - observed_); }
+void PortionTrial::observe_now() { observe(simulation_.telemetry(), steps_done() - observed_); }
 
-void Trial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
+void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
   const std::size_t robots = measures_.size();
   oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
     for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
@@ -140,7 +142,7 @@ void Trial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
 
 // Asks about every robot. A check between two samples is a sample for the robots that it removes, and none for the
 // others: their results must not depend on the checks.
-void Trial::remove_losers() {
+void PortionTrial::remove_losers() {
   const std::size_t robots = simulation_.size();
   const std::int64_t now = steps_done();
   const bool is_sampled = observed_ == now;
@@ -171,7 +173,7 @@ void Trial::remove_losers() {
 }
 
 // By their present indices, ascending.
-void Trial::keep(std::span<const std::size_t> robots) {
+void PortionTrial::keep(std::span<const std::size_t> robots) {
   simulation_.keep(robots);
   size_ = 1;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -183,7 +185,7 @@ void Trial::keep(std::span<const std::size_t> robots) {
   measures_.erase(measures_.begin() + static_cast<std::ptrdiff_t>(robots.size()), measures_.end());
 }
 
-std::vector<Evaluation> Trial::results() {
+std::vector<Evaluation> PortionTrial::results() {
   std::vector<std::uint64_t> hashes;
   if (request_.hashes) hashes = simulation_.hashes();
   for (std::size_t i = 0; i < simulation_.size(); ++i) {

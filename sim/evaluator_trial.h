@@ -42,11 +42,11 @@ struct StepPace {
 //   loaded             0   .   1   2   3   4       candidate 1 cannot be used
 //   after a check      0   .   .   1   .   2       candidates 2 and 4 were removed: their results are complete
 //
-class Trial {
+class PortionTrial {
  public:
   // `portion` was loaded into the simulation.
-  Trial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
-        const Portion& portion);
+  PortionTrial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
+               const Portion& portion);
 
   // Returns false if the trial was cancelled.
   bool run();
