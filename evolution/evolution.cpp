@@ -178,6 +178,9 @@ std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& wa
   std::optional<std::vector<Assessment>> assessments = assessor.assess(genomes, interim_limits(), watch);
   if (!assessments) return std::nullopt;
   for (std::size_t i = 0; i < born.size(); ++i) born[i].assessment = std::move((*assessments)[i]);
+  const auto failed = [](const Individual& individual) { return individual.assessment.fate == Fate::failed; };
+  if (next_generation_ == 0 && std::ranges::all_of(born, failed))
+    throw InputError("generation 0", "no robot can be tried: " + born.front().assessment.problem);
   return select(std::move(born));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/material.h"
 #include "mercury/random.h"
@@ -15,13 +16,18 @@ namespace {
 constexpr double longest_delay = 100;  // of the muscles' start [s]
 constexpr double two_pi = 6.283185307179586;
 
+VoxelGrid grid_of(const Robot& robot) {
+  if (std::optional<VoxelGrid> grid = voxel_grid_of(robot)) return *std::move(grid);
+  if (const std::optional<CppnGenome> genome = cppn_genome_of(robot)) return paint(*genome);
+  throw InputError("damage", "only robots of voxels can lose some");
+}
+
 Robot without_some_voxels(const Robot& robot, double share, Random& random) {
-  std::optional<VoxelGrid> grid = voxel_grid_of(robot);
-  if (!grid) throw InputError("damage", robot.name + " is not made of voxels");
-  VoxelGrid damaged = *grid;
+  const VoxelGrid whole = grid_of(robot);
+  VoxelGrid damaged = whole;
   for (MaterialId& cell : damaged.cells)
     if (random.chance(share)) cell = air;
-  if (std::ranges::all_of(damaged.cells, [](MaterialId cell) { return cell == air; })) damaged = *grid;
+  if (std::ranges::all_of(damaged.cells, [](MaterialId cell) { return cell == air; })) damaged = whole;
   return make_voxel_robot(damaged, {.name = robot.name, .materials = robot.materials});
 }
 

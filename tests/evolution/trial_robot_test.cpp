@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "mercury/shell.h"
@@ -72,6 +73,14 @@ TEST(TrialRobot, DamageTakesAboutItsShareOfTheVoxels) {
   const auto lost = static_cast<double>(std::ranges::count(grid->cells, air));
   // Five standard deviations of the binomial distribution; loose parts go as well, at this share very few.
   EXPECT_NEAR(lost / voxels, 0.2, 5 * std::sqrt(0.2 * 0.8 / voxels) + 0.01);
+}
+
+TEST(TrialRobot, PaintedRobotsAreDamagedAndKeepTheirMaterials) {
+  const Robot painted = random_cppn_robot({.smallest = {8, 6, 6}, .largest = {8, 6, 6}}, 1);
+  const Robot damaged = trial_robot(painted, {.damage = 0.1}, 1, 0);
+  EXPECT_LT(damaged.springs.size(), painted.springs.size());
+  EXPECT_GT(damaged.springs.size(), painted.springs.size() / 3);
+  EXPECT_EQ(damaged.materials, painted.materials);
 }
 
 TEST(TrialRobot, RobotsWithoutVoxelsCannotBeDamaged) {

@@ -70,7 +70,8 @@ class Evolution {
   // Selects among the living and these children, which are assessed.
   Generation select(std::vector<Individual> children);
 
-  // All of it: one generation. Nothing if it is over, or if `watch` said to stop; then nothing has changed.
+  // All of it: one generation. Nothing if it is over, or if `watch` said to stop; then nothing has changed. Throws
+  // InputError if no robot of generation 0 can be tried.
   std::optional<Generation> advance(Assessor& assessor, const Watch& watch = {});
 
  private:

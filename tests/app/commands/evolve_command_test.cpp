@@ -300,6 +300,14 @@ TEST_F(EvolveCommand, MusclesOfAnyBody) {
   EXPECT_FALSE(std::ranges::equal(materials_of(last), materials_of(eel)));
 }
 
+TEST_F(EvolveCommand, SaysWhyNoRobotCanBeTried) {
+  const Outcome outcome =
+      evolve("run", {"--from", "shell", "--damage", "0.1", "--population", "4", "--seconds", "0.1", "--quiet"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.messages,
+            "mercury: generation 0: no robot can be tried: damage: only robots of voxels can lose some\n");
+}
+
 struct BadOptions {
   Arguments options;
   std::string message;
