@@ -312,6 +312,9 @@ struct BadOptions {
   Arguments options;
   std::string message;
 };
+void PrintTo(const BadOptions& bad, std::ostream* out) {
+  for (const std::string& option : bad.options) *out << option << ' ';
+}
 class EvolveOptions : public FolderTest, public testing::WithParamInterface<BadOptions> {};
 
 TEST_P(EvolveOptions, AreRefusedInOneLineBeforeAnythingIsMade) {
