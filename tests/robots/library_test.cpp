@@ -38,7 +38,7 @@ TEST(RobotLibrary, HasAtLeastTenRobotsOfEachEnvironmentInSmallFiles) {
       EXPECT_LT(file.file_size(), 300'000u) << file.path();
       bytes += file.file_size();
     }
-  EXPECT_LT(bytes, 3'000'000u);
+  EXPECT_LT(bytes, 2'500'000u);
 }
 
 TEST(RobotLibrary, BodiesAreClosedAndInOnePiece) {
