@@ -3,6 +3,8 @@
 #include "mercury/backend.h"
 
 #include <algorithm>
+#include <cstring>
+#include <new>
 
 #include "mercury/state.h"
 
@@ -29,6 +31,19 @@ class SavedStates {
   std::vector<State> states_;
   std::vector<RobotStatus> statuses_;
 };
+
+void mean(std::span<const Vec3> values, float* out) {
+  double x = 0, y = 0, z = 0;
+  for (const Vec3 value : values) {
+    x += static_cast<double>(value.x);
+    y += static_cast<double>(value.y);
+    z += static_cast<double>(value.z);
+  }
+  const double share = 1.0 / static_cast<double>(values.size());
+  out[0] = static_cast<float>(x * share);
+  out[1] = static_cast<float>(y * share);
+  out[2] = static_cast<float>(z * share);
+}
 
 }  // namespace
 
@@ -81,6 +96,35 @@ void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64
     now.step += every;
     report(now, samples.subspan(first, robots), statuses.subspan(first, robots));
   }
+}
+
+std::shared_ptr<void> Backend::allocate_shared(std::size_t bytes) const {
+  constexpr std::align_val_t alignment{256};  // of the memory that DLPack's consumers expect
+  void* const memory = ::operator new(bytes, alignment);
+  std::memset(memory, 0, bytes);
+  return {memory, [](void* data) { ::operator delete(data, alignment); }};
+}
+
+void Backend::copy_shared(void* to, const void* from, std::size_t bytes) const { std::memcpy(to, from, bytes); }
+
+void Backend::publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const {
+  std::vector<Vec3> values(mass_offsets.back());
+  const auto write_vectors = [&](float* per_mass, float* per_robot) {
+    if (per_mass) std::memcpy(per_mass, values.data(), values.size() * sizeof(Vec3));
+    for (std::size_t i = 0; per_robot && i + 1 < mass_offsets.size(); ++i)
+      mean(std::span(values).subspan(mass_offsets[i], mass_offsets[i + 1] - mass_offsets[i]), per_robot + 3 * i);
+  };
+  if (arrays.positions || arrays.centers) {
+    read_positions(values);
+    write_vectors(arrays.positions, arrays.centers);
+  }
+  if (arrays.velocities || arrays.center_velocities) {
+    read_velocities(values);
+    write_vectors(arrays.velocities, arrays.center_velocities);
+  }
+  if (!arrays.exploded) return;
+  std::ranges::transform(statuses(), arrays.exploded,
+                         [](const RobotStatus& status) { return status.exploded_step >= 0; });
 }
 
 }  // namespace mercury

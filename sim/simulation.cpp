@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -85,15 +86,26 @@ void Simulation::Parts::truncate(std::size_t size) {
   offsets.resize(size + 1);
   changed_tables.resize(size);
   explosions.resize(size);
+  lifts.resize(std::min(lifts.size(), size));
+}
+
+std::span<const float> Simulation::Parts::rest_lifts() {
+  if (lifts.size() == size()) return lifts;
+  const std::size_t known = std::min(lifts.size(), size());
+  lifts.resize(size());
+  if (is_land(configuration.environment))
+    oneapi::tbb::parallel_for(
+        known, size(), [&](std::size_t i) { lifts[i] = lift_to_floor(robots[i]->masses, configuration.environment); });
+  return lifts;
 }
 
 void Simulation::Parts::put_at_rest(std::size_t first) {
-  std::vector<float> lifts(size() - first);
-  if (is_land(configuration.environment))
-    oneapi::tbb::parallel_for(std::size_t{0}, lifts.size(), [&](std::size_t i) {
-      lifts[i] = lift_to_floor(robots[first + i]->masses, configuration.environment);
-    });
-  backend->put_at_rest(std::span(pointers).subspan(first), first, lifts);
+  backend->put_at_rest(std::span(pointers).subspan(first), first, rest_lifts().subspan(first));
+}
+
+void Simulation::Parts::after_exchange(std::span<const std::size_t> kept) {
+  shared_state.forget();
+  shared_actuation.rearrange(*backend, robots, changed_tables, kept);
 }
 
 Simulation::Simulation(const Configuration& configuration, std::span<const Robot> robots)
@@ -133,6 +145,9 @@ std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots
     throw;
   }
   if (is_land(parts_->configuration.environment)) parts_->put_at_rest(first);
+  std::vector<std::size_t> kept(first);
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  parts_->after_exchange(kept);
   return first;
 }
 
@@ -167,6 +182,8 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   parts_->explosions = std::move(explosions);
   parts_->offsets = std::move(offsets);
   parts_->changed_tables = std::move(tables);
+  parts_->lifts.clear();
+  parts_->after_exchange(robots);
 }
 
 std::size_t Simulation::size() const { return parts_->size(); }
@@ -199,7 +216,19 @@ void Simulation::set_clock(const Clock& clock) {
 
 void Simulation::step(std::int64_t steps) {
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
-  if (steps > 0 && size() > 0) parts_->backend->step(parts_->clock, steps);
+  if (steps > 0 && size() > 0) {
+    parts_->before_step();
+    parts_->backend->step(parts_->clock, steps);
+    parts_->after_change();
+  }
+  parts_->clock.step += steps;
+}
+
+void Simulation::step_in_stream(std::int64_t steps, void* cuda_stream) {
+  if (cuda_device() < 0) return step(steps);
+  if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
+  if (steps > 0 && size() > 0)
+    parts_->backend->step_in_stream(parts_->clock, steps, parts_->shared_state.targets(), cuda_stream);
   parts_->clock.step += steps;
 }
 
@@ -208,7 +237,11 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
   std::vector<RobotStatus> statuses(samples.size());
-  if (!samples.empty()) parts_->backend->step_and_report(parts_->clock, steps, every, samples, statuses);
+  if (!samples.empty()) {
+    parts_->before_step();
+    parts_->backend->step_and_report(parts_->clock, steps, every, samples, statuses);
+    parts_->after_change();
+  }
   parts_->clock.step += steps;
   for (std::size_t i = 0; i < samples.size(); ++i) parts_->add_explosion(samples[i], i % size(), statuses[i]);
   return samples;
@@ -218,6 +251,29 @@ void Simulation::reset() {
   parts_->clock = Clock{.dt = parts_->configuration.dt};
   parts_->explosions.assign(size(), {});
   parts_->put_at_rest(0);
+  parts_->after_change();
+}
+
+// A run of robots at a time.
+void Simulation::reset(std::span<const std::uint8_t> mask) {
+  if (mask.size() != size()) throw std::invalid_argument("one element per robot is needed");
+  const std::span<const float> lifts = parts_->rest_lifts();
+  for (std::size_t begin = 0, end = 0; begin < size(); begin = end + 1) {
+    while (begin < size() && !mask[begin]) ++begin;
+    for (end = begin; end < size() && mask[end];) parts_->explosions[end++] = {};
+    if (begin < end)
+      parts_->backend->put_at_rest(std::span(parts_->pointers).subspan(begin, end - begin), begin,
+                                   lifts.subspan(begin, end - begin));
+  }
+  parts_->after_change();
+}
+
+// What is known of an explosion ends with the next one, which is at a later step.
+void Simulation::reset_in_stream(const std::uint8_t* mask, void* cuda_stream) {
+  if (cuda_device() < 0) return reset(std::span(mask, size()));
+  if (size() > 0)
+    parts_->backend->put_at_rest_in_stream(parts_->pointers, parts_->rest_lifts(), mask, parts_->shared_state.targets(),
+                                           cuda_stream);
 }
 
 const Configuration& Simulation::configuration() const { return parts_->configuration; }
@@ -233,6 +289,7 @@ void Simulation::configure(const Configuration& configuration) {
   }
   const bool comes_to_land = is_land(configuration.environment) && !is_land(parts_->configuration.environment);
   parts_->configuration = configuration;
+  parts_->lifts.clear();
   parts_->backend->configure(configuration);
   if (!comes_to_land) return;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -241,6 +298,7 @@ void Simulation::configure(const Configuration& configuration) {
     for (Vec3& x : now.positions) x += up;
     parts_->backend->write(i, now.positions, now.velocities);
   }
+  parts_->after_change();
 }
 
 }  // namespace mercury

@@ -36,6 +36,7 @@ void Simulation::set_material(std::size_t robot, MaterialId id, const Material& 
   if (!changed) changed = std::make_unique<MaterialTable>(parts_->table(robot));
   (*changed)[id] = material;
   parts_->backend->write_materials(robot, *changed);
+  parts_->shared_actuation.materials_changed();
 }
 
 void Simulation::set_materials(std::span<const Material> tables) {
@@ -52,6 +53,7 @@ void Simulation::set_materials(std::span<const Material> tables) {
     std::ranges::copy(tables.subspan(i * max_materials, max_materials), changed->begin());
   }
   parts_->backend->write_materials(tables);
+  parts_->shared_actuation.materials_changed();
 }
 
 std::vector<Material> Simulation::materials() const {

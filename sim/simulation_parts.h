@@ -3,7 +3,6 @@
 // explosions, telemetry) and simulation_controls.cpp (materials, perturbations).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,11 +10,9 @@
 #include <vector>
 
 #include "mercury/simulation.h"
+#include "sim/shared_arrays.h"
 
 namespace mercury {
-
-// A robot's material table by id, max_materials elements.
-using MaterialTable = std::array<Material, max_materials>;
 
 // When a robot exploded and by which spring. A backend reports only the step and perhaps a mass; the rest takes a
 // search over the frozen robot, so it is done when somebody first asks, and kept. The frozen state cannot change
@@ -36,7 +33,10 @@ struct Simulation::Parts {
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
   double check_seconds = 0;                                    // LoadTimes::check
-  std::unique_ptr<Backend> backend;                            // last: released before the robots
+  std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
+  SharedState shared_state;
+  SharedActuation shared_actuation;
+  std::unique_ptr<Backend> backend;  // last: released before the robots
 
   // Throws as Simulation's constructors do.
   Parts(const Configuration& initial, std::unique_ptr<Backend> stepped_by,
@@ -53,6 +53,8 @@ struct Simulation::Parts {
   void append(std::span<const std::shared_ptr<const Robot>> added);
   // Forgets the robots from this index on, without the backend.
   void truncate(std::size_t size);
+  // One per robot: how much higher it stands at rest than in its file, so that it is on the floor if there is one [m].
+  std::span<const float> rest_lifts();
   // Puts robots from this index on at rest, on the floor if there is one.
   void put_at_rest(std::size_t first);
 
@@ -71,6 +73,12 @@ struct Simulation::Parts {
     out.culprit_spring = known.culprit_spring;
   }
   void change_clock(const Clock& changed);
+
+  // To be called before the backend steps, and after it has changed the state.
+  void before_step() { shared_actuation.apply(*backend, robots, changed_tables); }
+  void after_change() const { shared_state.publish(*backend, offsets); }
+  // To be called when robots have come or gone. `kept` = the old indices of the first ones.
+  void after_exchange(std::span<const std::size_t> kept);
 };
 
 // How far a robot is lifted (or lowered) so that its lowest mass is at z = 0 on land [m]; 0 in other environments.

@@ -85,6 +85,7 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
   parts_->backend->write(robot, positions, velocities);
   parts_->backend->set_status(robot, {});
   parts_->explosions[robot] = {};
+  parts_->after_change();
 }
 
 void Simulation::set_state(std::size_t robot, const State& state) {
@@ -92,6 +93,7 @@ void Simulation::set_state(std::size_t robot, const State& state) {
   if (!state.exploded) return;
   parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
   parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
+  parts_->after_change();
 }
 
 std::vector<Telemetry> Simulation::telemetry() const {

@@ -39,6 +39,23 @@ struct RobotStatus {
   std::uint32_t bad_mass = no_mass;  // a mass whose position or force left the accepted range, if one is known
 };
 
+// Shared arrays that publish() fills (Simulation::shared_state()); null pointers are left out.
+struct PublishedArrays {
+  float *positions = nullptr, *velocities = nullptr;       // [mass][3]
+  float *centers = nullptr, *center_velocities = nullptr;  // [robot][3]
+  std::uint8_t* exploded = nullptr;                        // [robot]
+  bool empty() const { return !positions && !velocities && !centers && !center_velocities && !exploded; }
+};
+
+// Where a program writes what drives the actuators (Simulation::actuation()), and what they drive.
+struct ActuationSources {
+  static constexpr std::uint8_t no_actuator = 255;
+  const float *amplitude = nullptr, *frequency = nullptr, *phase = nullptr, *drive = nullptr;  // [robot][columns]
+  std::size_t columns = 0;
+  std::span<const std::uint8_t>
+      actuator_of;  // [robot][max_materials], the material's column or no_actuator; host memory
+};
+
 // What a batch is given besides its robots.
 struct BatchSettings {
   Configuration configuration;
@@ -101,6 +118,28 @@ class Backend {
   // See the functions of the same names in Simulation. The defaults are right unless one CUDA device holds all robots.
   virtual int cuda_device() const { return -1; }
   virtual void copy_positions(float* /*device_out*/) const {
+    throw std::logic_error("these robots are on no CUDA device");
+  }
+
+  // Zeros in the memory that shared arrays are in, and a copy between any two places of it and of the host's memory,
+  // which is done when the function returns. The defaults are right unless one CUDA device holds all robots.
+  virtual std::shared_ptr<void> allocate_shared(std::size_t bytes) const;
+  virtual void copy_shared(void* to, const void* from, std::size_t bytes) const;
+  // Writes the present state of all robots into shared arrays. Returns when it is done. `mass_offsets`: as
+  // Simulation::mass_offsets(). The default reads everything back.
+  virtual void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const;
+  // From now on every step begins with reading these. They stay valid until the next call, load(), add() or keep(),
+  // after which there are none. Returns false if the backend does not; Simulation then changes materials instead.
+  virtual bool set_actuation(const ActuationSources& /*sources*/) { return false; }
+  // step() and publish(), or put_at_rest() of the robots whose element of `mask` (shared memory, one per robot) is not
+  // 0 and publish(), in a stream as Simulation::step_in_stream() says. Called only if cuda_device() is not -1.
+  virtual void step_in_stream(const Clock& /*clock*/, std::int64_t /*steps*/, const PublishedArrays& /*arrays*/,
+                              void* /*cuda_stream*/) {
+    throw std::logic_error("these robots are on no CUDA device");
+  }
+  virtual void put_at_rest_in_stream(std::span<const Robot* const> /*robots*/, std::span<const float> /*lifts*/,
+                                     const std::uint8_t* /*mask*/, const PublishedArrays& /*arrays*/,
+                                     void* /*cuda_stream*/) {
     throw std::logic_error("these robots are on no CUDA device");
   }
 

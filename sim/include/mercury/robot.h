@@ -29,6 +29,13 @@ inline constexpr float min_rest_length = 0.001f;         // [m] (paper, III.B)
 inline constexpr std::size_t max_masses = 65535;         // mass indices have 16 bits
 inline constexpr std::uint32_t no_spring = 0xffffffffu;  // stands for no index in Robot::springs
 
+// Muscles that a program drives together (Simulation::actuation()): all springs of these materials.
+struct Actuator {
+  std::string name;
+  std::vector<MaterialId> materials;
+  friend bool operator==(const Actuator&, const Actuator&) = default;
+};
+
 struct Robot {
   std::string name;
   std::vector<Material> materials;          // by id; empty = the 254 default materials
@@ -36,12 +43,24 @@ struct Robot {
   std::vector<Vec3> masses;                 // positions at rest [m]
   std::vector<Spring> springs;
   std::vector<Face> faces;
-  std::string origin;  // how the robot was made, as JSON text; empty = unknown
+  std::string origin;               // how the robot was made, as JSON text; empty = unknown
+  std::vector<Actuator> actuators;  // empty = those that actuators_of() finds
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
 // The robot's own materials, or the default materials. Refers to the robot.
 std::span<const Material> materials_of(const Robot& robot);
+
+// The actuators that a program drives: those that the robot names. If it names none, muscles that move alike belong to
+// one actuator: those materials with an amplitude, of at least one spring, that have the same frequency and phase. Such
+// actuators are in the order of their first material and have its name ("muscle 3"; "material 3" if it has none).
+std::vector<Actuator> actuators_of(const Robot& robot);
+
+// Makes an actuator of these springs, by their indices. Springs of an actuator need materials that no other springs
+// have. So each of their materials is copied, unless no other spring has it. A robot with the default table gets a
+// table of its own, with air and the materials that its springs have. Throws InputError if there is no such spring, if
+// one of them has an actuator already, or if the table would have more than max_materials.
+void add_actuator(Robot& robot, const std::string& name, std::span<const std::uint32_t> springs);
 
 // Distance of two masses at rest [m], the default of Spring::rest_length.
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
@@ -57,7 +76,8 @@ std::uint64_t topology_key(const Robot& robot);
 // - every spring joins two different masses, has a material of the table other than air, and a finite rest length of at
 //   least min_rest_length,
 // - every face has three different masses,
-// - every material is valid.
+// - every material is valid,
+// - every actuator has a name of its own and at least one material, and no material belongs to two.
 void validate(const Robot& robot);
 
 }  // namespace mercury

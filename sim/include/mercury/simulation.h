@@ -15,6 +15,7 @@
 #include "mercury/material.h"
 #include "mercury/perturbation.h"
 #include "mercury/robot.h"
+#include "mercury/shared_array.h"
 #include "mercury/state.h"
 #include "mercury/telemetry.h"
 #include "mercury/vec3.h"
@@ -92,8 +93,17 @@ class Simulation {
   // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
   std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
 
+  // The same as step(), queued in a CUDA stream (a cudaStream_t) of cuda_device(), behind what is there. What follows
+  // in the stream comes after the steps. Returns at once. Robots that no CUDA device holds, or several, are stepped at
+  // once, and the stream has no effect.
+  void step_in_stream(std::int64_t steps, void* cuda_stream);
+
   // Puts every robot back to its rest pose at time 0; none has exploded. Materials keep their changes.
   void reset();
+  // Puts some robots back to their rest pose: those whose element of `mask`, one per robot, is not 0. Time goes on.
+  void reset(std::span<const std::uint8_t> mask);
+  // The same with a mask in the memory of cuda_device(), queued as step_in_stream() does.
+  void reset_in_stream(const std::uint8_t* mask, void* cuda_stream);
   // Changes solver, environment, dt or damping from now on. State and time stay, except that robots that come to land
   // are set down on the floor. Throws InputError for a bad value, std::invalid_argument if the device differs.
   void configure(const Configuration& configuration);
@@ -112,6 +122,17 @@ class Simulation {
   // default stream and does not wait for it. Throws std::logic_error if cuda_device() is -1.
   void copy_positions(float* device_out) const;
 
+  // Shared arrays, in the memory of cuda_device(), or of the host if that is -1. The first call makes the array. Every
+  // function that steps or changes robots updates it before it returns, and the functions with a stream before what
+  // follows in the stream. What a program writes into it has no effect on the robots. add() and keep() make other
+  // arrays; the old ones stay as they are.
+  SharedArray<float> shared_state(StateArray which);
+  SharedArray<std::uint8_t> shared_exploded();  // [robot][1], 1 = has exploded
+  // What drives the actuators of all robots. At first, every actuator has the values that its materials have in common,
+  // NaN where they differ, and no drive. Every step() and step_in_stream() reads the arrays when it begins. add() and
+  // keep() make other arrays with the same values for the robots that stay.
+  const Actuation& actuation();
+
   // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterwards.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   // Restores an explosion as well.
@@ -125,7 +146,8 @@ class Simulation {
   // Of all robots, on all cores.
   std::vector<std::uint64_t> hashes() const;
 
-  // A robot's present material. Throws std::out_of_range if the robot's table has no such id.
+  // A robot's present material, without what actuation() changes. Throws std::out_of_range if the robot's table has no
+  // such id.
   Material material(std::size_t robot, MaterialId id) const;
   // Applies to all springs of that material from the next step on. Throws InputError if the material is not valid.
   void set_material(std::size_t robot, MaterialId id, const Material& material);

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arrays that a Simulation shares with programs: parts of the state, and what drives the actuators.
+#include "sim/shared_arrays.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "mercury/simulation.h"
+#include "sim/simulation_parts.h"
+
+namespace mercury {
+namespace {
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+
+template <class T>
+SharedArray<T> allocate(const Backend& backend, std::size_t rows, std::size_t columns) {
+  SharedArray<T> array{.rows = rows, .columns = columns, .cuda_device = backend.cuda_device()};
+  if (const std::size_t size = rows * columns)
+    array.data = std::static_pointer_cast<T>(backend.allocate_shared(size * sizeof(T)));
+  return array;
+}
+
+std::vector<float> read(const Backend& backend, const SharedArray<float>& array) {
+  std::vector<float> values(array.rows * array.columns);
+  if (!values.empty()) backend.copy_shared(values.data(), array.data.get(), values.size() * sizeof(float));
+  return values;
+}
+
+// What the materials of an actuator have in common, NaN where they differ.
+ActuatorSetting common_setting(const Actuator& actuator, std::span<const Material> materials) {
+  const Material& first = materials[actuator.materials.front()];
+  ActuatorSetting common{first.amplitude, first.frequency, first.phase, none};
+  for (const MaterialId id : actuator.materials) {
+    if (materials[id].amplitude != first.amplitude) common.amplitude = none;
+    if (materials[id].frequency != first.frequency) common.frequency = none;
+    if (materials[id].phase != first.phase) common.phase = none;
+  }
+  return common;
+}
+
+constexpr SharedArray<float> Actuation::*fields[] = {&Actuation::amplitude, &Actuation::frequency, &Actuation::phase,
+                                                     &Actuation::drive};
+
+}  // namespace
+
+SharedArray<float> SharedState::array(const Backend& backend, std::span<const std::size_t> mass_offsets,
+                                      StateArray which) {
+  SharedArray<float>& wanted = arrays_[static_cast<std::size_t>(which)];
+  const bool per_mass = which == StateArray::positions || which == StateArray::velocities;
+  const std::size_t rows = per_mass ? mass_offsets.back() : mass_offsets.size() - 1;
+  if (!wanted.data || wanted.rows != rows) {
+    wanted = allocate<float>(backend, rows, 3);
+    publish(backend, mass_offsets);
+  }
+  return wanted;
+}
+
+SharedArray<std::uint8_t> SharedState::exploded(const Backend& backend, std::span<const std::size_t> mass_offsets) {
+  const std::size_t robots = mass_offsets.size() - 1;
+  if (!exploded_.data || exploded_.rows != robots) {
+    exploded_ = allocate<std::uint8_t>(backend, robots, 1);
+    publish(backend, mass_offsets);
+  }
+  return exploded_;
+}
+
+PublishedArrays SharedState::targets() const {
+  return {.positions = arrays_[0].data.get(),
+          .velocities = arrays_[1].data.get(),
+          .centers = arrays_[2].data.get(),
+          .center_velocities = arrays_[3].data.get(),
+          .exploded = exploded_.data.get()};
+}
+
+void SharedState::publish(const Backend& backend, std::span<const std::size_t> mass_offsets) const {
+  if (const PublishedArrays arrays = targets(); !arrays.empty()) backend.publish(mass_offsets, arrays);
+}
+
+void SharedState::forget() { *this = {}; }
+
+const Actuation& SharedActuation::arrays(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+                                         std::span<const std::unique_ptr<MaterialTable>> tables) {
+  if (!made_) make(backend, robots, tables, {}, {});
+  return arrays_;
+}
+
+void SharedActuation::rearrange(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+                                std::span<const std::unique_ptr<MaterialTable>> tables,
+                                std::span<const std::size_t> kept) {
+  if (!made_) return;
+  std::vector<float> old;
+  for (const auto field : fields) std::ranges::copy(read(backend, arrays_.*field), std::back_inserter(old));
+  make(backend, robots, tables, old, kept);
+}
+
+// `old` = all four arrays as they were; `kept` = the old rows of the first robots.
+void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+                           std::span<const std::unique_ptr<MaterialTable>> tables, std::span<const float> old,
+                           std::span<const std::size_t> kept) {
+  std::vector<std::vector<Actuator>> actuators;
+  std::size_t columns = 0;
+  for (const auto& robot : robots) {
+    actuators.push_back(actuators_of(*robot));
+    columns = std::max(columns, actuators.back().size());
+  }
+  actuator_of_.assign(robots.size() * max_materials, ActuationSources::no_actuator);
+  const std::size_t old_columns = arrays_.drive.columns, old_size = arrays_.drive.rows * old_columns;
+  const std::size_t size = robots.size() * columns;
+  std::vector<float> values(4 * size, none);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::span<const Material> materials =
+        tables[i] ? std::span<const Material>(*tables[i]) : materials_of(*robots[i]);
+    for (std::size_t a = 0; a < actuators[i].size(); ++a) {
+      for (const MaterialId id : actuators[i][a].materials)
+        actuator_of_[i * max_materials + id] = static_cast<std::uint8_t>(a);
+      const ActuatorSetting common = common_setting(actuators[i][a], materials);
+      const float initial[] = {common.amplitude, common.frequency, common.phase, common.drive};
+      for (std::size_t field = 0; field < 4; ++field)
+        values[field * size + i * columns + a] =
+            i < kept.size() ? old[field * old_size + kept[i] * old_columns + a] : initial[field];
+    }
+  }
+  for (std::size_t field = 0; field < 4; ++field) {
+    SharedArray<float>& array = arrays_.*fields[field];
+    array = allocate<float>(backend, robots.size(), columns);
+    if (size > 0) backend.copy_shared(array.data.get(), values.data() + field * size, size * sizeof(float));
+  }
+  made_ = true;
+  applied_.assign(4 * size, 0);
+  applied_is_known_ = false;
+  by_backend_ = backend.set_actuation({.amplitude = arrays_.amplitude.data.get(),
+                                       .frequency = arrays_.frequency.data.get(),
+                                       .phase = arrays_.phase.data.get(),
+                                       .drive = arrays_.drive.data.get(),
+                                       .columns = columns,
+                                       .actuator_of = actuator_of_});
+}
+
+// Robots are written whose settings are not, bit for bit, those of the last step.
+void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+                            std::span<const std::unique_ptr<MaterialTable>> tables) {
+  if (!made_ || by_backend_) return;
+  const std::size_t columns = arrays_.drive.columns, size = robots.size() * columns;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    bool same = applied_is_known_;
+    for (std::size_t field = 0; field < 4; ++field) {
+      const float* const row = (arrays_.*fields[field]).data.get() + i * columns;
+      std::uint32_t* const applied = applied_.data() + field * size + i * columns;
+      for (std::size_t a = 0; a < columns; ++a) {
+        const auto bits = std::bit_cast<std::uint32_t>(row[a]);
+        same = same && applied[a] == bits;
+        applied[a] = bits;
+      }
+    }
+    if (same) continue;
+    MaterialTable table{};
+    std::ranges::copy(tables[i] ? std::span<const Material>(*tables[i]) : materials_of(*robots[i]), table.begin());
+    for (std::size_t id = 0; id < max_materials; ++id) {
+      const std::size_t a = actuator_of_[i * max_materials + id];
+      if (a == ActuationSources::no_actuator) continue;
+      const std::size_t at = i * columns + a;
+      table[id] = actuated(table[id], {arrays_.amplitude.data.get()[at], arrays_.frequency.data.get()[at],
+                                       arrays_.phase.data.get()[at], arrays_.drive.data.get()[at]});
+    }
+    backend.write_materials(i, table);
+  }
+  applied_is_known_ = true;
+}
+
+SharedArray<float> Simulation::shared_state(StateArray which) {
+  return parts_->shared_state.array(*parts_->backend, parts_->offsets, which);
+}
+SharedArray<std::uint8_t> Simulation::shared_exploded() {
+  return parts_->shared_state.exploded(*parts_->backend, parts_->offsets);
+}
+const Actuation& Simulation::actuation() {
+  return parts_->shared_actuation.arrays(*parts_->backend, parts_->robots, parts_->changed_tables);
+}
+
+}  // namespace mercury
