@@ -5,6 +5,7 @@ option(MERCURY_APP "Build the program mercury (needs OpenGL headers, CLI11, fmt,
 option(MERCURY_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MERCURY_BENCH "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(MERCURY_NN "Network robots; their exact geometry needs CGAL (its parts under the LGPL), GMP and MPFR" ON)
+option(MERCURY_PYTHON "Build the Python package mercurysim (needs the Python package nanobind)" OFF)
 option(MERCURY_MPI "Evolution on several hosts by MPI, if it is found" ON)
 option(MERCURY_WERROR "Treat warnings in Mercury's own code as errors" ${PROJECT_IS_TOP_LEVEL})
 set(MERCURY_CUDA "AUTO" CACHE STRING "CUDA backend: AUTO (if nvcc is found), ON (required), OFF")

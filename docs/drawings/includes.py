@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/house"))
 import include_rules  # noqa: E402
 
-LEFT_OUT = {"bench", "tests", "examples"}  # on top of everything
+LEFT_OUT = {"python", "bench", "tests", "examples"}  # on top of everything
 
 # Folder: (middle, row from the top, width, color, what it is).
 PLACES = {

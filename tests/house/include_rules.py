@@ -44,6 +44,7 @@ ALLOWED = {
     "app/window/panels": "sim/api robots/api evolution/api app/options app/scene app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
     "app/commands": "sim/api robots/api evolution/api evolution robots render app/base app/recording app/scene app/video app/options app/window/toolkit app/window",
+    "python": "sim/api robots/api evolution/api render app/base app/recording app/scene app/video",
     "bench": "*",
     "tests": "*",
     "examples": "sim/api robots/api evolution/api",
@@ -61,7 +62,7 @@ SUBJECTS = {
     "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app", "bench"}),
     "CUDA-OpenGL interop": (r"cuda_gl_interop|cuda_egl_interop|cudaGL|cudaEGL", {"app"}),
     "CUDA": (r"cuda|cooperative_groups|cub/|thrust/|nvrtc|device_launch", {"sim", "app", "bench"}),
-    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "evolution", "render", "app", "bench"}),
+    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "evolution", "render", "app", "python", "bench"}),
     "CGAL": (r"CGAL/", {"robots"}),
     "muParser": (r"muParser", {"evolution"}),
 }

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mercury: thousands of soft robots at once, on a GPU or on the cores of a CPU.
+
+    import mercurysim
+
+    robots = mercurysim.random_voxel(64, seed=1)
+    batch = mercurysim.Batch(robots, environment=mercurysim.Ocean())
+    batch.step(1000)
+    print(batch.telemetry()["center_of_mass"])
+"""
+
+from ._mercury import (
+    Array,
+    Batch,
+    DeviceError,
+    InputError,
+    Land,
+    Ocean,
+    OceanSimple,
+    Robot,
+    load,
+    random_network,
+    random_painted,
+    random_shell,
+    random_voxel,
+)
+
+__all__ = [
+    "Array",
+    "Batch",
+    "DeviceError",
+    "InputError",
+    "Land",
+    "Ocean",
+    "OceanSimple",
+    "Robot",
+    "load",
+    "random_network",
+    "random_painted",
+    "random_shell",
+    "random_voxel",
+]

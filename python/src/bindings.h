@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the module _mercury, one per file, and the types that they share.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <memory>
+#include <vector>
+
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+
+namespace mercury::python {
+
+namespace nb = nanobind;
+
+// A robot as Python has it: it never changes, so batches share it.
+struct SharedRobot {
+  std::shared_ptr<const Robot> robot;
+};
+
+using SharedRobots = std::vector<std::shared_ptr<const Robot>>;
+
+// The robots of a Robot, or of a sequence of them. Throws TypeError.
+SharedRobots robots_of(nb::handle robots);
+
+// The environment of an Ocean, OceanSimple or Land, or of a name; None = Ocean(). Throws TypeError, InputError.
+Environment environment_of(nb::handle environment);
+
+void bind_errors(nb::module_& module);
+void bind_robot(nb::module_& module);
+void bind_generators(nb::module_& module);
+void bind_environments(nb::module_& module);
+void bind_array(nb::module_& module);
+void bind_batch(nb::module_& module);
+
+}  // namespace mercury::python

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/src/bindings.h"
+
+NB_MODULE(_mercury, module) {
+  using namespace mercury::python;
+  bind_errors(module);
+  bind_robot(module);
+  bind_generators(module);
+  bind_environments(module);
+  bind_array(module);
+  bind_batch(module);
+}
