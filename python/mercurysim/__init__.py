@@ -23,6 +23,7 @@ from ._mercury import (
     random_painted,
     random_shell,
     random_voxel,
+    voxel,
 )
 
 __all__ = [
@@ -39,4 +40,5 @@ __all__ = [
     "random_painted",
     "random_shell",
     "random_voxel",
+    "voxel",
 ]
