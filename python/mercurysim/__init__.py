@@ -10,6 +10,7 @@
 """
 
 from ._mercury import (
+    Actuation,
     Array,
     Batch,
     DeviceError,
@@ -27,6 +28,7 @@ from ._mercury import (
 )
 
 __all__ = [
+    "Actuation",
     "Array",
     "Batch",
     "DeviceError",

@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -13,22 +14,37 @@
 
 namespace mercury::python {
 
+// The CUDA stream of a batch's last work, which its arrays ask for. A null pointer is the legacy default stream.
+using LastStream = std::shared_ptr<std::atomic<void*>>;
+
 struct Array {
-  std::shared_ptr<void> memory;  // kept as long as anybody uses it
+  std::shared_ptr<void> memory;  // kept as long as anybody uses it; not null on the host
   nanobind::dlpack::dtype dtype;
   std::vector<std::size_t> shape;
   int cuda_device = -1;  // -1 = the host's memory
   bool writable = false;
+  LastStream last_stream;
+
+  bool on_host() const { return cuda_device < 0; }
+  std::size_t size() const;  // elements
+  std::size_t bytes() const { return size() * dtype.bits / 8; }
 };
 
 // (rows, columns), or (rows,) for one column if `flat`.
 template <class Element, class T>
-Array array_of(const SharedArray<T>& shared, bool writable, bool flat = false) {
-  return {.memory = shared.data,
-          .dtype = nanobind::dtype<Element>(),
-          .shape = flat ? std::vector{shared.rows} : std::vector{shared.rows, shared.columns},
-          .cuda_device = shared.cuda_device,
-          .writable = writable};
+Array array_of(const SharedArray<T>& shared, LastStream last_stream, bool writable, bool flat = false) {
+  Array array{.memory = shared.data,
+              .dtype = nanobind::dtype<Element>(),
+              .shape = flat ? std::vector{shared.rows} : std::vector{shared.rows, shared.columns},
+              .cuda_device = shared.cuda_device,
+              .writable = writable,
+              .last_stream = std::move(last_stream)};
+  if (!array.memory && array.on_host()) array.memory = std::make_shared<double>(0);  // an address for no elements
+  return array;
 }
+
+// The stream that a caller names: None = the legacy default stream, a handle, or an object with __cuda_stream__(),
+// cuda_stream (PyTorch) or ptr (CuPy). Throws TypeError.
+void* stream_from(nanobind::handle stream);
 
 }  // namespace mercury::python

@@ -1,55 +1,220 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch: robots that are stepped through time.
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
+#include "python/src/batch.h"
 
-#include "mercury/simulation.h"
-#include "python/src/array.h"
-#include "python/src/bindings.h"
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "mercury/cuda_devices.h"
+#include "mercury/error.h"
+#include "python/src/arguments.h"
 
 namespace mercury::python {
 namespace {
 
-struct Batch {
-  Simulation simulation;
-};
+double springs_of(const SharedRobots& robots) {
+  double springs = 0;
+  for (const auto& robot : robots) springs += static_cast<double>(robot->springs.size());
+  return springs;
+}
+
+// Of a portion of steps: Ctrl-C has to wait for about a tenth of a second. The CPU begins with a guess.
+constexpr double cuda_springs_at_once = 3e10, cpu_springs_at_once = 2e7, cpu_seconds_at_once = 0.1;
+constexpr std::int64_t most_cuda_steps_at_once = 20000;
+
+std::int64_t portion_of(double springs_at_once, double springs, std::int64_t most) {
+  return static_cast<std::int64_t>(
+      std::clamp(springs_at_once / std::max(1.0, springs), 1.0, static_cast<double>(most)));
+}
 
 }  // namespace
 
-void bind_batch(nb::module_& module) {
-  nb::class_<Batch>(module, "Batch", "Robots that are stepped through time together, each in its own space.")
-      .def(
-          "__init__",
-          [](Batch* self, nb::handle robots, nb::handle environment, const std::string& solver, double dt,
-             double damping, const std::string& device, int threads) {
-            Configuration configuration{.dt = dt,
-                                        .damping = damping,
-                                        .solver = solver_named(solver),
-                                        .environment = environment_of(environment),
-                                        .device = device_named(device)};
-            configuration.device.threads = threads;
-            const SharedRobots shared = robots_of(robots);
-            const nb::gil_scoped_release release;
-            new (self) Batch{Simulation(configuration, shared)};
-          },
-          nb::arg("robots"), nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
-          nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0)
-      .def("__len__", [](const Batch& self) { return self.simulation.size(); })
-      .def_prop_ro(
-          "time", [](const Batch& self) { return self.simulation.time(); }, "Simulated time [s].")
-      .def(
-          "step",
-          [](Batch& self, std::int64_t steps) {
-            const nb::gil_scoped_release release;
-            self.simulation.step(steps);
-          },
-          nb::arg("n") = 1, "Advances every robot that has not exploded by `n` time steps.")
-      .def_prop_ro(
-          "positions",
-          [](Batch& self) { return array_of<float>(self.simulation.shared_state(StateArray::positions), false); },
-          "Positions of all masses, (masses, 3) float32 [m].")
-      .def(
-          "hash", [](const Batch& self, std::size_t robot) { return self.simulation.hash(robot); }, nb::arg("robot"));
+Batch::Batch(const Configuration& configuration, SharedRobots robots) : robots_(std::move(robots)) {
+  const ReleasedGil released;
+  simulation_ = std::make_unique<Simulation>(configuration, robots_);
+  change_robots();
+}
+
+// Waits for what is queued on the device.
+Batch::~Batch() {
+  const ReleasedGil released;
+  simulation_.reset();
+}
+
+void Batch::change_robots() {
+  springs_ = springs_of(robots_);
+  steps_at_once_ = simulation_->cuda_device() >= 0
+                       ? portion_of(cuda_springs_at_once, springs_, most_cuda_steps_at_once)
+                       : portion_of(cpu_springs_at_once, springs_, std::numeric_limits<std::int32_t>::max());
+  ++version_;
+}
+
+void Batch::forget_arrays() { arrays_ = {}; }
+
+void Batch::step(std::int64_t steps, nb::handle stream) {
+  if (steps < 0) throw InputError("n", std::to_string(steps) + " is not accepted; give 0 or more steps");
+  void* const cuda_stream = stream_from(stream);
+  for (bool first = true; first || steps > 0; first = false) {
+    if (!first && PyErr_CheckSignals() != 0) throw nb::python_error();
+    const ReleasedGil released;
+    const std::lock_guard lock(mutex_);
+    if (steps > std::numeric_limits<std::int64_t>::max() - simulation_->steps())
+      throw InputError("n", std::to_string(steps) + " is too large; a batch counts up to 2^63 steps");
+    const std::int64_t count = std::min(steps, steps_at_once_);
+    if (const int device = simulation_->cuda_device(); device >= 0) {
+      if (!first) synchronize_cuda_device(device);
+      simulation_->step_in_stream(count, cuda_stream);
+      *last_stream_ = cuda_stream;
+    } else {
+      const auto start = std::chrono::steady_clock::now();
+      simulation_->step(count);
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (seconds > cpu_seconds_at_once)
+        steps_at_once_ = std::max<std::int64_t>(1, count / 2);
+      else if (count == steps_at_once_ && seconds < cpu_seconds_at_once / 4)
+        steps_at_once_ *= 2;
+    }
+    steps -= count;
+  }
+}
+
+void Batch::reset(nb::handle mask, nb::handle stream) {
+  void* const cuda_stream = stream_from(stream);
+  if (mask.is_none()) {
+    use([](Simulation& simulation) { simulation.reset(); });
+    return;
+  }
+  const auto check_size = [](std::size_t size, std::size_t robots) {
+    if (size != robots)
+      throw InputError("mask", std::to_string(size) + " elements are not accepted; the batch has " +
+                                   std::to_string(robots) + " robots");
+  };
+  const int device = cuda_device_of(mask);
+  if (device < 0) {
+    const std::vector<std::uint8_t> values = mask_from(mask);
+    use([&](Simulation& simulation) {
+      check_size(values.size(), simulation.size());
+      simulation.reset(values);
+    });
+    return;
+  }
+  const DeviceMask on_device = device_mask_from(mask, cuda_stream);
+  const ReleasedGil released;
+  const std::lock_guard lock(mutex_);
+  if (simulation_->cuda_device() != device)
+    throw InputError("mask", "memory of cuda:" + std::to_string(device) + " is not accepted; the batch is on " +
+                                 name_of(simulation_->configuration().device));
+  check_size(on_device.size, simulation_->size());
+  simulation_->reset_in_stream(on_device.data, cuda_stream);
+  *last_stream_ = cuda_stream;
+}
+
+std::size_t Batch::add(const SharedRobots& robots) {
+  std::size_t first = 0;
+  {
+    const ReleasedGil released;
+    const std::lock_guard lock(mutex_);
+    first = simulation_->add(robots);
+    robots_.insert(robots_.end(), robots.begin(), robots.end());
+    change_robots();
+  }
+  forget_arrays();
+  return first;
+}
+
+void Batch::keep(nb::handle robots) {
+  const std::vector<std::int64_t> indices = indices_from(robots);
+  {
+    const ReleasedGil released;
+    const std::lock_guard lock(mutex_);
+    std::vector<std::size_t> kept;
+    for (const std::int64_t index : indices) kept.push_back(checked_index(index, robots_.size()));
+    simulation_->keep(kept);
+    SharedRobots remaining;
+    for (const std::size_t index : kept) remaining.push_back(robots_[index]);
+    robots_.swap(remaining);
+    change_robots();
+  }
+  forget_arrays();
+}
+
+// Another thread may exchange the robots before the array is kept here; then it is not kept.
+template <class Make>
+nb::object Batch::cached(std::size_t place, const Make& make) {
+  if (arrays_[place].is_valid()) return arrays_[place];
+  std::uint64_t version = 0;
+  auto made = use([&](Simulation& simulation) {
+    version = version_;
+    return make(simulation);
+  });
+  if (arrays_[place].is_valid() && version == version_) return arrays_[place];
+  nb::object object = nb::cast(std::move(made));
+  if (version == version_) arrays_[place] = object;
+  return object;
+}
+
+nb::object Batch::state_array(StateArray which) {
+  return cached(static_cast<std::size_t>(which), [&](Simulation& simulation) {
+    return array_of<float>(simulation.shared_state(which), last_stream_, false);
+  });
+}
+
+nb::object Batch::exploded() {
+  return cached(exploded_place, [&](Simulation& simulation) {
+    return array_of<bool>(simulation.shared_exploded(), last_stream_, false, true);
+  });
+}
+
+nb::object Batch::actuation() {
+  if (arrays_[actuation_place].is_valid()) return arrays_[actuation_place];
+  std::uint64_t version = 0;
+  SharedRobots robots;
+  const Actuation shared = use([&](Simulation& simulation) {
+    version = version_;
+    robots = robots_;
+    return simulation.actuation();
+  });
+  const auto array = [&](const SharedArray<float>& from) {
+    return nb::cast(array_of<float>(from, last_stream_, true));
+  };
+  nb::object object = nb::cast(ActuationArrays{.amplitude = array(shared.amplitude),
+                                               .frequency = array(shared.frequency),
+                                               .phase = array(shared.phase),
+                                               .drive = array(shared.drive),
+                                               .robots = std::move(robots)});
+  if (arrays_[actuation_place].is_valid() && version == version_) return arrays_[actuation_place];
+  if (version == version_) arrays_[actuation_place] = object;
+  return object;
+}
+
+void Batch::synchronize() const {
+  use([](const Simulation& simulation) {
+    if (const int device = simulation.cuda_device(); device >= 0) synchronize_cuda_device(device);
+  });
+}
+
+SharedRobots Batch::robots() const {
+  return use([&](const Simulation&) { return robots_; });
+}
+
+std::size_t Batch::robot_index(std::int64_t index) const {
+  return use([&](const Simulation& simulation) { return checked_index(index, simulation.size()); });
+}
+
+std::string Batch::device() const {
+  return use([](const Simulation& simulation) -> std::string {
+    if (const int device = simulation.cuda_device(); device >= 0) return "cuda:" + std::to_string(device);
+    return simulation.configuration().device.kind == DeviceKind::cuda ? "cuda:all" : "cpu";
+  });
+}
+
+nb::list actuator_names(const Robot& robot) {
+  nb::list names;
+  for (const Actuator& actuator : actuators_of(robot))
+    names.append(nb::str(actuator.name.c_str(), actuator.name.size()));
+  return names;
 }
 
 }  // namespace mercury::python

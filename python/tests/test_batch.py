@@ -1,13 +1,371 @@
 # SPDX-License-Identifier: Apache-2.0
+import copy
+import inspect
+import pickle
+import subprocess
+import sys
+
 import numpy as np
+import pytest
 
 import mercurysim
 
 
-def test_positions_share_memory_with_the_batch():
-    batch = mercurysim.Batch(mercurysim.random_voxel(4, seed=1), device="cpu")
-    positions = np.asarray(batch.positions)
-    before = positions.copy()
-    batch.step(100)
-    assert np.abs(positions - before).max() > 0
-    assert np.from_dlpack(batch.positions).ctypes.data == positions.ctypes.data
+@pytest.fixture
+def robots():
+    return mercurysim.random_voxel(4, seed=1)
+
+
+@pytest.fixture
+def batch(robots, device):
+    return mercurysim.Batch(robots, device=device)
+
+
+def test_step_advances_time(batch):
+    batch.step()
+    assert batch.steps == 1
+    batch.step(9)
+    batch.step(n=0)
+    assert batch.steps == 10
+    assert batch.time == pytest.approx(10e-3)
+    assert batch.dt == 1e-3
+    assert len(batch) == batch.size == 4
+
+
+def test_hashes_do_not_depend_on_the_batch_nor_on_how_steps_are_split(robots, device):
+    together = mercurysim.Batch(robots, device=device)
+    together.step(200)
+    for i, robot in enumerate(robots):
+        alone = mercurysim.Batch(robot, device=device)
+        for n in [1, 99, 0, 100]:
+            alone.step(n)
+        assert alone.hash(0) == together.hash(i)
+    assert together.hashes().dtype == np.uint64
+    assert together.hashes().tolist() == [together.hash(i) for i in range(4)]
+
+
+def test_offsets_are_the_first_masses_of_the_robots(batch, robots):
+    offsets = batch.offsets
+    assert offsets.dtype == np.int64
+    positions = batch.positions.numpy()
+    for i, robot in enumerate(robots):
+        assert np.array_equal(positions[offsets[i] : offsets[i + 1]], robot.masses)
+    assert offsets[0] == 0 and offsets[-1] == len(positions)
+
+
+def test_robots_begin_at_rest_and_centers_are_means(batch, robots):
+    assert not batch.velocities.numpy().any()
+    for i, robot in enumerate(robots):
+        assert np.allclose(batch.centers.numpy()[i], robot.masses.mean(axis=0), atol=1e-5)
+    batch.step(500)
+    x, v, offsets = batch.positions.numpy(), batch.velocities.numpy(), batch.offsets
+    for i in range(4):
+        mine = slice(offsets[i], offsets[i + 1])
+        assert np.allclose(batch.centers.numpy()[i], x[mine].mean(axis=0), atol=1e-5)
+        assert np.allclose(batch.center_velocities.numpy()[i], v[mine].mean(axis=0), atol=1e-5)
+
+
+def test_telemetry_agrees_with_the_arrays(batch):
+    batch.step(300)
+    telemetry = batch.telemetry()
+    assert telemetry.shape == (4,)
+    assert np.array_equal(telemetry["center_of_mass"], batch.centers.numpy())
+    assert np.array_equal(telemetry["velocity"], batch.center_velocities.numpy())
+    v, offsets = batch.velocities.numpy().astype(float), batch.offsets
+    for i in range(4):
+        energy = (v[offsets[i] : offsets[i + 1]] ** 2).sum() / 2
+        assert telemetry["kinetic_energy"][i] == pytest.approx(energy, rel=1e-5)
+    assert (telemetry["largest_strain"] > 0).all()
+    assert not telemetry["exploded"].any()
+    assert (telemetry["culprit_spring"] == -1).all()
+    assert (telemetry["exploded_at"] == 0).all()
+
+
+def test_docstring_of_telemetry_names_every_field(batch):
+    for name in batch.telemetry().dtype.names:
+        assert name in inspect.getdoc(mercurysim.Batch.telemetry)
+
+
+def test_reset_of_all(batch):
+    begin = batch.hashes()
+    batch.step(50)
+    assert not np.array_equal(batch.hashes(), begin)
+    batch.reset()
+    assert batch.time == 0
+    assert np.array_equal(batch.hashes(), begin)
+
+
+@pytest.mark.parametrize(
+    "as_mask",
+    [
+        list,
+        tuple,
+        np.array,
+        lambda mask: np.array(mask, dtype=np.uint8),
+        lambda mask: np.repeat(np.array(mask), 2)[::2],
+        lambda mask: pytest.importorskip("torch").tensor(mask),
+    ],
+)
+def test_reset_of_some_robots(batch, as_mask):
+    begin = batch.hashes()
+    batch.step(50)
+    moved = batch.hashes()
+    batch.reset(as_mask([True, False, False, True]))
+    now = batch.hashes()
+    assert now[0] == begin[0] and now[3] == begin[3]
+    assert now[1] == moved[1] and now[2] == moved[2]
+    assert batch.steps == 50
+    assert np.array_equal(batch.positions.numpy()[: batch.offsets[1]], batch.robots[0].masses)
+
+
+def test_reset_by_a_mask_on_the_gpu(batch):
+    torch = pytest.importorskip("torch")
+    if batch.device == "cpu":
+        pytest.skip("is about the memory of a GPU")
+    begin = batch.hashes()
+    for dtype in [torch.bool, torch.uint8]:
+        batch.step(50)
+        moved = batch.hashes()
+        batch.reset(torch.tensor([1, 0, 0, 1], device=batch.device).to(dtype))
+        assert batch.hashes().tolist() == [begin[0], moved[1], moved[2], begin[3]]
+    with pytest.raises(mercurysim.InputError, match="3 elements"):
+        batch.reset(torch.ones(3, dtype=torch.bool, device=batch.device))
+    with pytest.raises(TypeError, match="bool or uint8"):
+        batch.reset(torch.ones(4, device=batch.device))
+    with pytest.raises(TypeError, match="one after the other"):
+        batch.reset(torch.ones(8, dtype=torch.bool, device=batch.device)[::2])
+
+
+def test_masks_that_do_not_fit_are_refused(batch):
+    before = batch.hashes()
+    for mask in [[True] * 3, [], np.zeros(5, dtype=bool)]:
+        with pytest.raises(mercurysim.InputError, match="the batch has 4 robots"):
+            batch.reset(mask)
+    for mask in [np.zeros(4), [0, 1, 0, 1], "yes", 3, np.zeros((2, 2), dtype=bool), [None] * 4, object()]:
+        with pytest.raises(TypeError, match="one bool per robot"):
+            batch.reset(mask)
+    assert np.array_equal(batch.hashes(), before)
+
+
+def test_add_and_keep(batch):
+    batch.step(30)
+    before = batch.hashes()
+    more = mercurysim.random_voxel(2, seed=5)
+    assert batch.add(more) == 4
+    assert batch.add(more[0]) == 6
+    assert batch.add([]) == 7
+    assert np.array_equal(batch.hashes()[:4], before)
+    assert np.array_equal(batch.positions.numpy()[batch.offsets[6] : batch.offsets[7]], more[0].masses)
+    batch.keep([5, 2, 0])
+    assert len(batch) == 3
+    assert batch.hashes()[1:].tolist() == [before[2], before[0]]
+    assert len(batch.robots) == 3
+    assert len(batch.robots[0].masses) == len(more[1].masses)
+    batch.keep(np.array([1]))
+    batch.step(1)
+    assert len(batch) == 1
+    batch.keep([])
+    assert len(batch) == 0
+    batch.step(1)
+
+
+def test_indices_that_do_not_fit_are_refused(batch):
+    for indices in [[4], [-1], [0, 2**40], np.array([-(2**62)])]:
+        with pytest.raises(IndexError, match="out of range"):
+            batch.keep(indices)
+    with pytest.raises(ValueError, match="once"):
+        batch.keep([1, 1])
+    for indices in [[0.5], 3, "0", [True, False, True, True], [[0]], [None], object()]:
+        with pytest.raises(TypeError, match="sequence of integers"):
+            batch.keep(indices)
+    for index in [-1, 4, 2**60, -(2**60)]:
+        for function in [batch.hash, batch.actuators, batch.actuation.names]:
+            with pytest.raises(IndexError, match="out of range"):
+                function(index)
+        with pytest.raises(IndexError):
+            batch.set_state(index, np.zeros((1, 3)))
+    for index in ["0", 0.0, None, 2**70]:
+        with pytest.raises(TypeError):
+            batch.hash(index)
+    assert len(batch) == 4
+
+
+def test_set_state(batch):
+    offsets = batch.offsets
+    masses = int(offsets[2] - offsets[1])
+    x = batch.robots[1].masses + np.array([1, 2, 3], dtype=np.float32)
+    batch.set_state(1, x, np.full((masses, 3), 0.5))
+    assert np.array_equal(batch.positions.numpy()[offsets[1] : offsets[2]], x)
+    assert (batch.velocities.numpy()[offsets[1] : offsets[2]] == 0.5).all()
+    assert not batch.velocities.numpy()[offsets[2] :].any()
+    batch.set_state(1, x.tolist())
+    assert not batch.velocities.numpy().any()
+    batch.set_state(1, np.asfortranarray(x)[::1])
+    assert np.array_equal(batch.positions.numpy()[offsets[1] : offsets[2]], x)
+
+
+def test_states_that_do_not_fit_are_refused(batch):
+    masses = len(batch.robots[0].masses)
+    for wrong in [np.zeros((masses, 2)), np.zeros((masses + 1, 3)), np.zeros(3 * masses), [], 3.0]:
+        with pytest.raises(mercurysim.InputError, match="positions: the shape"):
+            batch.set_state(0, wrong)
+    with pytest.raises(mercurysim.InputError, match="velocities: the shape"):
+        batch.set_state(0, batch.robots[0].masses, np.zeros((1, 3)))
+    for wrong in [None, "x", [[None] * 3] * masses, np.zeros((masses, 3), dtype=complex), object()]:
+        with pytest.raises(TypeError, match="positions"):
+            batch.set_state(0, wrong)
+
+
+def test_a_robot_that_leaves_the_finite_is_reported(batch):
+    x = batch.robots[2].masses.copy()
+    x[0] = np.nan
+    before = batch.hash(1)
+    batch.step(3)
+    batch.set_state(2, x)
+    batch.step(5)
+    assert batch.exploded.numpy().tolist() == [False, False, True, False]
+    telemetry = batch.telemetry()
+    assert telemetry["exploded"].tolist() == [False, False, True, False]
+    assert telemetry["exploded_at"][2] == pytest.approx(3e-3)
+    assert batch.hash(1) != before
+    batch.reset([False, False, True, False])
+    assert not batch.exploded.numpy().any()
+
+
+def test_configure(batch):
+    batch.step(10)
+    batch.configure(dt=2e-3, solver="xpbd", damping=0.5)
+    batch.step(10)
+    assert batch.time == pytest.approx(30e-3)
+    assert (batch.dt, batch.solver, batch.damping) == (2e-3, "xpbd", 0.5)
+    batch.configure(environment=mercurysim.Land())
+    assert isinstance(batch.environment, mercurysim.Land)
+    z = batch.positions.numpy()[:, 2]
+    assert [z[a:b].min() for a, b in zip(batch.offsets, batch.offsets[1:])] == pytest.approx([0] * 4, abs=1e-6)
+    with pytest.raises(mercurysim.InputError, match="dt"):
+        batch.configure(dt=-1)
+    with pytest.raises(TypeError):
+        batch.configure(device="cpu")
+    assert batch.dt == 2e-3
+
+
+def test_values_that_break_a_rule_are_refused(robots):
+    for wrong, message in [
+        ({"dt": 0}, "dt"),
+        ({"dt": float("nan")}, "dt"),
+        ({"damping": -1}, "damping"),
+        ({"solver": "verlet"}, "force"),
+        ({"environment": "space"}, "ocean"),
+        ({"device": "tpu"}, "cpu"),
+        ({"device": 3}, "cpu"),
+        ({"threads": -1}, "threads"),
+    ]:
+        with pytest.raises(mercurysim.InputError, match=message) as error:
+            mercurysim.Batch(robots, **{"device": "cpu", **wrong})
+        assert "\n" not in str(error.value)
+    for wrong in [{"dt": "fast"}, {"threads": 2**40}, {"solver": None}, {"environment": 3}, {"speed": 1}]:
+        with pytest.raises(TypeError):
+            mercurysim.Batch(robots, **{"device": "cpu", **wrong})
+    with pytest.raises(mercurysim.DeviceError):
+        mercurysim.Batch(robots, device="cuda:99")
+
+
+def test_numbers_of_steps_that_are_refused(batch):
+    for wrong in [-1, -(2**63)]:
+        with pytest.raises(mercurysim.InputError, match="0 or more"):
+            batch.step(wrong)
+    for wrong in [1.5, "1", None, 2**63, [1]]:
+        with pytest.raises(TypeError):
+            batch.step(wrong)
+    batch.step(np.int64(2))
+    with pytest.raises(mercurysim.InputError, match="too large"):
+        batch.step(2**63 - 1)
+    assert batch.steps == 2
+
+
+def test_an_empty_batch_counts_steps(device):
+    batch = mercurysim.Batch([], device=device)
+    batch.step(2)
+    batch.reset([])
+    assert batch.time == pytest.approx(2e-3)
+    assert batch.telemetry().shape == (0,)
+    assert batch.hashes().size == 0
+    assert batch.offsets.tolist() == [0]
+    assert batch.add(mercurysim.random_voxel(1, seed=1)) == 0
+    batch.step(2)
+    assert batch.time == pytest.approx(4e-3)
+
+
+def test_batches_cannot_be_pickled_or_copied(batch):
+    for function in [pickle.dumps, copy.copy, copy.deepcopy]:
+        with pytest.raises(TypeError, match="cannot be pickled"):
+            function(batch)
+
+
+def test_subclasses_and_objects_without_init(robots):
+    class Named(mercurysim.Batch):
+        def __init__(self, robots, name):
+            super().__init__(robots, device="cpu")
+            self.name = name
+
+    class Forgetful(mercurysim.Batch):
+        def __init__(self):
+            pass
+
+    named = Named(robots, "school")
+    named.step(3)
+    named.mine = [named.positions, named]  # a cycle
+    assert (named.name, named.steps) == ("school", 3)
+    for empty in [Forgetful(), mercurysim.Batch.__new__(mercurysim.Batch)]:
+        for use in [len, repr, lambda batch: batch.step(), lambda batch: batch.positions, lambda batch: batch.hash(0)]:
+            with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
+                use(empty)
+
+
+def test_a_batch_whose_init_has_failed_can_be_made_again(robots):
+    batch = mercurysim.Batch.__new__(mercurysim.Batch)
+    with pytest.raises(mercurysim.InputError):
+        batch.__init__(robots, device="cpu", dt=-1)
+    with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="uninitialized"):
+        batch.step()
+    batch.__init__(robots, device="cpu")
+    batch.step(2)
+    assert batch.steps == 2
+
+
+def test_names_for_people(batch, device):
+    assert batch.device == ("cpu" if device == "cpu" else "cuda:0")
+    assert repr(batch) == f"<Batch of 4 robots on {batch.device}>"
+    assert batch.device_name
+    assert isinstance(batch.notes, list)
+
+
+def test_everything_public_has_a_docstring():
+    for kind in [mercurysim.Batch, mercurysim.Array, mercurysim.Actuation]:
+        assert inspect.getdoc(kind)
+        for name in vars(kind):
+            if not name.startswith("_"):
+                assert inspect.getdoc(getattr(kind, name)), f"{kind.__name__}.{name}"
+
+
+LONG_RUN = """
+import os, signal, threading, time
+import mercurysim
+batch = mercurysim.Batch(mercurysim.random_voxel(4, seed=1), device="cpu")
+def interrupt():
+    while batch.steps == 0:
+        time.sleep(0.01)
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt).start()
+try:
+    batch.step(10**15)
+except KeyboardInterrupt:
+    print("interrupted", 0 < batch.steps < 10**15, flush=True)
+batch.step(1)
+"""
+
+
+def test_ctrl_c_ends_a_long_run_and_leaves_the_batch_usable():
+    done = subprocess.run([sys.executable, "-c", LONG_RUN], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "interrupted True\n", done.stderr
+    assert done.returncode == 0

@@ -49,6 +49,19 @@ std::size_t free_cuda_memory(int index) {
   return free;
 }
 
+void synchronize_cuda_device(int index) {
+  int callers = 0;
+  check(cudaGetDevice(&callers), "querying the present device");
+  check(cudaSetDevice(index), "choosing the device");
+  const cudaError_t error = cudaDeviceSynchronize();
+  check(cudaSetDevice(callers), "choosing the device");
+  check(error, "waiting for the device");
+}
+
+void copy_cuda_memory(void* to, const void* from, std::size_t bytes) {
+  check(cudaMemcpy(to, from, bytes, cudaMemcpyDefault), "copying memory");
+}
+
 bool built_with_cuda() { return true; }
 
 }  // namespace mercury

@@ -13,6 +13,8 @@ ChipFit chip_fit(const Robot&, const Configuration&, int) { throw DeviceError("t
 int cuda_device_count() { return 0; }
 std::string cuda_device_name(int) { return {}; }
 std::size_t free_cuda_memory(int) { throw DeviceError("this build has no CUDA backend"); }
+void synchronize_cuda_device(int) { throw DeviceError("this build has no CUDA backend"); }
+void copy_cuda_memory(void*, const void*, std::size_t) { throw DeviceError("this build has no CUDA backend"); }
 bool built_with_cuda() { return false; }
 
 }  // namespace mercury

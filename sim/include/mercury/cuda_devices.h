@@ -18,6 +18,10 @@ int cuda_device_count();
 std::string cuda_device_name(int index);
 // Memory of a device that no program uses [bytes]. Throws DeviceError if the device does not exist.
 std::size_t free_cuda_memory(int index);
+// Waits for all work of all streams of a device. Throws DeviceError if work has failed.
+void synchronize_cuda_device(int index);
+// Copies between any two places in the memory of CUDA devices and of the host. Throws DeviceError.
+void copy_cuda_memory(void* to, const void* from, std::size_t bytes);
 
 // The shared memory that a thread block needs to step this robot on the chip, without any that only serves speed
 // [bytes]: 36 per mass (paper, Table II), the material table, the rest lengths, and on land the grid that finds

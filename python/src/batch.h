@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batch: robots that are stepped through time, as Python has them.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "mercury/simulation.h"
+#include "python/src/array.h"
+#include "python/src/bindings.h"
+#include "python/src/gil.h"
+
+namespace mercury::python {
+
+// Several threads of Python may use a batch; one at a time does, the others wait. The functions are called with the
+// GIL and release it while they wait or work.
+class Batch {
+ public:
+  Batch(const Configuration& configuration, SharedRobots robots);
+  ~Batch();
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  // Returns use(simulation), called while no other thread uses the batch, and without the GIL.
+  template <class Use>
+  auto use(const Use& use) const {
+    const ReleasedGil released;
+    const std::lock_guard lock(mutex_);
+    return use(*simulation_);
+  }
+
+  // In portions between which Ctrl-C ends it.
+  void step(std::int64_t steps, nb::handle stream);
+  void reset(nb::handle mask, nb::handle stream);
+  std::size_t add(const SharedRobots& robots);
+  void keep(nb::handle robots);
+  void synchronize() const;
+
+  // The same Python object until robots come or go.
+  nb::object state_array(StateArray which);
+  nb::object exploded();
+  nb::object actuation();
+
+  SharedRobots robots() const;
+  std::size_t robot_index(std::int64_t index) const;  // throws IndexError
+  std::string device() const;                         // "cpu", "cuda:0", "cuda:all"
+
+ private:
+  static constexpr std::size_t exploded_place = 4, actuation_place = 5;
+
+  template <class Make>
+  nb::object cached(std::size_t place, const Make& make);
+  void change_robots();  // to be called with the lock, without the GIL
+  void forget_arrays();  // to be called with the GIL
+
+  mutable std::mutex mutex_;
+  std::unique_ptr<Simulation> simulation_;
+  SharedRobots robots_;
+  double springs_ = 0;                      // of all robots
+  std::int64_t steps_at_once_ = 1;          // in a portion, adapted to the speed on the CPU
+  std::atomic<std::uint64_t> version_ = 0;  // how often robots have come or gone
+  LastStream last_stream_ = std::make_shared<std::atomic<void*>>(nullptr);
+  std::array<nb::object, 6> arrays_;
+};
+
+// What drives the actuators of a batch, as Python has it.
+struct ActuationArrays {
+  nb::object amplitude, frequency, phase, drive;  // Array
+  SharedRobots robots;
+};
+
+// Names of the actuators of a robot.
+nb::list actuator_names(const Robot& robot);
+
+}  // namespace mercury::python

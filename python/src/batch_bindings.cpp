@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batch and Actuation in Python.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/src/arguments.h"
+#include "python/src/batch.h"
+#include "python/src/telemetry.h"
+
+namespace mercury::python {
+namespace {
+
+constexpr const char* batch_description =
+    R"(Robots that are stepped through time together, each in its own space.
+
+    batch = mercurysim.Batch(mercurysim.random_voxel(64, seed=1), environment=mercurysim.Ocean())
+    batch.step(1000)
+    print(batch.telemetry()["center_of_mass"])
+
+Robots of any number and shape share a batch. A robot moves the same, bit for bit, in every batch of one kind of device.
+
+Arrays (positions, velocities, centers, center_velocities, exploded, actuation) are memory of the device that steps the
+robots. They are the same objects until add() or keep(), which make new ones; the old ones keep their last values.
+
+Several threads may use a batch; one at a time does, the others wait. The GIL is released meanwhile.)";
+
+constexpr const char* init_description =
+    R"(Loads robots onto a device.
+
+robots: a Robot, or a sequence of them; none is also accepted.
+environment: Ocean, OceanSimple or Land, or the name of one; None = Ocean().
+solver: "force" (Algorithm 1 of the paper) or "xpbd" (Algorithm 2, stable at longer time steps).
+dt: time step [s]. damping: velocities shrink by exp(-damping dt) per step [1/s].
+device: "auto" (CUDA if there is a device), "cpu", "cuda", "cuda:1", "cuda:all".
+threads: of the CPU; 0 = all cores.
+
+Raises InputError for a value or a robot that breaks a rule, DeviceError if the device is not there.)";
+
+constexpr const char* step_description =
+    R"(Advances every robot that has not exploded by `n` time steps.
+
+On the CPU it returns when they are done. On CUDA it returns at once: the steps are queued in `stream`, behind what is
+there, and what follows in the stream comes after them. stream: the handle of a CUDA stream, or an object with
+__cuda_stream__, cuda_stream (PyTorch) or ptr (CuPy); None = the legacy default stream, which PyTorch uses by default.
+
+Long runs are made in portions of about a tenth of a second. Between them Ctrl-C ends the run, and other threads that
+wait for the batch may use it.)";
+
+constexpr const char* reset_description =
+    R"(Puts robots back to their rest poses; they have not exploded.
+
+mask: one element per robot, a sequence of bools or an array of bool or uint8; the others go on, and so does time.
+None = all robots, at time 0. On CUDA the mask may be in the memory of the device; the call is then queued in `stream`,
+as step() is, and the memory is read in the order of that stream.
+
+Raises InputError unless the mask has one element per robot.)";
+
+constexpr const char* telemetry_description =
+    R"(A structured NumPy array, one element per robot, computed on the device. Fields:
+
+center_of_mass (3,)  [m]
+velocity (3,)        of the center of mass [m/s]
+kinetic_energy       [J]
+elastic_energy       of the springs [J]
+muscle_power         that the muscles deliver now [W]
+largest_strain       of a spring [1]
+strained_share       of the springs: those that are strained by more than half [1]
+exploded             whether the robot has left the finite and is frozen
+exploded_at          when [s], 0 unless exploded
+culprit_spring       index of the spring that is the cause, -1 if none is known)";
+
+constexpr const char* actuation_description =
+    R"(What drives the actuators of a batch: writable arrays of (robots, actuators), float32, on the device.
+
+Column a of row i is actuator a of robot i; names(i) lists them. A robot with fewer actuators ignores the other columns.
+
+    L(t) = L0 (1 + amplitude sin(frequency t + phase))     while drive is NaN
+    L    = L0 (1 + amplitude drive)                        otherwise
+
+NaN says that there is none: springs keep the amplitude, frequency or phase of their materials, and follow the sine.
+Amplitudes are limited to (-1, 1), drives to [-1, 1]. At first every actuator has the values that its materials have in
+common, NaN where they differ, and no drive. Every Batch.step() reads the arrays when it begins.
+
+    batch.actuation.drive[:] = 0.5                                   # on the CPU
+    torch.from_dlpack(batch.actuation.drive)[:] = policy(state)      # on any device)";
+
+void init(Batch* self, nb::handle robots, nb::handle environment, const std::string& solver, double dt, double damping,
+          nb::handle device, int threads) {
+  Configuration configuration{.dt = dt,
+                              .damping = damping,
+                              .solver = solver_named(solver),
+                              .environment = environment_of(environment),
+                              .device = device_named(nb::cast<std::string>(nb::str(device)))};
+  configuration.device.threads = threads;
+  new (self) Batch(configuration, robots_of(robots));
+}
+
+void configure(Batch& self, nb::handle environment, const std::optional<std::string>& solver, std::optional<double> dt,
+               std::optional<double> damping) {
+  std::optional<Environment> other;
+  if (!environment.is_none()) other = environment_of(environment);
+  std::optional<Solver> other_solver;
+  if (solver) other_solver = solver_named(*solver);
+  self.use([&](Simulation& simulation) {
+    Configuration configuration = simulation.configuration();
+    if (other) configuration.environment = *other;
+    if (other_solver) configuration.solver = *other_solver;
+    if (dt) configuration.dt = *dt;
+    if (damping) configuration.damping = *damping;
+    simulation.configure(configuration);
+  });
+}
+
+void set_state(Batch& self, std::int64_t robot, nb::handle positions, nb::handle velocities) {
+  const std::size_t masses = self.use([&](const Simulation& simulation) {
+    return simulation.robot(checked_index(robot, simulation.size())).masses.size();
+  });
+  const std::vector<Vec3> x = vectors_from(positions, masses, "positions");
+  const std::vector<Vec3> v =
+      velocities.is_none() ? std::vector<Vec3>(masses) : vectors_from(velocities, masses, "velocities");
+  self.use([&](Simulation& simulation) { simulation.set_state(checked_index(robot, simulation.size()), x, v); });
+}
+
+template <class T>
+nb::object numpy_array(const std::vector<T>& values, const char* dtype) {
+  return nb::module_::import_("numpy").attr("array")(nb::cast(values), nb::arg("dtype") = dtype);
+}
+
+nb::object offsets(const Batch& self) {
+  return numpy_array(self.use([](const Simulation& simulation) {
+    const auto offsets = simulation.mass_offsets();
+    return std::vector<std::size_t>(offsets.begin(), offsets.end());
+  }),
+                     "int64");
+}
+
+nb::list robots(const Batch& self) {
+  nb::list list;
+  for (const auto& robot : self.robots()) list.append(nb::cast(SharedRobot{robot}));
+  return list;
+}
+
+std::string represent(const Batch& self) {
+  const std::size_t robots = self.use([](const Simulation& simulation) { return simulation.size(); });
+  return "<Batch of " + std::to_string(robots) + (robots == 1 ? " robot" : " robots") + " on " + self.device() + ">";
+}
+
+// A getter of something that the simulation knows.
+template <class Get>
+auto known(Get get) {
+  return [get](const Batch& self) { return self.use([&](const Simulation& simulation) { return get(simulation); }); };
+}
+
+void bind_actuation(nb::module_& module) {
+  nb::class_<ActuationArrays>(module, "Actuation", actuation_description)
+      .def_ro("amplitude", &ActuationArrays::amplitude, "Amplitudes, (robots, actuators) [1].")
+      .def_ro("frequency", &ActuationArrays::frequency, "Angular frequencies, (robots, actuators) [rad/s].")
+      .def_ro("phase", &ActuationArrays::phase, "Phases, (robots, actuators) [rad].")
+      .def_ro("drive", &ActuationArrays::drive, "Drive signals u, (robots, actuators) [1]; NaN = follow the sine.")
+      .def(
+          "names",
+          [](const ActuationArrays& self, std::int64_t robot) {
+            return actuator_names(*self.robots[checked_index(robot, self.robots.size())]);
+          },
+          nb::arg("robot"), "Names of the actuators of a robot, in the order of the columns.");
+}
+
+void bind_properties(nb::class_<Batch>& batch) {
+  using Sim = const Simulation&;
+  batch.def("__len__", known([](Sim simulation) { return simulation.size(); }))
+      .def_prop_ro("size", known([](Sim simulation) { return simulation.size(); }), "Number of robots.")
+      .def_prop_ro("time", known([](Sim simulation) { return simulation.time(); }), "Simulated time [s].")
+      .def_prop_ro("steps", known([](Sim simulation) { return simulation.steps(); }),
+                   "Steps since the start or the last reset() of all robots.")
+      .def_prop_ro("dt", known([](Sim simulation) { return simulation.configuration().dt; }), "Time step [s].")
+      .def_prop_ro("damping", known([](Sim simulation) { return simulation.configuration().damping; }),
+                   "Velocities shrink by exp(-damping dt) per step [1/s].")
+      .def_prop_ro("solver",
+                   known([](Sim simulation) { return std::string(name_of(simulation.configuration().solver)); }),
+                   "'force' or 'xpbd'.")
+      .def_prop_ro(
+          "environment",
+          [](const Batch& self) {
+            const Environment environment =
+                self.use([](const Simulation& simulation) { return simulation.configuration().environment; });
+            return std::visit([](const auto& kind) { return nb::cast(kind); }, environment);
+          },
+          "A copy of the environment.")
+      .def_prop_ro("device", &Batch::device, "What steps the robots: 'cpu', 'cuda:0', or 'cuda:all' if several do.")
+      .def_prop_ro("device_name", known([](Sim simulation) { return simulation.device_name(); }),
+                   "The same for people, as 'CPU, 2 threads, AVX2'.")
+      .def_prop_ro("notes", known([](Sim simulation) { return simulation.notes(); }),
+                   "Lines worth reading, as that a robot is too large for the chip; usually none.")
+      .def_prop_ro("robots", &robots, "The robots, as they were added.")
+      .def_prop_ro("offsets", &offsets,
+                   "Robot i has the masses offsets[i] to offsets[i + 1] of positions; robots + 1 elements.");
+}
+
+void bind_arrays(nb::class_<Batch>& batch) {
+  const auto state = [](StateArray which) { return [which](Batch& self) { return self.state_array(which); }; };
+  batch
+      .def_prop_ro("positions", state(StateArray::positions),
+                   "Positions of all masses, robot after robot, (masses, 3) float32 [m]. An Array, read-only.")
+      .def_prop_ro("velocities", state(StateArray::velocities), "Velocities, (masses, 3) float32 [m/s]; as positions.")
+      .def_prop_ro("centers", state(StateArray::centers),
+                   "Centers of mass, (robots, 3) float32 [m]. An Array, read-only.")
+      .def_prop_ro("center_velocities", state(StateArray::center_velocities),
+                   "Velocities of the centers of mass, (robots, 3) float32 [m/s]. An Array, read-only.")
+      .def_prop_ro("exploded", &Batch::exploded,
+                   "Which robots have exploded and are frozen, (robots,) bool. An Array, read-only.")
+      .def_prop_ro("actuation", &Batch::actuation, "What drives the actuators, an Actuation.")
+      .def(
+          "actuators",
+          [](const Batch& self, std::int64_t robot) {
+            const SharedRobots all = self.robots();
+            return actuator_names(*all[checked_index(robot, all.size())]);
+          },
+          nb::arg("robot"), "Names of the actuators of a robot, in the order of the columns of `actuation`.");
+}
+
+void bind_reports(nb::class_<Batch>& batch) {
+  batch
+      .def(
+          "telemetry",
+          [](const Batch& self) {
+            return telemetry_array(self.use([](const Simulation& simulation) { return simulation.telemetry(); }));
+          },
+          telemetry_description)
+      .def(
+          "hash",
+          [](const Batch& self, std::int64_t robot) {
+            return self.use(
+                [&](const Simulation& simulation) { return simulation.hash(checked_index(robot, simulation.size())); });
+          },
+          nb::arg("robot"),
+          "FNV-1a over the bytes of a robot's positions, then its velocities, 64 bits. Equal hashes mean equal "
+          "states,\n"
+          "bit for bit; `mercury run` writes the same.")
+      .def(
+          "hashes",
+          [](const Batch& self) {
+            return numpy_array(self.use([](const Simulation& simulation) { return simulation.hashes(); }), "uint64");
+          },
+          "The hashes of all robots, (robots,) uint64.")
+      .def("__repr__", &represent)
+      .def("__reduce_ex__", [](const Batch&, nb::handle) -> nb::object {
+        throw nb::type_error("a Batch cannot be pickled or copied: make another one of batch.robots");
+      });
+}
+
+}  // namespace
+
+void bind_batch(nb::module_& module) {
+  watch_exit();
+  bind_actuation(module);
+  nb::class_<Batch> batch(module, "Batch", batch_description);
+  batch
+      .def("__init__", &init, nb::arg("robots"), nb::arg("environment") = nb::none(), nb::arg("solver") = "force",
+           nb::arg("dt") = 1e-3, nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0,
+           init_description)
+      .def("step", &Batch::step, nb::arg("n") = 1, nb::arg("stream") = nb::none(), step_description)
+      .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(), reset_description)
+      .def(
+          "add", [](Batch& self, nb::handle robots) { return self.add(robots_of(robots)); }, nb::arg("robots"),
+          "Adds a Robot or a sequence of them, at rest at the present time. Returns the index of the first.")
+      .def("keep", &Batch::keep, nb::arg("indices"),
+           "Keeps the robots of these indices, in this order, with their states, and removes the others.")
+      .def("set_state", &set_state, nb::arg("robot"), nb::arg("positions"), nb::arg("velocities") = nb::none(),
+           "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
+           "The robot has not exploded afterwards. Raises InputError for another shape.")
+      .def("configure", &configure, nb::kw_only(), nb::arg("environment") = nb::none(), nb::arg("solver") = nb::none(),
+           nb::arg("dt") = nb::none(), nb::arg("damping") = nb::none(),
+           "Changes what is given, from now on. States and time stay, except that robots that come to land are set\n"
+           "down on the floor. Raises InputError for a value that is not accepted.")
+      .def("synchronize", &Batch::synchronize, "Waits until the device has done all steps.");
+  bind_properties(batch);
+  bind_arrays(batch);
+  bind_reports(batch);
+}
+
+}  // namespace mercury::python

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+import os
+import subprocess
+
+import pytest
+
+import mercurysim
+
+
+@pytest.fixture
+def mercury():
+    """Runs the program mercury and returns what it prints."""
+    program = os.environ.get("MERCURY_PROGRAM")
+    if not program:
+        pytest.skip("this build has no program mercury")
+
+    def run(*arguments):
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+
+    return run
+
+
+@pytest.fixture(params=["cpu", "cuda"])
+def device(request):
+    """Every device that Mercury steps robots on; skips those that this machine or build lacks."""
+    try:
+        mercurysim.Batch([], device=request.param)
+    except mercurysim.DeviceError as error:
+        pytest.skip(str(error))
+    return request.param
