@@ -56,6 +56,7 @@ Robot trial_robot(const Robot& robot, const TrialSettings& settings, std::uint64
   const std::span<const Material> materials = materials_of(robot);
   changed.materials.assign(materials.begin(), materials.end());
   changed.material_names = robot.material_names;
+  changed.actuators = robot.actuators;
   if (delay > 0) delay_muscles(changed, delay);
   if (settings.noise > 0) disturb_materials(changed, settings.noise, random);
   return changed;

@@ -20,11 +20,20 @@ Generator cppn_generator();
 
 namespace {
 
+// Actuators name materials by id. A robot that grew from another keeps them if these ids have not changed their
+// meaning: the table has as many materials as before, with the same names. Their values may differ.
+void keep_actuators(Robot& grown, const Robot& from) {
+  const bool same_table =
+      materials_of(grown).size() == materials_of(from).size() && grown.material_names == from.material_names;
+  if (same_table) grown.actuators = from.actuators;
+}
+
 // What holds for all of them: children name their parents, and a robot that is grown again keeps its origin.
 Generator with_records(Generator generator) {
   generator.regrow = [regrow = std::move(generator.regrow)](const Robot& robot) {
     Robot again = regrow(robot);
     again.origin = robot.origin;
+    keep_actuators(again, robot);
     return again;
   };
   generator.mutate = [mutate = std::move(generator.mutate)](const Robot& parent, const MutationRequest& request,
@@ -35,6 +44,7 @@ Generator with_records(Generator generator) {
                                                 .mutation_seed = request.seed,
                                                 .strength = request.strength,
                                                 .muscles = request.muscles});
+    keep_actuators(child, parent);
     return child;
   };
   if (generator.cross)
@@ -42,6 +52,7 @@ Generator with_records(Generator generator) {
                                                            const std::string& name) {
       Robot child = cross(a, b, seed, name);
       child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
+      keep_actuators(child, a);
       return child;
     };
   return generator;

@@ -26,6 +26,11 @@ void inspect_materials(const Robot& robot, Inspection& found) {
     found.materials.push_back({id, name_of_material(robot, id), material, springs[i]});
     if (material.amplitude != 0) found.muscles += springs[i];
   }
+  for (Actuator& actuator : actuators_of(robot)) {
+    std::size_t driven = 0;
+    for (const MaterialId id : actuator.materials) driven += springs[id];
+    found.actuators.push_back({std::move(actuator), driven});
+  }
 }
 
 void inspect_box(const Robot& robot, Inspection& found) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "mercury/robot.h"
+#include "robots/actuator_reader.h"
 #include "robots/document.h"
 
 namespace mercury {
@@ -32,9 +33,9 @@ class RobotReader : public DocumentEvents {
   Robot take();
 
  private:
-  enum Section : unsigned { format, version, name, materials, masses, springs, faces, origin, unknown };
-  static constexpr std::string_view section_names[] = {"format", "version", "name",  "materials",
-                                                       "masses", "springs", "faces", "origin"};
+  enum Section : unsigned { format, version, name, materials, masses, springs, faces, actuators, origin, unknown };
+  static constexpr std::string_view section_names[] = {"format",  "version", "name",      "materials", "masses",
+                                                       "springs", "faces",   "actuators", "origin"};
   struct MaterialEntry {
     Material material;
     std::string name;
@@ -46,6 +47,7 @@ class RobotReader : public DocumentEvents {
   [[noreturn]] void refuse(const std::string& what) const;
   [[noreturn]] void wrong_type(const std::string& given) const;
   bool passes_by(int change_of_depth);
+  DocumentEvents* part(int change_of_depth);
   void begin_list(std::size_t announced);
   void begin_row(bool is_array);
   float finite(const Number& value) const;
@@ -67,6 +69,7 @@ class RobotReader : public DocumentEvents {
   MaterialEntry entry_;
   unsigned field_ = 0;  // the key of a material being read
   bool materials_have_names_ = false;
+  ActuatorReader actuators_;
   JsonWriter origin_{robot_.origin};
 };
 

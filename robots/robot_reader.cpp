@@ -67,27 +67,38 @@ bool RobotReader::passes_by(int change_of_depth) {
   return true;
 }
 
+// What takes an event within the origin, or within the list of actuators; nullptr for others. Follows the depth.
+DocumentEvents* RobotReader::part(int change_of_depth) {
+  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
+  DocumentEvents* const part = section_ == origin && depth_ >= 2      ? static_cast<DocumentEvents*>(&origin_)
+                               : section_ == actuators && inside >= 2 ? &actuators_
+                                                                      : nullptr;
+  if (part) depth_ += change_of_depth;
+  return part;
+}
+
 void RobotReader::null() {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2) return origin_.null();
+  if (DocumentEvents* const to = part(0)) return to->null();
   wrong_type("null");
 }
 
 void RobotReader::boolean(bool value) {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2) return origin_.boolean(value);
+  if (DocumentEvents* const to = part(0)) return to->boolean(value);
   wrong_type(value ? "true" : "false");
 }
 
-void RobotReader::bytes(std::string_view) {
+void RobotReader::bytes(std::string_view value) {
   if (passes_by(0)) return;
   if (section_ == origin && depth_ >= 2) refuse("holds a byte string, which JSON cannot hold");
+  if (DocumentEvents* const to = part(0)) return to->bytes(value);
   wrong_type("a byte string");
 }
 
 void RobotReader::text(std::string_view value) {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2) return origin_.text(value);
+  if (DocumentEvents* const to = part(0)) return to->text(value);
   if (depth_ == 1 && section_ == format) {
     if (value != "mercury-robot")
       refuse(std::string("\"").append(shown(value)).append("\" is not known; give \"mercury-robot\""));
@@ -110,10 +121,8 @@ float RobotReader::finite(const Number& value) const {
 
 void RobotReader::number(const Number& value) {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2) {
-    if (!std::isfinite(value.real)) refuse("a number is not finite");
-    return origin_.number(value);
-  }
+  if (section_ == origin && depth_ >= 2 && !std::isfinite(value.real)) refuse("a number is not finite");
+  if (DocumentEvents* const to = part(0)) return to->number(value);
   if (depth_ == 1 && section_ == version) {
     if (value.kind != Number::Kind::natural || value.natural != 1)
       refuse(std::isfinite(value.real) ? shown(to_text(value)) + " is not known; this program reads version 1"
@@ -164,6 +173,7 @@ void RobotReader::begin_list(std::size_t announced) {
   row_ = 0;
   const std::size_t limit = section_ == masses      ? max_masses
                             : section_ == materials ? std::size_t{max_materials}
+                            : section_ == actuators ? max_actuators
                                                     : unknown_length;
   if (announced != unknown_length && announced > limit)
     refuse(std::to_string(announced) + " " + std::string(section_names[section_]) + ", at most " +
@@ -184,11 +194,8 @@ void RobotReader::begin_row(bool is_array) {
 
 void RobotReader::begin_array(std::size_t announced) {
   if (passes_by(1)) return;
-  if (section_ == origin && depth_ >= 2) {
-    ++depth_;
-    return origin_.begin_array(announced);
-  }
-  if (depth_ == 1 && section_ >= materials && section_ <= faces) return begin_list(announced);
+  if (DocumentEvents* const to = part(1)) return to->begin_array(announced);
+  if (depth_ == 1 && section_ >= materials && section_ <= actuators) return begin_list(announced);
   if (depth_ == 2) return begin_row(true);
   wrong_type("an array");
 }
@@ -199,10 +206,11 @@ void RobotReader::begin_object(std::size_t announced) {
     return;
   }
   if (passes_by(1)) return;
-  if (section_ == origin) {
+  if (section_ == origin && depth_ == 1) {
     ++depth_;
     return origin_.begin_object(announced);
   }
+  if (DocumentEvents* const to = part(1)) return to->begin_object(announced);
   if (depth_ == 2) return begin_row(false);
   wrong_type("an object");
 }
@@ -214,8 +222,8 @@ void RobotReader::key(std::string_view key_name) {
     if (section_ == unknown) return;
     if (has(section_)) refuse("appears twice");
     seen_ |= 1u << section_;
-  } else if (section_ == origin) {
-    origin_.key(key_name);
+  } else if (DocumentEvents* const to = part(0)) {
+    to->key(key_name);
   } else if (section_ == materials && depth_ == 3) {
     material_key(key_name);
   }
@@ -256,10 +264,7 @@ void RobotReader::end_row() {
 
 void RobotReader::end_array() {
   if (passes_by(-1)) return;
-  if (section_ == origin) {
-    --depth_;
-    return origin_.end_array();
-  }
+  if (DocumentEvents* const to = part(-1)) return to->end_array();
   if (depth_ == 3) return end_row();
   if (section_ == materials && row_ == 0) refuse("an empty table; leave it out for the 254 defaults");
   --depth_;
@@ -271,10 +276,7 @@ void RobotReader::end_object() {
     return;
   }
   if (passes_by(-1)) return;
-  if (section_ == origin) {
-    --depth_;
-    return origin_.end_object();
-  }
+  if (DocumentEvents* const to = part(-1)) return to->end_object();
   end_row();
 }
 
@@ -287,6 +289,7 @@ Robot RobotReader::take() {
     if (std::isnan(spring.rest_length) && spring.a < robot_.masses.size() && spring.b < robot_.masses.size())
       spring.rest_length = rest_distance(robot_, spring.a, spring.b);
   validate(robot_);
+  actuators_.give_to(robot_);
   return std::move(robot_);
 }
 

@@ -49,8 +49,9 @@ class RobotWriter {
   RobotWriter(const Robot& robot, DocumentEvents& events) : robot_(robot), events_(events) {}
 
   void run() {
-    const bool has_materials = !robot_.materials.empty(), has_origin = !robot_.origin.empty();
-    events_.begin_object(6u + has_materials + has_origin);
+    const bool has_materials = !robot_.materials.empty(), has_actuators = !robot_.actuators.empty(),
+               has_origin = !robot_.origin.empty();
+    events_.begin_object(6u + has_materials + has_actuators + has_origin);
     field("format", "mercury-robot");
     field("version", 1u);
     field("name", robot_.name);
@@ -72,6 +73,7 @@ class RobotWriter {
       events_.begin_array(3);
       natural(face.a), natural(face.b), natural(face.c);
     });
+    if (has_actuators) write_actuators();
     if (has_origin) write_origin();
     events_.end_object();
   }
@@ -106,6 +108,21 @@ class RobotWriter {
       field("amplitude", material.amplitude);
       field("frequency", material.frequency);
       field("phase", material.phase);
+      events_.end_object();
+    }
+    events_.end_array();
+  }
+
+  void write_actuators() {
+    events_.key("actuators");
+    events_.begin_array(robot_.actuators.size());
+    for (const Actuator& actuator : robot_.actuators) {
+      events_.begin_object(2);
+      field("name", actuator.name);
+      events_.key("materials");
+      events_.begin_array(actuator.materials.size());
+      for (const MaterialId id : actuator.materials) natural(id);
+      events_.end_array();
       events_.end_object();
     }
     events_.end_array();

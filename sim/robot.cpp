@@ -70,7 +70,8 @@ void validate_actuators(const Robot& robot) {
   for (std::size_t i = 0; i < robot.actuators.size(); ++i) {
     const Actuator& actuator = robot.actuators[i];
     const std::string where = place("/actuators/", i);
-    if (actuator.name.empty()) throw InputError(where, "an actuator needs a name");
+    if (actuator.name.empty() || actuator.name.find('\0') != std::string::npos)
+      throw InputError(where, "an actuator needs a name, without NUL characters");
     for (std::size_t k = 0; k < i; ++k)
       if (robot.actuators[k].name == actuator.name)
         throw InputError(where, "has the name of actuator " + std::to_string(k));

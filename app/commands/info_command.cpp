@@ -42,6 +42,18 @@ std::string materials_text(const Inspection& inspection) {
   return text;
 }
 
+// A line for each actuator that the robot names: "left: 120 springs of material 1, 5".
+void print_actuators(const Inspection& inspection) {
+  constexpr std::size_t shown = 20;
+  const auto& actuators = inspection.actuators;
+  for (std::size_t i = 0; i < std::min(shown, actuators.size()); ++i) {
+    const auto& [actuator, springs] = actuators[i];
+    print_line(i == 0 ? "actuators" : "", fmt::format("{}: {} spring{} of material {}", actuator.name, springs,
+                                                      springs == 1 ? "" : "s", fmt::join(actuator.materials, ", ")));
+  }
+  if (actuators.size() > shown) print_line("", fmt::format("and {} more", actuators.size() - shown));
+}
+
 std::string surface_text(const Inspection& inspection) {
   if (inspection.faces == 0) return "none";
   std::string text = inspection.closed ? "closed" : fmt::format("open at {} edges", inspection.open_edges);
@@ -94,6 +106,7 @@ void describe(const Robot& robot) {
   print_line("faces", fmt::to_string(found.faces));
   print_line("surface", surface_text(found));
   print_line("materials", materials_text(found));
+  if (!robot.actuators.empty()) print_actuators(found);
   print_line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
   describe_fit(robot);
   if (found.components > 1) print_line("parts", fmt::format("{} that no spring joins", found.components));
@@ -126,6 +139,7 @@ void describe(const TrajectoryReader& trajectory) {
     const auto& [robot, group, exploded_at, bad_spring] = trajectory.robots()[i];
     std::string text =
         fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
+    if (!robot.actuators.empty()) text += fmt::format(", {} actuators", robot.actuators.size());
     if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
     if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
     fmt::print("    {}: {}\n", group, text);

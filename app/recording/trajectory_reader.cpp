@@ -2,6 +2,7 @@
 #include "app/recording/trajectory_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -92,6 +93,19 @@ void read_materials(hid_t group, Robot& robot) {
       std::ranges::all_of(robot.material_names, has_default_name)) {
     robot.materials.clear();
     robot.material_names.clear();
+  }
+}
+
+void read_actuators(hid_t group, Robot& robot) {
+  if (!has_member(group, "actuators")) return;
+  for (std::string& name : read_texts_dataset(group, "actuators"))
+    robot.actuators.push_back({.name = std::move(name), .materials = {}});
+  for (const auto& [actuator, material] :
+       read_rows<std::array<std::uint8_t, 2>>(group, "actuator_materials", H5T_NATIVE_UINT8, {2})) {
+    if (actuator >= robot.actuators.size())
+      throw Error("\"actuator_materials\" names actuator " + std::to_string(actuator) + " of " +
+                  std::to_string(robot.actuators.size()));
+    robot.actuators[actuator].materials.push_back(material);
   }
 }
 
@@ -188,6 +202,7 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   robot.springs = read_springs(group);
   robot.faces = read_rows<Face>(group, "faces", H5T_NATIVE_UINT16, {3});
   read_materials(group, robot);
+  read_actuators(group, robot);
   if (has_member(group, "origin")) robot.origin = read_text_dataset(group, "origin");
   validate(robot);
   if (has_attribute(group, "exploded_at")) recorded.exploded_at = read_attribute<double>(group, "exploded_at");

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -177,6 +178,7 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
              "m");
   write_connectivity(name, robot, group);
   write_materials(group, robot, materials);
+  write_actuators(group, robot);
   if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
 }
 
@@ -214,6 +216,19 @@ void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std:
   }
   write_dataset(particles, "materials", material_type(), material_type(), {materials.size()}, materials.data());
   if (!robot.material_names.empty()) write_text_dataset(particles, "material_names", robot.material_names);
+}
+
+void TrajectoryWriter::write_actuators(hid_t particles, const Robot& robot) {
+  if (robot.actuators.empty()) return;
+  std::vector<std::string> names;
+  std::vector<std::array<std::uint8_t, 2>> materials;  // actuator and material, in the order of the robot
+  for (const Actuator& actuator : robot.actuators) {
+    for (const MaterialId id : actuator.materials) materials.push_back({static_cast<std::uint8_t>(names.size()), id});
+    names.push_back(actuator.name);
+  }
+  write_text_dataset(particles, "actuators", names);
+  write_dataset(particles, "actuator_materials", H5T_STD_U8LE, H5T_NATIVE_UINT8, {materials.size(), 2},
+                materials.data());
 }
 
 // All elements share one time axis, as H5MD allows.

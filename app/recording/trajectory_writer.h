@@ -58,6 +58,7 @@ class TrajectoryWriter {
   void write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials);
   void write_connectivity(const std::string& group, const Robot& robot, hid_t particles);
   void write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials);
+  void write_actuators(hid_t particles, const Robot& robot);
   void create_frames(hid_t particles, std::size_t masses);
   void flush();
   void flush_times(hsize_t first);

@@ -9,6 +9,7 @@
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
+#include "robots/document.h"
 
 namespace mercury {
 namespace {
@@ -20,6 +21,18 @@ Robot small_robot() {
   robot.material_names = {"air", "a", "b"};
   for (Spring& spring : robot.springs) spring.material = 1;
   return robot;
+}
+
+// The robot with actuators: one of materials, which files that Mercury writes have, and one of springs.
+std::string document_with_actuators(RobotFormat format) {
+  std::string json = serialize_robot(small_robot(), RobotFormat::json);
+  const std::string actuators = R"("actuators":[{"name":"left","materials":[2]},{"name":"tail","springs":[0,1,2,7]}],)";
+  json.insert(json.find("\"origin\""), actuators);
+  if (format == RobotFormat::json) return json;
+  std::string cbor;
+  CborWriter writer(cbor);
+  read_json(json, writer);
+  return cbor;
 }
 
 std::string mutated(std::string document, Random& random) {
@@ -56,17 +69,16 @@ std::string mutated(std::string document, Random& random) {
 
 class Fuzz : public testing::TestWithParam<RobotFormat> {};
 
-TEST_P(Fuzz, DamagedDocumentsGiveARobotOrALine) {
-  const std::string sound = serialize_robot(small_robot(), GetParam());
+void expect_a_robot_or_a_line(const std::string& sound, RobotFormat format) {
   int loaded = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 6000; ++seed) {
     Random random(seed);
     const std::string document = mutated(sound, random);
     try {
-      const Robot robot = parse_robot(document, GetParam());
+      const Robot robot = parse_robot(document, format);
       ASSERT_NO_THROW(validate(robot)) << "seed " << seed;
       // What can be read can be written, and reads back the same.
-      ASSERT_EQ(parse_robot(serialize_robot(robot, GetParam()), GetParam()), robot) << "seed " << seed;
+      ASSERT_EQ(parse_robot(serialize_robot(robot, format), format), robot) << "seed " << seed;
       ++loaded;
       try {
         voxel_grid_of(robot);
@@ -84,6 +96,16 @@ TEST_P(Fuzz, DamagedDocumentsGiveARobotOrALine) {
   // Both outcomes are common, so the edits reach into the readers rather than break everything at once.
   EXPECT_GT(loaded, 100);
   EXPECT_GT(refused, 1000);
+}
+
+TEST_P(Fuzz, DamagedDocumentsGiveARobotOrALine) {
+  expect_a_robot_or_a_line(serialize_robot(small_robot(), GetParam()), GetParam());
+}
+
+TEST_P(Fuzz, DamagedActuatorsGiveARobotOrALine) {
+  const std::string sound = document_with_actuators(GetParam());
+  ASSERT_EQ(parse_robot(sound, GetParam()).actuators.size(), 2u);
+  expect_a_robot_or_a_line(sound, GetParam());
 }
 
 TEST_P(Fuzz, NoiseIsRefused) {

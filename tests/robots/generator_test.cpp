@@ -18,6 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 // Without CGAL, network robots cannot be grown.
@@ -162,6 +163,34 @@ TEST_P(EveryGenerator, RegrowingKeepsTheWholeOrigin) {
   Robot robot = mutate_robot(made(GetParam(), 4, 1), {}, "mutant");
   robot.origin.insert(1, R"("note": "mine" ,)");
   EXPECT_EQ(GetParam().regrow(robot), robot);
+}
+
+TEST_P(EveryGenerator, KeepsActuatorsWhereTheTableOfMaterialsIsTheSame) {
+  Robot parent = made(GetParam(), 4, 1);
+  parent.actuators = actuators_of(parent);
+  ASSERT_THAT(parent.actuators, Not(IsEmpty()));
+  parent.actuators.front().name = "mine";
+  EXPECT_EQ(GetParam().regrow(parent), parent);
+  for (const Robot& child : {mutate_robot(parent, {.strength = 2, .seed = 9, .muscles = 1}, "mutant"),
+                             cross_robots(parent, made(GetParam(), 5, 1), 9, "child")}) {
+    const bool same =
+        materials_of(child).size() == materials_of(parent).size() && child.material_names == parent.material_names;
+    EXPECT_EQ(child.actuators, same ? parent.actuators : std::vector<Actuator>());
+    EXPECT_TRUE(same || GetParam().kind == "shell" || GetParam().kind == "cppn") << "the table is the parent's";
+    EXPECT_NO_THROW(validate(child));
+  }
+}
+
+TEST(Generators, DropActuatorsWhoseMaterialsAreNotGrown) {
+  Robot robot = made(generator_named("shell"), 4);
+  ASSERT_GT(robot.springs.size(), 2u);
+  const Robot before = robot;
+  const auto of_one_material = static_cast<std::uint32_t>(
+      std::ranges::find_if(robot.springs, [&](const Spring& s) { return s.material == robot.springs[0].material; }) -
+      robot.springs.begin());
+  add_actuator(robot, "one spring", std::vector{of_one_material});
+  ASSERT_GT(robot.materials.size(), before.materials.size());
+  EXPECT_EQ(generator_named("shell").regrow(robot), before);
 }
 
 TEST_P(EveryGenerator, AcceptsItsDefaultsAndRefusesWhatIsOutOfRange) {

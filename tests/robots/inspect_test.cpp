@@ -87,6 +87,9 @@ TEST(Inspection, APlainTriangleOfTwoParts) {
   ASSERT_EQ(found.materials.size(), 2u);
   EXPECT_EQ(found.materials[0].name, "material 1");
   EXPECT_EQ(found.materials[1].name, "gut");
+  ASSERT_EQ(found.actuators.size(), 1u);
+  EXPECT_EQ(found.actuators[0].actuator, (Actuator{"material 1", {1}}));
+  EXPECT_EQ(found.actuators[0].springs, 1u);
 }
 
 TEST(Inspection, ARobotWithoutSpringsOrFaces) {

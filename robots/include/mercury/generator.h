@@ -93,6 +93,9 @@ struct Generator {
   std::function<Robot(const ParameterValues& values, const std::string& environment, std::uint64_t seed,
                       std::uint64_t index)>
       make;
+  // The three functions below keep the actuators of the robot (of `a`) if the table of materials stays the same except
+  // for the muscle laws; otherwise the new robot names none.
+  //
   // A robot of this generator once more from its origin (which it keeps, with what nobody knows in it) and its own
   // materials, bit for bit. Throws InputError("/origin/...") if the origin does not hold one.
   std::function<Robot(const Robot& robot)> regrow;

@@ -19,10 +19,16 @@ struct MaterialUse {
   std::size_t springs = 0;  // made of this material
 };
 
+struct ActuatorUse {
+  Actuator actuator;
+  std::size_t springs = 0;  // made of its materials
+};
+
 struct Inspection {
   std::size_t masses = 0, springs = 0, faces = 0;
   std::vector<MaterialUse> materials;  // those with at least one spring, by id
   std::size_t muscles = 0;             // springs with an amplitude other than 0
+  std::vector<ActuatorUse> actuators;  // actuators_of()
 
   Vec3 lowest, highest;                           // corners of the box around the masses at rest [m]
   Vec3 extent;                                    // sides of that box [m]

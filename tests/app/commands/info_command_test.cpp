@@ -27,6 +27,18 @@ TEST_F(InfoCommand, DescribesAFile) {
   EXPECT_THAT(outcome.output, HasSubstr("needs 4.1 kB of a CUDA block's memory in water: fits every CUDA device"));
 }
 
+TEST_F(InfoCommand, ListsNamedActuators) {
+  write("chain.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],"faces":[],
+    "springs":[[0,1,1],[1,2,2],[2,3,1]],"actuators":[{"name":"ends","materials":[1,3]},{"name":"mid","springs":[1]}]})");
+  const Outcome outcome = mercury({"info", path("chain.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, testing::ContainsRegex("actuators +ends: 2 springs of material 1, 3\n"
+                                                     " +mid: 1 spring of material 2\n"));
+  ASSERT_EQ(mercury({"run", path("chain.json"), "--seconds", "0.01", "--record", path("chain.h5")}).status, 0);
+  EXPECT_THAT(mercury({"info", path("chain.h5")}).output,
+              HasSubstr("chain: 4 masses, 3 springs, 0 faces, 2 actuators"));
+}
+
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
   const Outcome outcome = mercury({"info"});
   EXPECT_EQ(outcome.status, 0);

@@ -148,7 +148,9 @@ TEST_F(LiveRepro, ChangeInTheWindowEndsTheReplay) {
 }
 
 TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
-  const auto robot = std::make_shared<const Robot>(random_voxel_robot({}, 5, 0));
+  Robot with_actuators = random_voxel_robot({}, 5, 0);
+  with_actuators.actuators = actuators_of(with_actuators);
+  const auto robot = std::make_shared<const Robot>(with_actuators);
   const Configuration configuration = test::on_cpu().configuration;
   Simulation simulation(configuration, std::span(robot.get(), 1));
   LiveRobots robots{.robots = {{.id = 4, .name = "it", .robot = robot}}, .mass_offsets = {0, robot->masses.size()}};
@@ -169,6 +171,7 @@ TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
   EXPECT_EQ(repro.clock.step, 800);
   EXPECT_THAT(repro.changes, SizeIs(1));
   const Repro read = parse_repro(serialize_repro(repro));
+  EXPECT_EQ(read.robot.actuators, with_actuators.actuators);
   Simulation same = start_of(read, configuration.device);
   ReproChanges changes(read);
   while (same.steps() < repro.last_step) {

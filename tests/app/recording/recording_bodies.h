@@ -31,6 +31,7 @@ inline Robot own_materials(const std::string& name) {
   Robot robot = pair(name);
   robot.materials = {{}, {30, 0.2f, 3, 0.5f}, {70, 0, 0, 0}};
   robot.material_names = {"air", "fast muscle", "cord"};
+  robot.actuators = {{"both", {2, 1}}};
   return robot;
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <functional>
 
 #include "app/recording/trajectory_hdf5_reading.h"
@@ -273,6 +274,27 @@ TEST_F(RecordingChanged, ARobotThatBreaksARuleIsNamedWithTheRule) {
     checked(H5Dwrite(dataset, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends));
   });
   EXPECT_EQ(refused, path("changed.h5") + ": /particles/own: /springs/0: mass 912 is out of range, the robot has 2");
+}
+
+TEST_F(RecordingChanged, ActuatorsThatBreakARuleAreNamedWithTheRule) {
+  const auto with = [&](std::array<std::uint8_t, 4> pairs) {
+    return refusal_after([&](hid_t file) {
+      const Handle dataset(H5Dopen2(file, "/particles/own/actuator_materials", H5P_DEFAULT));
+      checked(H5Dwrite(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, pairs.data()));
+    });
+  };
+  const std::string place = path("changed.h5") + ": /particles/own: ";
+  EXPECT_EQ(with({0, 1, 0, 2}), "");
+  EXPECT_EQ(with({0, 1, 3, 2}), place + "\"actuator_materials\" names actuator 3 of 1");
+  EXPECT_EQ(with({0, 1, 0, 7}), place + "/actuators/0: material 7 is out of range, the table has 3");
+}
+
+TEST_F(RecordingChanged, ARecordingOfAnOlderProgramHasNoActuators) {
+  EXPECT_EQ(refusal_after([](hid_t file) {
+              remove(file, "/particles/own/actuators");
+              remove(file, "/particles/own/actuator_materials");
+            }),
+            "");
 }
 
 }  // namespace

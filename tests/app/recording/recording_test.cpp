@@ -74,6 +74,14 @@ TEST_F(Recording, HoldsTheRobotsAsTheyWere) {
   EXPECT_THAT(reader.program(), testing::StartsWith("mercury "));
 }
 
+TEST_F(Recording, ActuatorsComeBackInTheirOrder) {
+  Robot robot = pair("many");
+  robot.actuators = {{"längs", {9, 3}}, {"b", {1}}, {"a", {200, 7, 8}}};
+  Simulation simulation(on_cpu(), std::vector{robot, pair("none")});
+  record(simulation, file(), 1, 1);
+  EXPECT_EQ(robots_of(TrajectoryReader(file())), (std::vector{robot, pair("none")}));
+}
+
 class RecordedConfiguration : public Recording, public testing::WithParamInterface<Environment> {};
 
 TEST_P(RecordedConfiguration, IsReadBackWhole) {
