@@ -133,12 +133,17 @@ void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<con
   }
   made_ = true;
   applied_.assign(4 * size, 0);
+  attach(backend);
+}
+
+void SharedActuation::attach(Backend& backend) {
+  if (!made_) return;
   applied_is_known_ = false;
   by_backend_ = backend.set_actuation({.amplitude = arrays_.amplitude.data.get(),
                                        .frequency = arrays_.frequency.data.get(),
                                        .phase = arrays_.phase.data.get(),
                                        .drive = arrays_.drive.data.get(),
-                                       .columns = columns,
+                                       .columns = arrays_.drive.columns,
                                        .actuator_of = actuator_of_});
 }
 

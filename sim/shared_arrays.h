@@ -46,6 +46,8 @@ class SharedActuation {
   // Changes the materials of the backend, unless it reads the arrays itself. To be called before every step.
   void apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
              std::span<const std::unique_ptr<MaterialTable>> tables);
+  // Lets the backend read the arrays again, after it failed to exchange robots.
+  void attach(Backend& backend);
   // The robots' own materials have changed in the backend.
   void materials_changed() { applied_is_known_ = false; }
 

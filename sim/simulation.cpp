@@ -142,6 +142,7 @@ std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots
     parts_->backend->add(parts_->pointers, first);
   } catch (...) {
     parts_->truncate(first);
+    parts_->shared_actuation.attach(*parts_->backend);
     throw;
   }
   if (is_land(parts_->configuration.environment)) parts_->put_at_rest(first);

@@ -71,8 +71,7 @@ void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& sch
 void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& order, float lift) {
   std::ranges::fill(state, 0.f);
   for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass)
-    put_vector(state, order.slot_of(mass), field_x,
-               lift == 0 ? robot.masses[mass] : robot.masses[mass] + Vec3{0, 0, lift});
+    put_vector(state, order.slot_of(mass), field_x, at_rest(robot.masses[mass], lift));
 }
 
 Vec3 vector_at(std::span<const float> state, std::uint32_t slot, Field field) {

@@ -47,6 +47,9 @@ class Chunks {
   ChunkSizes sizes_;
 };
 
+// Where a mass is at rest if its robot is `lift` [m] higher than in its file.
+inline Vec3 at_rest(Vec3 mass, float lift) { return lift == 0 ? mass : mass + Vec3{0, 0, lift}; }
+
 // The state of a robot at rest where it began, but `lift` [m] higher.
 void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& order, float lift);
 

@@ -84,18 +84,17 @@ cudaMemPool_t present_pool() {
   return pool;
 }
 
-}  // namespace
-
-void* allocate_on_device(std::size_t bytes) {
+// What `allocate` allocates, cleared.
+template <class Allocate>
+void* zeros(std::size_t bytes, cudaStream_t stream, const Allocate& allocate) {
   const cudaMemPool_t pool = present_pool();
-  const cudaStream_t stream = urgent_stream();
   void* data = nullptr;
-  cudaError_t error = cudaMallocAsync(&data, bytes, stream);
+  cudaError_t error = allocate(&data);
   if (error == cudaErrorMemoryAllocation) {
     (void)cudaGetLastError();
     check(cudaDeviceSynchronize(), "freeing device memory");
     check(cudaMemPoolTrimTo(pool, 0), "freeing device memory");
-    error = cudaMallocAsync(&data, bytes, stream);
+    error = allocate(&data);
   }
   if (error == cudaErrorMemoryAllocation) {
     (void)cudaGetLastError();
@@ -106,6 +105,27 @@ void* allocate_on_device(std::size_t bytes) {
   check(cudaMemsetAsync(data, 0, bytes, stream), "clearing device memory");
   check(cudaStreamSynchronize(stream), "allocating device memory");
   return data;
+}
+
+}  // namespace
+
+void* allocate_on_device(std::size_t bytes) {
+  const cudaStream_t stream = urgent_stream();
+  return zeros(bytes, stream, [&](void** data) { return cudaMallocAsync(data, bytes, stream); });
+}
+
+std::shared_ptr<void> allocate_to_share(std::size_t bytes) {
+  int device = 0;
+  check(cudaGetDevice(&device), "querying the present device");
+  const auto free = [device](void* data) noexcept {
+    int callers = 0;
+    cudaGetDevice(&callers);
+    cudaSetDevice(device);
+    cudaDeviceSynchronize();
+    cudaFree(data);
+    cudaSetDevice(callers);
+  };
+  return {zeros(bytes, urgent_stream(), [&](void** data) { return cudaMalloc(data, bytes); }), free};
 }
 
 void free_on_device(void* data) noexcept {

@@ -9,6 +9,7 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,6 +22,11 @@ namespace mercury::cuda {
 void* allocate_on_device(std::size_t bytes);
 // No stream may still use them. The device that holds them must be the present one.
 void free_on_device(void* data) noexcept;
+
+// Bytes of zeros on the present device for programs and other libraries. They can be freed by any thread, after their
+// backend, and while kernels still use them: freeing waits for the device. They do not come from the pool, because
+// other devices and processes can map only what cudaMalloc() allocates.
+std::shared_ptr<void> allocate_to_share(std::size_t bytes);
 
 // What can be allocated on the present device [bytes].
 std::size_t free_device_memory();

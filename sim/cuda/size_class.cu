@@ -23,11 +23,6 @@ __global__ void readdress_partners(std::uint32_t* records, std::size_t count, st
   }
 }
 
-__global__ void compute_phases(const Material* materials, MusclePhase* phases, std::size_t count, Clock clock) {
-  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i < count) phases[i] = muscle_phase(materials[i], clock);
-}
-
 // One block per move.
 __global__ void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
   const uint2 move = moves[blockIdx.x];
@@ -64,7 +59,6 @@ template <class Visit>
 void SizeClass::for_each_array(const Visit& visit) {
   visit(device_headers_, 1);
   visit(statuses_, 1);
-  visit(first_masses_, 1);
   visit(device_materials_, max_materials);
   visit(phases_, max_materials);
   visit(state_, sizes_.state());
@@ -192,19 +186,15 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
   return new_place;
 }
 
-void SizeClass::set_first_masses(std::vector<std::uint64_t> first_masses) {
-  first_masses_.write(0, first_masses, urgent_->get());
-  first_mass_ = std::move(first_masses);
-}
-
 void SizeClass::configure(const Configuration& configuration) {
   oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
   device_headers_.write(0, headers_, urgent_->get());
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
+  const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   launch_ =
-      choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials_, batch_size);
+      choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials, batch_size);
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(partner_fields_, launch_.on_chip ? fields : 0);
   address_partners(0, old_fields, partner_fields_);
@@ -212,19 +202,6 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   reserve_workspace(workspace);
-}
-
-void SizeClass::update_scales(std::uint32_t place, const Configuration& configuration) {
-  const FixedPointScale scale = fixed_point_scale(measures_[place], table(place), configuration);
-  headers_[place].force_scale = scale.force;
-  headers_[place].correction_scale = scale.correction;
-}
-
-void SizeClass::find_same_materials(std::uint32_t first_changed) {
-  same_materials_ = first_changed == 0 || same_materials_;
-  for (std::uint32_t place = first_changed; same_materials_ && place < size(); ++place)
-    same_materials_ = std::ranges::equal(table(place), table(0));
-  phases_stale_ = true;
 }
 
 void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
@@ -242,31 +219,6 @@ void SizeClass::reserve_workspace(std::size_t bytes_per_robot) {
   workspace_ = DeviceArray<char>();  // frees the old one first
   workspace_ = DeviceArray<char>(bytes_per_robot * capacity_);
   workspace_stride_ = bytes_per_robot;
-}
-
-void SizeClass::publish_materials(std::uint32_t place, const Configuration& configuration) {
-  update_scales(place, configuration);
-  device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
-  device_materials_.write(place, table(place), urgent_->get());
-  find_same_materials(0);
-}
-
-void SizeClass::publish_all_materials(const Configuration& configuration) {
-  configure(configuration);
-  device_materials_.write(0, materials_, urgent_->get());
-  find_same_materials(0);
-}
-
-void SizeClass::update_phases(const Clock& clock) {
-  const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
-  if (size() == 0 || (!phases_stale_ && same_base)) return;
-  const std::size_t count = std::size_t{size()} * max_materials;
-  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, urgent_->get()>>>(
-      device_materials_.data(), phases_.data(), count, clock);
-  check(cudaGetLastError(), "computing muscle phases");
-  urgent_->synchronize();
-  phase_clock_ = clock;
-  phases_stale_ = false;
 }
 
 void SizeClass::set_perturbations(std::span<const DevicePerturbation> perturbations) {
@@ -287,7 +239,7 @@ BatchView SizeClass::view() const {
           .valences = valences_.data(),
           .masses = masses_.data(),
           .incoming_counts = incoming_counts_.data(),
-          .materials = device_materials_.data(),
+          .materials = driven_materials_.size() > 0 ? driven_materials_.data() : device_materials_.data(),
           .phases = phases_.data(),
           .perturbations = perturbations_.data(),
           .workspace = workspace_.data(),

@@ -19,13 +19,16 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mercury/backend.h"
+#include "sim/cuda/actuation.h"
 #include "sim/cuda/chunked_array.h"
 #include "sim/cuda/chunks.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
+#include "sim/cuda/robot_views.h"
 #include "sim/physics/environments.h"
 #include "sim/physics/measures.h"
 
@@ -38,6 +41,7 @@ class SizeClass {
   std::uint32_t size() const { return static_cast<std::uint32_t>(headers_.size()); }  // robots
   const ChunkSizes& sizes() const { return sizes_; }
   BatchView view() const;
+  RobotView robot_view(std::uint32_t place) const;
 
   // New robots take the next `count` places. Returns the first of them. Each is then to be filled: make room for all
   // chunks, set_robot(), write_chunks(), and publish() for all at the end.
@@ -56,7 +60,7 @@ class SizeClass {
   // Gives up the places for which `keep` is false. Returns the new place of each of the others, by its old one.
   std::vector<std::uint32_t> compact(const std::vector<bool>& keep);
   // For each place, the index of the robot's first mass among those of the batch.
-  void set_first_masses(std::vector<std::uint64_t> first_masses);
+  void set_first_masses(std::vector<std::uint64_t> first_masses) { first_mass_ = std::move(first_masses); }
 
   // Updates the scales of the fixed-point sums.
   void configure(const Configuration& configuration);
@@ -70,8 +74,12 @@ class SizeClass {
   }
   void publish_materials(std::uint32_t place, const Configuration& configuration);
   void publish_all_materials(const Configuration& configuration);
-  // Computes the phases for a clock whose base or dt changed.
+  // Queues a kernel in stream() that computes the phases, if materials or the clock's base or dt changed.
   void update_phases(const Clock& clock);
+  // From here on the steps read copies of the materials, some of which actuators drive (actuation.h).
+  void begin_actuation();
+  void end_actuation();
+  DrivenMaterial driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const;
   void set_perturbations(std::span<const DevicePerturbation> perturbations);
 
   const SlotOrder& order_of(std::uint32_t place) const { return *slot_tables_[place]; }
@@ -85,9 +93,6 @@ class SizeClass {
   DeviceStatus status(std::uint32_t place) const;
   std::vector<DeviceStatus> statuses() const;
   void set_status(std::uint32_t place, DeviceStatus status);
-  // Queues a kernel that writes three floats per mass to its robot's part of `device_out`. `first_field` = field_x or
-  // field_v.
-  void gather(float* device_out, Field first_field, cudaStream_t stream) const;
 
   // For launches of the step kernel.
   const Stream& stream() const { return *stream_; }
@@ -129,7 +134,7 @@ class SizeClass {
   ChunkedArray<FacePair> face_pairs_;
   ChunkedArray<Material> device_materials_;
   ChunkedArray<MusclePhase> phases_;
-  ChunkedArray<std::uint64_t> first_masses_;
+  DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty
   DeviceArray<DevicePerturbation> perturbations_;
   DeviceArray<char> workspace_;
   std::unique_ptr<Stream> stream_ = std::make_unique<Stream>(), urgent_ = std::make_unique<Stream>(true);

@@ -9,23 +9,8 @@
 namespace mercury::cuda {
 namespace {
 
-constexpr unsigned threads = 256;
-
 // Of pinned memory for states on their way. Always the same size, so that the memory is used again.
 constexpr std::size_t portion_bytes = std::size_t{4} << 20;
-
-// One block per robot.
-__global__ void gather_vectors(const float* state, const std::uint16_t* masses, const RobotHeader* headers,
-                               const std::uint64_t* first_masses, std::uint32_t tile_stride, std::uint32_t first_field,
-                               float* out) {
-  const std::uint32_t place = blockIdx.x;
-  const float* from = state + std::size_t{place} * tile_stride * state_fields * lanes + first_field * lanes;
-  const std::uint16_t* numbers = masses + std::size_t{place} * tile_stride * lanes;
-  float* const to = out + 3 * first_masses[place];
-  for (std::uint32_t slot = threadIdx.x; slot < headers[place].masses; slot += blockDim.x)
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-      to[3 * numbers[slot] + axis] = from[offset_of_slot(slot, state_fields) + axis * lanes];
-}
 
 }  // namespace
 
@@ -94,10 +79,9 @@ void SizeClass::set_status(std::uint32_t place, DeviceStatus status) {
   statuses_.write(place, std::span(&status, 1), urgent_->get());
 }
 
-void SizeClass::gather(float* device_out, Field first_field, cudaStream_t stream) const {
-  gather_vectors<<<size(), threads, 0, stream>>>(state_.data(), masses_.data(), device_headers_.data(),
-                                                 first_masses_.data(), sizes_.tiles, first_field, device_out);
-  check(cudaGetLastError(), "gathering masses");
+RobotView SizeClass::robot_view(std::uint32_t place) const {
+  return {state_.chunk(place), masses_.chunk(place), statuses_.chunk(place), first_mass_[place],
+          headers_[place].masses};
 }
 
 }  // namespace mercury::cuda

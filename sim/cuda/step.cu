@@ -92,29 +92,38 @@ template <Solver solver, class EnvironmentModel>
 void start(const EnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream) {
   const LaunchConfiguration& launch = arguments.launch;
   const auto kernel = kernel_for<solver, EnvironmentModel>(launch);
-  prepare(kernel);
   const std::uint32_t blocks = (arguments.batch.robot_count + launch.robots_per_block - 1) / launch.robots_per_block;
   const std::uint32_t threads = launch.robots_per_block * launch.warps_per_robot * lanes;
   kernel<<<blocks, threads, launch.shared_bytes, stream>>>(arguments, model);
   check(cudaGetLastError(), "starting the step kernel");
 }
 
-}  // namespace
-
-std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch) {
+template <class Use>
+auto with_kernel(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch, const Use& use) {
   return std::visit(
       [&](const auto& kind) {
         using EnvironmentModel = std::decay_t<decltype(kind)>;
-        const auto kernel = solver == Solver::force ? kernel_for<Solver::force, EnvironmentModel>(launch)
-                                                    : kernel_for<Solver::xpbd, EnvironmentModel>(launch);
-        prepare(kernel);
-        int blocks = 0;
-        const auto threads = static_cast<int>(launch.robots_per_block * launch.warps_per_robot * lanes);
-        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, launch.shared_bytes),
-              "querying the occupancy");
-        return static_cast<std::uint32_t>(blocks) * launch.robots_per_block * device_limits().multiprocessors;
+        return use(solver == Solver::force ? kernel_for<Solver::force, EnvironmentModel>(launch)
+                                           : kernel_for<Solver::xpbd, EnvironmentModel>(launch));
       },
       model);
+}
+
+}  // namespace
+
+std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch) {
+  return with_kernel(solver, model, launch, [&](auto kernel) {
+    prepare(kernel);
+    int blocks = 0;
+    const auto threads = static_cast<int>(launch.robots_per_block * launch.warps_per_robot * lanes);
+    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, launch.shared_bytes),
+          "querying the occupancy");
+    return static_cast<std::uint32_t>(blocks) * launch.robots_per_block * device_limits().multiprocessors;
+  });
+}
+
+void prepare_steps(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch) {
+  with_kernel(solver, model, launch, [](auto kernel) { prepare(kernel); });
 }
 
 void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments,

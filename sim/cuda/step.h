@@ -26,7 +26,10 @@ struct StepArguments {
 // Robots that the present device steps at the same time.
 std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
 
-// Asynchronous; errors through cudaGetLastError.
+// Makes the kernel for this launch ready, once per device.
+void prepare_steps(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
+
+// Asynchronous. prepare_steps() comes first.
 void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace mercury::cuda

@@ -15,22 +15,44 @@ namespace mercury::cuda {
 
 // Throws DeviceError if a call failed. `what` says what the call was for.
 inline void check(cudaError_t error, const char* what) {
-  if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+  if (error == cudaSuccess) return;
+  (void)cudaGetLastError();  // the next launch shall not report it again
+  throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
 }
+
+// Makes a device the present one of this thread, and restores the caller's.
+class DeviceScope {
+ public:
+  explicit DeviceScope(int device) : device_(device) {
+    check(cudaGetDevice(&callers_), "querying the present device");
+    if (callers_ != device_) check(cudaSetDevice(device_), "choosing the device");
+  }
+  ~DeviceScope() {
+    if (callers_ != device_) cudaSetDevice(callers_);
+  }
+  DeviceScope(const DeviceScope&) = delete;
+  DeviceScope& operator=(const DeviceScope&) = delete;
+
+ private:
+  int device_, callers_ = 0;
+};
 
 // A moment in a stream.
 class Event {
  public:
-  // A thread that waits for a `sleepy` event lets others use its core, but notices the event some 50 us later.
-  explicit Event(bool sleepy = false) {
-    check(cudaEventCreateWithFlags(&event_, sleepy ? cudaEventBlockingSync : cudaEventDefault), "creating an event");
-  }
+  // Only `timed` and `sleepy` events know their time; the others cost less. A thread that waits for a `sleepy` event
+  // lets others use its core, but notices the event some 50 us later.
+  enum Kind : unsigned { untimed = cudaEventDisableTiming, timed = cudaEventDefault, sleepy = cudaEventBlockingSync };
+
+  explicit Event(Kind kind = untimed) { check(cudaEventCreateWithFlags(&event_, kind), "creating an event"); }
   ~Event() { cudaEventDestroy(event_); }
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
 
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "recording an event"); }
   void synchronize() const { check(cudaEventSynchronize(event_), "stepping"); }
+  // What follows in the stream begins after this event.
+  void hold(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "ordering streams"); }
   // The time from `start` to this event [s]. Waits for this event.
   double seconds_since(const Event& start) const {
     synchronize();
@@ -60,7 +82,7 @@ class Stream {
   cudaStream_t get() const { return stream_; }
   void synchronize() const { check(cudaStreamSynchronize(stream_), "waiting for the device"); }
   // What follows in this stream begins after the event.
-  void wait_for(const Event& event) const { check(cudaStreamWaitEvent(stream_, event.get(), 0), "ordering streams"); }
+  void wait_for(const Event& event) const { event.hold(stream_); }
 
  private:
   cudaStream_t stream_ = nullptr;

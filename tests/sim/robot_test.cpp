@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -130,6 +131,101 @@ TEST(Robots, WithoutATableTheMaterialsAreTheDefaults) {
   EXPECT_EQ(materials_of(robot).size(), 2u);
   robot.materials.clear();
   EXPECT_EQ(materials_of(robot).data(), default_materials().data());
+}
+
+// Springs of three materials, the third one passive.
+Robot with_muscles() {
+  Robot robot = sound();
+  robot.masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  robot.faces.clear();
+  robot.materials = {{}, {50, 0.1f, 3, 1}, {60, 0.2f, 3, 2}, {70, 0, 0, 0}, {80, 0.3f, 3, 1}};
+  robot.material_names = {"air", "flexor", "extensor", "bone", "stiff flexor"};
+  robot.springs = {{0, 1, 1, 1}, {0, 2, 2, 1}, {1, 3, 3, 1}, {2, 3, 1, 1}, {0, 3, 4, 1.4f}};
+  return robot;
+}
+
+TEST(Actuators, OfARobotThatNamesNoneAreItsMusclesThatMoveAlike) {
+  const std::vector<Actuator> found = actuators_of(with_muscles());
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0], (Actuator{.name = "flexor", .materials = {1, 4}}));
+  EXPECT_EQ(found[1], (Actuator{.name = "extensor", .materials = {2}}));
+}
+
+TEST(Actuators, OfMaterialsThatNoSpringHasDoNotExist) {
+  Robot robot = with_muscles();
+  robot.springs.resize(1);
+  ASSERT_EQ(actuators_of(robot).size(), 1u);
+  EXPECT_EQ(actuators_of(robot)[0].materials, std::vector<MaterialId>{1});
+}
+
+TEST(Actuators, ThatARobotNamesAreItsActuators) {
+  Robot robot = with_muscles();
+  robot.actuators = {{.name = "all", .materials = {3, 1}}};
+  EXPECT_EQ(actuators_of(robot), robot.actuators);
+}
+
+// Spring 3 has the material of spring 0, so spring 0 needs a copy of it. No other spring has that of spring 1.
+TEST(Actuators, GetMaterialsThatNoOtherSpringHas) {
+  Robot robot = with_muscles();
+  add_actuator(robot, "corner", std::array{0u, 1u, 0u});
+  validate(robot);
+  ASSERT_EQ(robot.actuators.size(), 1u);
+  EXPECT_EQ(robot.actuators[0], (Actuator{.name = "corner", .materials = {5, 2}}));
+  EXPECT_EQ(robot.materials[5], robot.materials[1]);
+  EXPECT_EQ(robot.material_names[5], "flexor");
+  const std::vector<MaterialId> expected = {5, 2, 3, 1, 4};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(robot.springs[i].material, expected[i]) << i;
+}
+
+TEST(Actuators, GiveARobotWithTheDefaultTableOneOfItsOwn) {
+  Robot robot = with_muscles();
+  robot.materials.clear();
+  robot.material_names.clear();
+  add_actuator(robot, "a", std::array{0u});
+  add_actuator(robot, "b", std::array{1u, 2u});
+  validate(robot);
+  EXPECT_EQ(robot.materials.size(), 6u) << "air, the four that springs have, and a copy of material 1";
+  for (std::size_t i = 0; i < robot.springs.size(); ++i)
+    EXPECT_EQ(robot.materials[robot.springs[i].material], default_materials()[with_muscles().springs[i].material]) << i;
+}
+
+std::string message_of_actuator(Robot robot, const std::vector<std::uint32_t>& springs) {
+  const Robot before = robot;
+  try {
+    add_actuator(robot, "fin", springs);
+  } catch (const InputError& error) {
+    EXPECT_EQ(robot, before) << "changed by an error";
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Actuators, ThatCannotBeMadeAreRefused) {
+  Robot robot = with_muscles();
+  EXPECT_EQ(message_of_actuator(robot, {5}), "actuator fin: spring 5 is out of range, the robot has 5");
+  add_actuator(robot, "corner", std::array{1u});
+  EXPECT_EQ(message_of_actuator(robot, {1}), "actuator fin: springs of material 2 have an actuator already");
+  EXPECT_EQ(message_of_actuator(robot, {}), "/actuators/1: an actuator needs at least one material or spring");
+  robot.materials.resize(max_materials);
+  robot.material_names.resize(max_materials, "spare");
+  EXPECT_EQ(message_of_actuator(robot, {0}),
+            "actuator fin: needs more than 255 materials; a robot has at most 255 and air");
+}
+
+TEST(Actuators, WithNamesTwiceOrMaterialsTwiceAreRefused) {
+  Robot robot = with_muscles();
+  robot.actuators = {{.name = "a", .materials = {1}}, {.name = "a", .materials = {2}}};
+  EXPECT_THROW(validate(robot), InputError);
+  robot.actuators[1] = {.name = "b", .materials = {2, 1}};
+  EXPECT_THROW(validate(robot), InputError);
+  robot.actuators[1] = {.name = "b", .materials = {5}};
+  EXPECT_THROW(validate(robot), InputError);
+  robot.actuators[1] = {.name = "b", .materials = {air}};
+  EXPECT_THROW(validate(robot), InputError);
+  robot.actuators[1] = {.name = "", .materials = {2}};
+  EXPECT_THROW(validate(robot), InputError);
+  robot.actuators[1] = {.name = "b", .materials = {2}};
+  EXPECT_NO_THROW(validate(robot));
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ class Simulation {
   // Springs per second that the device could evaluate if only its busiest unit limited it (docs/performance.md); 0 if
   // unknown.
   double spring_limit() const;
-  // How long all calls of step() have taken so far, by the device's own clock [s].
+  // How long all calls of step() have taken so far, by the device's own clock [s]. Those of step_in_stream() on a CUDA
+  // device do not count.
   double busy_seconds() const;
   // How long the constructor and all calls of add() have taken so far, part by part. A part that the backend does not
   // measure is 0.
@@ -125,7 +126,8 @@ class Simulation {
   // Shared arrays, in the memory of cuda_device(), or of the host if that is -1. The first call makes the array. Every
   // function that steps or changes robots updates it before it returns, and the functions with a stream before what
   // follows in the stream. What a program writes into it has no effect on the robots. add() and keep() make other
-  // arrays; the old ones stay as they are.
+  // arrays; the old ones stay as they are. On a CUDA device, functions without a stream use shared arrays as if they
+  // were queued in its legacy default stream.
   SharedArray<float> shared_state(StateArray which);
   SharedArray<std::uint8_t> shared_exploded();  // [robot][1], 1 = has exploded
   // What drives the actuators of all robots. At first, every actuator has the values that its materials have in common,

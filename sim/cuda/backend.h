@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CUDA backend.
+//
+// Work is queued in two kinds of streams:
+//
+//   urgent()   of each class: copies from and to the host, done when a function returns
+//   stream()   of each class: steps. That of the largest robots, main(), begins before the others and ends after them:
+//
+//   caller's stream   ...--+                                                       +--...
+//                          v                                                       ^
+//   main()                 actuators --+-- steps ---------------------+-- publish --
+//   other classes                      +-- phases, steps -- done --->-+
+//
+// 1. Functions that take a caller's stream return at once. The steps wait for what the caller has queued, and what the
+//    caller queues later waits for the steps; the host waits for neither.
+// 2. What such functions queue ends in main(), so work that begins in main() follows it. Functions that use other
+//    streams, or read what a kernel writes to the host, call settle() first.
+// 3. Functions that use arrays of the program and take no stream behave as if in the legacy default stream.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mercury/backend.h"
+#include "sim/cuda/intake.h"
+#include "sim/cuda/step.h"
+
+namespace mercury::cuda {
+
+class CudaBackend final : public Backend {
+ public:
+  explicit CudaBackend(const Device& device);
+  ~CudaBackend() override;
+
+  std::string device_name() const override { return name_; }
+  std::vector<std::string> notes() const override;
+  std::size_t robots_at_once() const override;
+  double spring_limit() const override;
+  double busy_seconds() const override { return busy_seconds_; }
+  LoadTimes load_times() const override { return load_times_; }
+
+  // Robots and settings (backend.cpp).
+  void load(std::span<const Robot* const> robots, const Configuration& configuration) override;
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override;
+  void keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices) override;
+  void configure(const Configuration& configuration) override;
+  void write_materials(std::span<const Material> tables) override;
+  void write_materials(std::size_t robot, std::span<const Material> table) override;
+  void set_perturbations(std::span<const Perturbation> perturbations) override;
+  bool set_actuation(const ActuationSources& sources) override;
+
+  // Time (backend_steps.cpp).
+  void step(const Clock& clock, std::int64_t steps) override;
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
+                       std::span<RobotStatus> statuses) override;
+  void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override;
+  void step_in_stream(const Clock& clock, std::int64_t steps, const PublishedArrays& arrays,
+                      void* cuda_stream) override;
+
+  // States (backend_state.cpp).
+  void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override;
+  void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override;
+  void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts) override;
+  void put_at_rest_in_stream(std::span<const Robot* const> robots, std::span<const float> lifts,
+                             const std::uint8_t* mask, const PublishedArrays& arrays, void* cuda_stream) override;
+  void read_positions(std::span<Vec3> out) const override;
+  void read_velocities(std::span<Vec3> out) const override;
+  int cuda_device() const override { return device_; }
+  void copy_positions(float* device_out) const override;
+  std::shared_ptr<void> allocate_shared(std::size_t bytes) const override;
+  void copy_shared(void* to, const void* from, std::size_t bytes) const override;
+  void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const override;
+  RobotStatus status(std::size_t robot) const override;
+  std::vector<RobotStatus> statuses() const override;
+  void set_status(std::size_t robot, const RobotStatus& status) override;
+
+ private:
+  // What must be released while the device is the present one.
+  struct Owned {
+    SizeClasses classes;
+    Event start{Event::timed}, end{Event::timed}, sleepy_end{Event::sleepy}, forked;
+    Event called, queued;                  // of functions that take a caller's stream: where they begin and end
+    DeviceArray<RobotView> views;          // [robot], if views_valid_
+    DeviceArray<float> rest;               // [mass][3], positions at rest, if rest_valid_
+    Actuators actuators;                   // none are driven if it is empty
+    MappedArray<DeviceTelemetry> reports;  // of the present state if report_valid_
+    DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
+  };
+
+  const SizeClasses& classes() const { return owned_->classes; }
+  // The stream of the largest robots. Those of the other classes start after it, and it ends after them.
+  const Stream& main() const { return owned_->classes[launch_order_.front()].stream(); }
+  SizeClass& class_of(std::size_t robot) const { return owned_->classes[places_[robot].size_class]; }
+  static RobotStatus status_of(const DeviceStatus& status) { return {status.exploded_step, status.bad_mass}; }
+
+  void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
+  // Waits for what is queued in the name of a caller's stream. To be called before everything that does not begin in
+  // main().
+  void settle() const;
+  // settle() before a change by the caller: it invalidates the last report.
+  void begin_change();
+  // To be called before robots come or go: what names places or masses of the batch is no longer valid.
+  void begin_exchange();
+
+  void choose_launches();
+  void number_masses(std::span<const Robot* const> robots);
+  const RobotView* views() const;
+  const float* rest_positions(std::span<const Robot* const> robots, std::span<const float> lifts);
+
+  // main() begins after what the caller has queued, and the caller goes on after main(). Null = the legacy default
+  // stream.
+  void enter(void* cuda_stream) const;
+  void leave(void* cuda_stream) const;
+  // For steps without a stream: sets the materials that actuators drive, after what is in the legacy default stream.
+  void actuate_after_caller(const Clock& clock) const;
+  // Lets the streams of the other classes begin after main(), and join it.
+  void fork_launches(const Clock& clock) const;
+  void join_launches() const;
+  // Queues launches of all classes. `report` = null or one element per robot, for after the last step.
+  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report) const;
+  // fork_launches() and join_launches() with the time in between.
+  void begin_launches(const Clock& clock) const;
+  void end_launches(Event& end);
+
+  DeviceTelemetry* reports_on_device() const;
+  template <class ReportAt>
+  void copy_reports(const ReportAt& report_at, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const;
+
+  int device_;
+  std::string name_;
+  std::unique_ptr<Owned> owned_;
+  std::vector<Place> places_;                // [robot]
+  std::vector<std::size_t> first_report_;    // [class]
+  std::vector<std::uint32_t> launch_order_;  // classes that have robots, the largest robots first
+  mutable bool report_valid_ = false, report_expected_ = false;
+  mutable bool queued_ = false;  // something, in the name of a caller's stream, that may not be done
+  mutable bool views_valid_ = false;
+  bool rest_valid_ = false;
+  Configuration configuration_;
+  AnyEnvironmentModel model_ = OceanModel(Ocean{});
+  StepConstants constants_;
+  double busy_seconds_ = 0;
+  LoadTimes load_times_;
+};
+
+}  // namespace mercury::cuda
