@@ -155,7 +155,7 @@ Result measure(std::span<const Robot> robots, double min_seconds) {
   batch.advance(50);
   Result result;
   for (long long steps = 100; result.seconds < min_seconds; steps *= 2) {
-    cuda::Event start, end;
+    cuda::Event start{cuda::Event::timed}, end{cuda::Event::timed};
     start.record(cudaStreamLegacy);
     batch.advance(steps);
     end.record(cudaStreamLegacy);
