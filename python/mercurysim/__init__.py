@@ -9,6 +9,7 @@
     print(batch.telemetry()["center_of_mass"])
 """
 
+from . import _mercury
 from ._mercury import (
     Actuation,
     Array,
@@ -27,6 +28,8 @@ from ._mercury import (
     voxel,
 )
 
+__version__: str = getattr(_mercury, "__version__")
+
 __all__ = [
     "Actuation",
     "Array",
@@ -37,6 +40,7 @@ __all__ = [
     "Ocean",
     "OceanSimple",
     "Robot",
+    "__version__",
     "load",
     "random_network",
     "random_painted",

@@ -30,6 +30,7 @@ Environment environment_of(nb::handle environment);
 void bind_errors(nb::module_& module);
 void bind_robot(nb::module_& module);
 void bind_generators(nb::module_& module);
+void bind_voxel(nb::module_& module);
 void bind_environments(nb::module_& module);
 void bind_array(nb::module_& module);
 void bind_batch(nb::module_& module);

@@ -1,83 +1,161 @@
 // SPDX-License-Identifier: Apache-2.0
-// random_voxel() and its siblings, from the registry of generators; voxel(), from a grid.
+// random_voxel() and its siblings. Signatures, docstrings and checks come from the registry of generators.
 #include "mercury/generator.h"
 
-#include <algorithm>
-#include <optional>
-
-#include <nanobind/ndarray.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <charconv>
 
 #include "mercury/error.h"
-#include "mercury/voxel.h"
 #include "python/src/bindings.h"
+#include "python/src/gil.h"
+#include "python/src/values.h"
 
 namespace mercury::python {
 namespace {
 
-ParameterValue value_from(const GeneratorParameter& parameter, nb::handle value) {
-  return std::visit(
-      [&]<class Value>(const Value&) -> ParameterValue {
-        if constexpr (std::is_same_v<Value, SizeRange> || std::is_same_v<Value, std::vector<int>>)
-          throw nb::type_error(("the parameter " + parameter.name + " cannot be given yet").c_str());
-        else
-          return nb::cast<Value>(value);
-      },
-      parameter.initial);
+// What a parameter's kind is called in a type hint.
+struct TypeHint {
+  const GeneratorParameter& parameter;
+  std::string operator()(std::int64_t) const { return "int"; }
+  std::string operator()(double) const { return "float"; }
+  std::string operator()(const std::string&) const {
+    std::string words;
+    for (const std::string& word : parameter.words) words += (words.empty() ? "'" : ", '") + word + "'";
+    return "typing.Literal[" + words + "]";
+  }
+  std::string operator()(const std::vector<int>&) const { return "collections.abc.Sequence[int]"; }
+  std::string operator()(const SizeRange&) const {
+    return "tuple[int, int, int] | tuple[tuple[int, int, int], tuple[int, int, int]]";
+  }
+};
+
+// A value as Python writes it.
+struct Source {
+  std::string operator()(const std::string& word) const { return "'" + word + "'"; }
+  std::string operator()(const std::vector<int>& numbers) const { return in_brackets(numbers, "[]"); }
+  std::string operator()(const SizeRange& sizes) const {
+    return "(" + in_brackets(sizes.smallest, "()") + ", " + in_brackets(sizes.largest, "()") + ")";
+  }
+  template <class Number>
+  std::string operator()(Number number) const {
+    char room[32];
+    return {room, std::to_chars(room, room + sizeof room, number).ptr};
+  }
+
+ private:
+  static std::string in_brackets(const auto& numbers, const char* brackets) {
+    std::string text;
+    for (const int number : numbers) text += (text.empty() ? "" : ", ") + std::to_string(number);
+    return brackets[0] + text + brackets[1];
+  }
+};
+
+std::vector<nb::object> items_of(const std::string& name, const std::string& wanted, nb::handle value) {
+  if (PyUnicode_Check(value.ptr()) || !nb::isinstance<nb::iterable>(value)) refuse_type(name, wanted, value);
+  std::vector<nb::object> items;
+  for (const nb::handle item : value) items.push_back(nb::borrow(item));
+  return items;
 }
 
-nb::list random_robots(const Generator& generator, std::size_t count, std::uint64_t seed, std::uint64_t first,
-                       const nb::kwargs& values) {
-  RandomRobots request{.kind = generator.kind, .count = count, .seed = seed, .first = first};
-  for (const auto [key, value] : values) {
+int int_from(const std::string& name, nb::handle value) {
+  return static_cast<int>(whole_from(name, value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
+// Reads a value of the kind that the parameter's default has; ranges are checked by the registry.
+struct Reader {
+  const std::string& name;
+  nb::handle value;
+
+  ParameterValue operator()(std::int64_t) const { return whole_from(name, value); }
+  ParameterValue operator()(float) const { return static_cast<float>(number_from(name, value)); }
+  ParameterValue operator()(double) const { return number_from(name, value); }
+  ParameterValue operator()(const std::string&) const { return text_from(name, value); }
+  ParameterValue operator()(const std::vector<int>&) const {
+    std::vector<int> numbers;
+    for (const nb::object& item : items_of(name, "a sequence of whole numbers", value))
+      numbers.push_back(int_from(name, item));
+    return numbers;
+  }
+  ParameterValue operator()(const SizeRange&) const {
+    const std::string wanted = "sizes (x, y, z), or a range ((x, y, z), (x, y, z))";
+    const auto items = items_of(name, wanted, value);
+    if (items.size() == 2) return SizeRange{size_from(wanted, items[0]), size_from(wanted, items[1])};
+    const auto size = size_from(wanted, value);
+    return SizeRange{size, size};
+  }
+
+ private:
+  std::array<int, 3> size_from(const std::string& wanted, nb::handle given) const {
+    const auto items = items_of(name, wanted, given);
+    if (items.size() != 3)
+      throw InputError(name, std::to_string(items.size()) + " sizes are not accepted; give " + wanted);
+    return {int_from(name, items[0]), int_from(name, items[1]), int_from(name, items[2])};
+  }
+};
+
+ParameterValues values_from(const std::string& function, const Generator& generator, const nb::kwargs& given) {
+  ParameterValues values;
+  for (const auto [key, value] : given) {
     const auto name = nb::cast<std::string>(key);
     const auto parameter = std::ranges::find(generator.parameters, name, &GeneratorParameter::name);
-    if (parameter == generator.parameters.end()) throw nb::type_error(("there is no parameter " + name).c_str());
-    request.values.emplace(name, value_from(*parameter, value));
+    if (parameter == generator.parameters.end()) {
+      std::vector<std::string> names{"count", "seed", "first"};
+      for (const GeneratorParameter& known : generator.parameters) names.push_back(known.name);
+      throw nb::type_error((function + "() has no parameter " + name + suggestion(name, names)).c_str());
+    }
+    ParameterValue read = std::visit(Reader{name, value}, parameter->initial);
+    check(*parameter, read);
+    values.emplace(name, std::move(read));
   }
-  std::vector<Robot> robots;
-  {
-    const nb::gil_scoped_release release;
-    robots = make_random_robots(request);
-  }
+  return values;
+}
+
+nb::list random_robots(const std::string& function, const Generator& generator, nb::handle count_given,
+                       nb::handle seed_given, nb::handle first_given, const nb::kwargs& given) {
+  // Made portion by portion, so that Ctrl-C ends a count that was too large.
+  constexpr std::uint64_t portion = 256;
+  const auto count = static_cast<std::uint64_t>(whole_from("count", count_given, 0));
+  RandomRobots request{.kind = generator.kind,
+                       .seed = seed_from("seed", seed_given),
+                       .first = seed_from("first", first_given),
+                       .values = values_from(function, generator, given)};
   nb::list list;
-  for (Robot& robot : robots) list.append(nb::cast(SharedRobot{std::make_shared<const Robot>(std::move(robot))}));
+  for (std::uint64_t done = 0; done < count; done += request.count, request.first += request.count) {
+    request.count = static_cast<std::size_t>(std::min(portion, count - done));
+    std::vector<Robot> robots;
+    {
+      const ReleasedGil released;
+      robots = make_random_robots(request);
+    }
+    for (Robot& robot : robots) list.append(SharedRobot{std::make_shared<const Robot>(std::move(robot))});
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
   return list;
 }
 
-using GridOfCells = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::device::cpu>;
-using BaseMaterials = nb::ndarray<const float, nb::shape<-1, 4>, nb::device::cpu>;
-
-// The table of air, the base materials that are given, and the default ones for the rest.
-std::vector<Material> table_of(const BaseMaterials& given) {
-  const std::size_t count = given.shape(0);
-  if (count < 2 || count > base_material_count + 1)
-    throw InputError("materials: " + std::to_string(count) + " rows; give 2 to " +
-                     std::to_string(base_material_count + 1) + ", of which the first is air");
-  std::array<Material, base_material_count> bases;
-  std::ranges::copy(default_materials().subspan(1, base_material_count), bases.begin());
-  for (std::size_t i = 1; i < count; ++i) {
-    bases[i - 1] = {.stiffness = given(i, 0), .amplitude = given(i, 1), .frequency = given(i, 2), .phase = given(i, 3)};
-    validate(bases[i - 1], "materials: row " + std::to_string(i));
-  }
-  return material_table(bases);
+std::string signature_of(const std::string& function, const Generator& generator) {
+  std::string text = "def " + function + "(count: int = 1, seed: int = 1, first: int = 0, *";
+  for (const GeneratorParameter& parameter : generator.parameters)
+    text += ", " + parameter.name + ": " + std::visit(TypeHint{parameter}, parameter.initial) + " = " +
+            std::visit(Source{}, parameter.initial);
+  return text + ") -> list[Robot]";
 }
 
-SharedRobot robot_of(const GridOfCells& cells, float edge, std::string name,
-                     const std::optional<BaseMaterials>& materials) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (cells.shape(axis) > VoxelGrid::max_cells) throw InputError("voxel grid: it is too large");
-  const auto size = [&](std::size_t axis) { return static_cast<int>(cells.shape(axis)); };
-  VoxelGrid grid(size(0), size(1), size(2));
-  grid.edge = edge;
-  for (int z = 0; z < grid.nz; ++z)
-    for (int y = 0; y < grid.ny; ++y)
-      for (int x = 0; x < grid.nx; ++x) grid.cell(x, y, z) = cells(x, y, z);
-  VoxelRobotOptions options{.name = std::move(name)};
-  if (materials) options.materials = table_of(*materials);
-  const nb::gil_scoped_release release;
-  return {std::make_shared<const Robot>(make_voxel_robot(grid, options))};
+std::string documentation_of(const Generator& generator) {
+  std::string text = generator.help + ": `count` robots of a seed, from number `first` on, named \"" + generator.kind +
+                     "-SEED-NUMBER\".\nThe same arguments give the same robots, bit for bit, on every machine." +
+                     (generator.note.empty() ? "" : "\n" + generator.note) + "\n\n";
+  for (const GeneratorParameter& parameter : generator.parameters) {
+    const bool is_list = std::holds_alternative<std::vector<int>>(parameter.initial);
+    text += parameter.name + ": " + parameter.help + (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") +
+            " (default " + std::visit(Source{}, parameter.initial) + "; " +
+            (is_list ? "at most " + std::to_string(parameter.most_numbers) + " numbers, each " : "") +
+            accepted_values(parameter) + ")\n";
+  }
+  return text + "\nRaises InputError for values that cannot be used, or if there is no such robot.";
 }
 
 }  // namespace
@@ -87,21 +165,16 @@ void bind_generators(nb::module_& module) {
       {"random_voxel", "voxel"}, {"random_network", "nn"}, {"random_shell", "shell"}, {"random_painted", "cppn"}};
   for (const auto& [function, kind] : functions) {
     const Generator& generator = generator_named(kind);
+    const std::string signature = signature_of(function, generator), documentation = documentation_of(generator);
     module.def(
         function,
-        [&generator](std::size_t count, std::uint64_t seed, std::uint64_t first, const nb::kwargs& values) {
-          return random_robots(generator, count, seed, first, values);
+        [function = std::string(function), &generator](nb::handle count, nb::handle seed, nb::handle first,
+                                                       const nb::kwargs& values) {
+          return random_robots(function, generator, count, seed, first, values);
         },
-        nb::arg("count") = 1, nb::arg("seed") = 1, nb::arg("first") = 0, nb::arg("parameters"));
+        nb::arg("count").none() = 1, nb::arg("seed").none() = 1, nb::arg("first").none() = 0, nb::arg("parameters"),
+        nb::sig(signature.c_str()), documentation.c_str());
   }
-  module.def(
-      "voxel", &robot_of, nb::arg("grid"), nb::kw_only(), nb::arg("edge") = 0.1f, nb::arg("name") = "voxel",
-      nb::arg("materials") = nb::none(),
-      "The largest connected body of a grid of voxels as a robot.\n\n"
-      "grid: (x, y, z) uint8, a base material (1 to 22) for each voxel, 0 = air. edge: of a voxel [m].\n"
-      "materials: (2 to 23, 4) float32, stiffness [N/m], amplitude [1], frequency [rad/s] and phase [rad] of air (row "
-      "0)\nand the base materials; None or missing rows = the default ones. Springs at the border of two materials "
-      "have\ntheir means. Raises InputError.");
 }
 
 }  // namespace mercury::python

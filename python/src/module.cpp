@@ -3,9 +3,11 @@
 
 NB_MODULE(_mercury, module) {
   using namespace mercury::python;
+  module.attr("__version__") = MERCURY_VERSION;
   bind_errors(module);
   bind_robot(module);
   bind_generators(module);
+  bind_voxel(module);
   bind_environments(module);
   bind_array(module);
   bind_batch(module);

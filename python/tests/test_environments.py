@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+import copy
+import inspect
+import json
+import pickle
+import re
+
+import numpy as np
+import pytest
+
+import mercurysim
+from mercurysim import InputError, Land, Ocean, OceanSimple
+
+KINDS = [Ocean, OceanSimple, Land]
+OTHERS = {
+    Ocean: {"density": 900.5, "drag_tangential": 0.25, "flow": (0.5, 0, -1), "gravity": (0, 0, -1)},
+    OceanSimple: {"point_drag": 2.5, "stiffness_scale": 3},
+    Land: {"friction": 0.3, "self_collision": False, "gravity": (0, 1, -5)},
+}
+
+
+def test_values_are_those_that_were_given():
+    ocean = Ocean(density=900.5, flow=[0.5, 0, -1], lift_coefficient=np.float32(0.3))
+    assert (ocean.density, ocean.flow, ocean.lift_coefficient) == (900.5, (0.5, 0, -1), 0.3)
+    assert ocean.drag_coefficient == Ocean().drag_coefficient == 1
+    assert Land().self_collision is True and Land(self_collision=False).self_collision is False
+    assert Land(self_collision=np.bool_(False)).self_collision is False
+    assert Ocean(flow=np.array([1, 2, 3], np.float32)).flow == (1, 2, 3)
+
+
+def test_gravity_takes_a_downward_magnitude():
+    assert Land(gravity=9.81) == Land(gravity=(0, 0, -9.81)) == Land()
+    assert Ocean(gravity=5).gravity == (0, 0, -5)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_environment_is_a_value(kind):
+    default, other = kind(), kind(**OTHERS[kind])
+    assert default == kind() and hash(default) == hash(kind()) and default != other
+    assert other == default.replace(**OTHERS[kind]) and default == kind()
+    assert other.__replace__() == other
+    assert eval(repr(other)) == other
+    assert pickle.loads(pickle.dumps(other)) == other and copy.deepcopy(other) == other
+    assert default != 5 and not default == None  # noqa: E711
+    for name in OTHERS[kind]:
+        with pytest.raises(AttributeError):
+            setattr(default, name, 1)
+    assert all(default != another() for another in KINDS if another is not kind)
+
+
+def test_repr_shows_every_parameter():
+    assert repr(Land()) == (
+        "Land(friction=0.8, self_collision=True, contact_stiffness=100.0, gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0)"
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_parameter_is_documented_with_its_unit(kind):
+    parameters = re.findall(r"(\w+)=", repr(kind()))
+    for name in parameters:
+        assert re.search(rf"^{name}: \S.*\(default ", kind.__doc__, re.MULTILINE)
+        assert inspect.getdoc(getattr(kind, name))
+    assert "[N s/m]" in OceanSimple.__doc__ and "[kg/m3]" in inspect.getdoc(Ocean.density)
+
+
+@pytest.mark.parametrize(
+    "kind, values, error, message",
+    [
+        (Ocean, {"density": "thick"}, TypeError, "^Ocean: density: must be a number, not str$"),
+        (Ocean, {"density": None}, TypeError, "^Ocean: density: must be a number, not NoneType$"),
+        (Ocean, {"density": True}, TypeError, "^Ocean: density: must be a number, not bool$"),
+        (Ocean, {"density": -1}, InputError, "^Ocean: density: -1 is not accepted; give a finite number >= 0 kg/m3$"),
+        (Ocean, {"density": float("nan")}, InputError, "^Ocean: density: nan is not accepted; give a finite number"),
+        (Ocean, {"density": 1e300}, InputError, "^Ocean: density: inf is not accepted; give a finite number"),
+        (Ocean, {"density": 10**400}, InputError, "^Ocean: density: a number this large is not accepted"),
+        (Ocean, {"densty": 1}, TypeError, r"^Ocean has no parameter densty; did you mean density\?$"),
+        (Ocean, {"friction": 1}, TypeError, "^Ocean has no parameter friction$"),
+        (Ocean, {"flow": 1}, TypeError, r"^Ocean: flow: must be three numbers \(x, y, z\), not int$"),
+        (Ocean, {"flow": "abc"}, TypeError, r"^Ocean: flow: must be three numbers \(x, y, z\), not str$"),
+        (Ocean, {"flow": (1, 2)}, InputError, r"^Ocean: flow: 2 numbers are not accepted; give three numbers \(x, y, z\)$"),
+        (Ocean, {"flow": (1, 2, "3")}, TypeError, "^Ocean: flow: must be a number, not str$"),
+        (Ocean, {"gravity": (0, 0, float("inf"))}, InputError, "^Ocean: gravity: "),
+        (Ocean, {"gravity": "down"}, TypeError, "^Ocean: gravity: must be three numbers .* or one number for"),
+        (Land, {"self_collision": 1}, TypeError, "^Land: self_collision: must be True or False, not int$"),
+    ],
+)
+def test_bad_values_are_refused_in_one_line(kind, values, error, message):
+    for make in (kind, kind().replace):
+        with pytest.raises(error, match=message) as caught:
+            make(**values)
+        assert "\n" not in str(caught.value)
+
+
+def test_a_broken_pickle_is_refused():
+    for state, error in [({"density": "x"}, TypeError), ({"wind": 1}, TypeError), ({1: 1}, TypeError), (5, TypeError)]:
+        with pytest.raises(error):
+            Ocean.__new__(Ocean).__setstate__(state)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_trajectories_are_those_of_the_program(mercury, kind):
+    values = OTHERS[kind]
+    options = ["--environment", {Ocean: "ocean", OceanSimple: "ocean-simple", Land: "land"}[kind]]
+    for name, value in values.items():
+        option = "--" + name.replace("_", "-")
+        if isinstance(value, bool):
+            options.append("--no-" + option[2:])
+        else:
+            options.append(f"{option}={','.join(map(str, value)) if isinstance(value, tuple) else value}")
+    report = json.loads(mercury("run", "--random", "voxel:3", "--seed", 8, "--seconds", "0.25", *options, "--device", "cpu",
+                                "--json", "--quiet"))
+    batch = mercurysim.Batch(mercurysim.random_voxel(3, seed=8), environment=kind(**values), device="cpu")
+    batch.step(250)
+    assert [int(robot["hash"], 16) for robot in report["robots"]] == [batch.hash(i) for i in range(3)]

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+import ast
+import importlib.util
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import mercurysim
+
+FOLDER = Path(mercurysim.__file__).parent
+MODULE = Path(mercurysim._mercury.__file__)
+
+
+def test_the_version_is_that_of_the_program(mercury):
+    assert mercury("--version").split()[1] == mercurysim.__version__
+
+
+def test_everything_public_has_a_docstring():
+    for name in mercurysim.__all__:
+        thing = getattr(mercurysim, name)
+        if name.startswith("__"):
+            continue
+        assert thing.__doc__, name
+        if isinstance(thing, type) and thing.__module__.startswith("mercurysim"):
+            for member, value in vars(thing).items():
+                assert member.startswith("_") or value.__doc__, f"{name}.{member}"
+
+
+def test_the_module_shows_nothing_but_its_entry():
+    """Other libraries of the process, such as PyTorch, bring their own CUDA runtime, TBB and C++ templates."""
+    nm = shutil.which("nm")
+    if not nm:
+        pytest.skip("there is no nm")
+    lines = subprocess.run([nm, "-D", "--defined-only", MODULE], capture_output=True, text=True, check=True).stdout
+    assert [line.split()[-1] for line in lines.splitlines()] == ["PyInit__mercury"]
+
+
+def test_the_module_needs_no_library_of_cuda():
+    if not shutil.which("ldd"):
+        pytest.skip("there is no ldd")
+    libraries = subprocess.run(["ldd", MODULE], capture_output=True, text=True, check=True).stdout
+    assert "libtbb" in libraries and "cuda" not in libraries
+
+
+def test_the_package_is_typed():
+    assert (FOLDER / "py.typed").exists()
+    stubs = FOLDER / "_mercury.pyi"
+    if not stubs.exists():
+        pytest.skip("this build has no stubs")
+    names = {node.name for node in ast.parse(stubs.read_text()).body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
+    assert {name for name in vars(mercurysim._mercury) if not name.startswith("_")} <= names
+
+
+PROGRAM = """
+import numpy as np
+import mercurysim
+
+robots: list[mercurysim.Robot] = mercurysim.random_voxel(4, seed=1, voxels=(4, 3, 3), symmetry="none", edge=0.1)
+ocean = mercurysim.Ocean(density=900, flow=(1, 0, 0), gravity=9.81).replace(density=1000)
+density: float = ocean.density
+robot = mercurysim.Robot(np.zeros((2, 3)), [[0, 1, 1, 0.1]], name="pair", actuators={"muscle": [0]})
+centre: float = float(robot.masses.mean())
+names: list[str] = list(robot.actuators)
+child: mercurysim.Robot = robots[0].cross(robots[1], seed=2).mutate(muscles=0.5)
+child.save("child.json")
+try:
+    mercurysim.load("missing.json")
+except mercurysim.InputError as error:
+    print(error)
+print(ocean == mercurysim.Ocean(), robot.info()["masses"], mercurysim.__version__)
+"""
+
+WRONG = """
+import mercurysim
+
+mercurysim.random_voxel("four")
+mercurysim.random_voxel(symmetry="sideways")
+mercurysim.Ocean(density="thick")
+mercurysim.Robot([[0, 0, 0]])
+"""
+
+
+@pytest.mark.parametrize("program, errors", [(PROGRAM, 0), (WRONG, 4)], ids=["right", "wrong"])
+def test_the_type_checker_knows_the_package(tmp_path, program, errors):
+    if not importlib.util.find_spec("mypy"):
+        pytest.skip("there is no mypy")
+    if not (FOLDER / "_mercury.pyi").exists():
+        pytest.skip("this build has no stubs")
+    (tmp_path / "program.py").write_text(program)
+    result = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--cache-dir", tmp_path / "cache",
+                             tmp_path / "program.py"], capture_output=True, text=True, env={"MYPYPATH": str(FOLDER.parent)})
+    found = [line for line in result.stdout.splitlines() if "program.py" in line and ": error: " in line]
+    assert len(found) == errors, result.stdout + result.stderr
