@@ -16,6 +16,8 @@ packages_to_build=(
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
 packages_welcome=(libosmesa6 libopenmpi-dev openmpi-bin)  # drawing where EGL is missing (newer distributions no longer have OSMesa); evolution on several hosts
 packages_to_test=(clang-format-14 libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
+packages_to_test+=(python3-venv python3-dev)   # the Python package; what it needs besides is in python/tests/requirements.txt
+packages_welcome_to_test=(python3-torch)       # tests that need PyTorch skip without it
 
 fail() {
   echo "$(basename "$0"): $*" >&2
@@ -78,6 +80,22 @@ configure() {
   fi
 }
 
+# python_environment: makes build/venv, a virtual environment of the distribution's Python with what builds and tests the
+# Python package. It has the distribution's packages, too. If it is up to date, nothing is printed, and the network is
+# not used. Returns 1 if the packages cannot be had.
+python_environment() {
+  local venv=build/venv requirements=python/tests/requirements.txt
+  if cmp -s "$requirements" "$venv/requirements.txt" && "$venv/bin/python" -c "import nanobind" 2>/dev/null; then return; fi
+  echo "Installing Python packages into $venv" >&2
+  mkdir -p build
+  rm -rf "$venv"
+  {
+    /usr/bin/python3 -m venv --system-site-packages "$venv" &&
+      "$venv/bin/python" -m pip install --disable-pip-version-check --retries 1 -r "$requirements" &&
+      cp "$requirements" "$venv/requirements.txt"
+  } </dev/null >build/venv.log 2>&1
+}
+
 # This machine's GPU, or Hopper where there is none: every further architecture is another compilation.
 cuda_architectures() {
   if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then echo native; else echo 90; fi
@@ -86,8 +104,8 @@ cuda_architectures() {
 # build_targets TARGET...: builds them in build/. Prints a line only if a source has changed since the last time.
 build_targets() {
   local built="build/built-$*"
-  if [[ ! -e $built || -n $(find CMakeLists.txt CMakePresets.json cmake sim robots render app shaders bench tests examples \
-                              -newer "$built" -type f ! -name '*.pyc' -print -quit) ]]; then
+  if [[ ! -e $built || -n $(find CMakeLists.txt CMakePresets.json cmake sim robots evolution render app shaders python bench \
+                              tests examples -newer "$built" -type f ! -name '*.pyc' -print -quit) ]]; then
     echo "Building; all of its output: build/build.log" >&2
     sed -n 's/^-- Mercury: //p' build/configure.log >&2
   fi
