@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import ast
 import importlib.util
+import re
 import shutil
 import subprocess
 import sys
@@ -94,3 +95,11 @@ def test_the_type_checker_knows_the_package(tmp_path, program, errors):
                              tmp_path / "program.py"], capture_output=True, text=True, env={"MYPYPATH": str(FOLDER.parent)})
     found = [line for line in result.stdout.splitlines() if "program.py" in line and ": error: " in line]
     assert len(found) == errors, result.stdout + result.stderr
+
+
+def test_the_example_of_the_readme_runs(tmp_path, monkeypatch, capsys):
+    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text()
+    monkeypatch.chdir(tmp_path)
+    exec(re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1), {})
+    assert re.fullmatch(r"Robot 'voxel-1-\d+': .* actuators swam \d+\.\d{3} m\n", capsys.readouterr().out)
+    assert mercurysim.load("best.json").name.startswith("voxel-1-")

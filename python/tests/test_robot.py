@@ -161,7 +161,7 @@ def nan(array, value=np.nan):
         ({"actuators": {"fin": 3}}, InputError, "^actuator fin: must be a list of spring indices, or a mask"),
         ({"actuators": {"fin": [True, False]}}, InputError, "^actuator fin: a mask of 2 springs is not accepted, the robot has 6$"),
         ({"actuators": {"fin": []}}, InputError, "an actuator needs at least one material or spring$"),
-        ({"actuators": {"": [0]}}, InputError, "an actuator needs a name$"),
+        ({"actuators": {"": [0]}}, InputError, "an actuator needs a name"),
         ({"actuators": {"a": [2], "b": [2]}}, InputError, "^actuator b: springs of material .* have an actuator already$"),
     ],
 )
