@@ -42,7 +42,7 @@ void CudaBackend::put_at_rest(std::span<const Robot* const> robots, std::size_t 
 void CudaBackend::put_at_rest_in_stream(std::span<const Robot* const> robots, std::span<const float> lifts,
                                         const std::uint8_t* mask, const PublishedArrays& arrays, void* cuda_stream) {
   if (places_.empty()) return;
-  const DeviceScope scope(device_);
+  use_device();
   report_valid_ = report_expected_ = false;
   const float* const rest = rest_positions(robots, lifts);
   enter(cuda_stream);

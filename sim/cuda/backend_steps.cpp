@@ -97,7 +97,7 @@ void CudaBackend::report(const Clock& clock, std::span<Telemetry> telemetry, std
 void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const PublishedArrays& arrays,
                                  void* cuda_stream) {
   if (places_.empty()) return;
-  const DeviceScope scope(device_);
+  use_device();
   report_valid_ = report_expected_ = false;
   enter(cuda_stream);
   owned_->actuators.apply(clock, main().get());

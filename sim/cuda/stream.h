@@ -20,23 +20,6 @@ inline void check(cudaError_t error, const char* what) {
   throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
 }
 
-// Makes a device the present one of this thread, and restores the caller's.
-class DeviceScope {
- public:
-  explicit DeviceScope(int device) : device_(device) {
-    check(cudaGetDevice(&callers_), "querying the present device");
-    if (callers_ != device_) check(cudaSetDevice(device_), "choosing the device");
-  }
-  ~DeviceScope() {
-    if (callers_ != device_) cudaSetDevice(callers_);
-  }
-  DeviceScope(const DeviceScope&) = delete;
-  DeviceScope& operator=(const DeviceScope&) = delete;
-
- private:
-  int device_, callers_ = 0;
-};
-
 // A moment in a stream.
 class Event {
  public:

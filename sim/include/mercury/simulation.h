@@ -35,7 +35,7 @@ namespace mercury {
 // any batch, in any order and with any number of threads. The CPU and CUDA agree within rounding.
 //
 // Functions that take the index of a robot throw std::out_of_range if there is no such robot. One thread at a time may
-// use a simulation.
+// use a simulation. Those of a simulation on a CUDA device make it the present device of the calling thread.
 class Simulation {
  public:
   // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), and
