@@ -105,8 +105,12 @@ std::vector<std::shared_ptr<const Robot>> Portion::robots() const {
 }
 
 Portion make_portion(const RobotSource& source, std::size_t first, std::size_t end, const PortionLimits& limits,
-                     std::atomic<std::size_t>& largest) {
+                     bool is_serial, std::atomic<std::size_t>& largest) {
   PortionMaker maker(source, first, end, limits, largest);
+  if (is_serial) {
+    maker.work();
+    return maker.result();
+  }
   oneapi::tbb::parallel_for(
       0, oneapi::tbb::this_task_arena::max_concurrency(), [&](int) { maker.work(); },
       oneapi::tbb::simple_partitioner());

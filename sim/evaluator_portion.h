@@ -38,9 +38,10 @@ struct PortionLimits {
   std::function<bool()> cancelled;
 };
 
-// Makes robots of the source from `first` on, on all cores, until the source or a limit ends the portion; at least one,
-// if there is one. `largest` = bytes of the largest robot so far; it is updated.
+// Makes robots of the source from `first` on until the source or a limit ends the portion; at least one, if there is
+// one. `is_serial`: one after the other in this thread, otherwise on all cores. `largest` = bytes of the largest robot
+// so far; it is updated.
 Portion make_portion(const RobotSource& source, std::size_t first, std::size_t end, const PortionLimits& limits,
-                     std::atomic<std::size_t>& largest);
+                     bool is_serial, std::atomic<std::size_t>& largest);
 
 }  // namespace mercury

@@ -77,7 +77,7 @@ void Evaluator::Parts::make_portions() {
         limits.bytes = piece_bytes();
       }
       std::optional<UnionClock::Interval> interval(std::in_place, making);
-      Portion portion = make_portion(source, first, count, limits, largest_robot);
+      Portion portion = make_portion(source, first, count, limits, request.serial_source, largest_robot);
       interval.reset();
       const std::lock_guard lock(mutex);
       if (limits.cancelled()) break;

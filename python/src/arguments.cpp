@@ -71,6 +71,15 @@ std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const char* 
   return vectors;
 }
 
+nb::object vector_array(std::span<const Vec3> vectors) {
+  const nb::object array =
+      nb::module_::import_("numpy").attr("empty")(nb::make_tuple(vectors.size(), 3), nb::arg("dtype") = "float32");
+  auto* out = reinterpret_cast<float*>(nb::cast<std::uintptr_t>(array.attr("ctypes").attr("data")));
+  for (const Vec3 vector : vectors)
+    for (const float number : {vector.x, vector.y, vector.z}) *out++ = number;
+  return array;
+}
+
 int cuda_device_of(nb::handle array) {
   constexpr int dlpack_cuda = 2;
   if (!nb::hasattr(array, "__dlpack_device__")) return -1;

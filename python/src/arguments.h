@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mercury/vec3.h"
@@ -21,6 +22,9 @@ std::vector<std::int64_t> indices_from(nb::handle indices);
 
 // `rows` vectors: anything that NumPy makes a (rows, 3) array of. `name` = of the argument, for messages.
 std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const char* name);
+
+// The reverse: a NumPy array with memory of its own.
+nb::object vector_array(std::span<const Vec3> vectors);
 
 // The CUDA device that holds an array; -1 = none.
 int cuda_device_of(nb::handle array);

@@ -31,6 +31,17 @@ std::int64_t portion_of(double springs_at_once, double springs, std::int64_t mos
 
 }  // namespace
 
+Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
+                               nb::handle device, int threads) {
+  Configuration configuration{.dt = dt,
+                              .damping = damping,
+                              .solver = solver_named(solver),
+                              .environment = environment_of(environment),
+                              .device = device_named(nb::str(device).c_str())};
+  configuration.device.threads = threads;
+  return configuration;
+}
+
 Batch::Batch(const Configuration& configuration, SharedRobots robots) : robots_(std::move(robots)) {
   const ReleasedGil released;
   simulation_ = std::make_unique<Simulation>(configuration, robots_);

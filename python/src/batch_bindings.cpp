@@ -92,13 +92,7 @@ common, NaN where they differ, and no drive. Every Batch.step() reads the arrays
 
 void init(Batch* self, nb::handle robots, nb::handle environment, const std::string& solver, double dt, double damping,
           nb::handle device, int threads) {
-  Configuration configuration{.dt = dt,
-                              .damping = damping,
-                              .solver = solver_named(solver),
-                              .environment = environment_of(environment),
-                              .device = device_named(nb::cast<std::string>(nb::str(device)))};
-  configuration.device.threads = threads;
-  new (self) Batch(configuration, robots_of(robots));
+  new (self) Batch(configuration_of(environment, solver, dt, damping, device, threads), robots_of(robots));
 }
 
 void configure(Batch& self, nb::handle environment, const std::optional<std::string>& solver, std::optional<double> dt,

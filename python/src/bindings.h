@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "mercury/configuration.h"
@@ -27,6 +28,10 @@ SharedRobots robots_of(nb::handle robots);
 // The environment of an Ocean, OceanSimple or Land, or of a name; None = Ocean(). Throws TypeError, InputError.
 Environment environment_of(nb::handle environment);
 
+// What Batch and evaluate() are given. `device` = a name, or anything whose str() is one. Throws TypeError, InputError.
+Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
+                               nb::handle device, int threads);
+
 void bind_errors(nb::module_& module);
 void bind_robot(nb::module_& module);
 void bind_generators(nb::module_& module);
@@ -34,5 +39,6 @@ void bind_voxel(nb::module_& module);
 void bind_environments(nb::module_& module);
 void bind_array(nb::module_& module);
 void bind_batch(nb::module_& module);
+void bind_evaluate(nb::module_& module);
 
 }  // namespace mercury::python

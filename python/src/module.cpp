@@ -11,4 +11,5 @@ NB_MODULE(_mercury, module) {
   bind_environments(module);
   bind_array(module);
   bind_batch(module);
+  bind_evaluate(module);
 }

@@ -2,6 +2,10 @@
 // The evaluator: its results are those of a simulation, whatever it does to get them.
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <set>
+#include <thread>
+
 #include "backend.h"
 #include "evaluations.h"
 
@@ -92,6 +96,26 @@ TEST(Evaluator, SourceOfUnknownLengthEndsWithANull) {
   request.portion = 4;
   Evaluator evaluator(request, source_of(robots));
   expect_equal(rest_of(evaluator), simulated(request, robots));
+}
+
+TEST(Evaluator, ASerialSourceIsCalledInOrderByOneThread) {
+  const Robots robots = mixed(23);
+  EvaluationRequest request = usual();
+  request.portion = 4;
+  request.serial_source = true;
+  std::vector<std::size_t> calls;
+  std::set<std::thread::id> threads;
+  const RobotSource source = [&](std::size_t index) {
+    calls.push_back(index);
+    threads.insert(std::this_thread::get_id());
+    return index < robots.size() ? robots[index] : nullptr;
+  };
+  Evaluator evaluator(request, source);
+  expect_equal(rest_of(evaluator), simulated(request, robots));
+  std::vector<std::size_t> in_order(24);
+  std::iota(in_order.begin(), in_order.end(), 0);
+  EXPECT_EQ(calls, in_order);
+  EXPECT_EQ(threads.size(), 1u);
 }
 
 }  // namespace

@@ -32,8 +32,8 @@
 namespace mercury {
 
 // The robot of an index; nullptr for every index from the end of the source on. Several threads call it at the same
-// time, in no particular order. An InputError becomes the result of that index (Evaluation::failure); any other
-// exception ends the evaluation.
+// time, in no particular order, unless EvaluationRequest::serial_source says otherwise. An InputError becomes the
+// result of that index (Evaluation::failure); any other exception ends the evaluation.
 using RobotSource = std::function<std::shared_ptr<const Robot>(std::size_t index)>;
 
 // Robots that are there already.
@@ -60,6 +60,9 @@ struct EvaluationRequest {
   // If it depends on anything but `so_far`, results depend on chance. An exception ends the evaluation.
   std::vector<std::int64_t> checks;
   std::function<bool(const Evaluation& so_far)> goes_on;
+
+  // The source is called by one thread at a time, with 0, 1, 2, ... in turn.
+  bool serial_source = false;
 
   // About how much host memory the robots may take that are made and not yet yielded, with what it takes to step them
   // [bytes]. 0 = a quarter of what is available. One robot at a time is always accepted.

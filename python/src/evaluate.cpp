@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// evaluate(): robots in, results out.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "mercury/error.h"
+#include "mercury/evaluator.h"
+#include "python/src/bindings.h"
+#include "python/src/gil.h"
+#include "python/src/result.h"
+#include "python/src/robot_source.h"
+
+namespace mercury::python {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr const char* evaluate_description =
+    R"(Tries any number of robots, each for the same time, and keeps the device busy: robots are made and loaded while
+others are stepped. Returns an iterator over one Result per robot, in the order of the source.
+
+    for result in mercurysim.evaluate(mercurysim.random_voxel(1000), 10):
+        print(result.index, result.distance)
+
+source: Robots, an iterator over them, which may be endless, or a function that returns the Robot of an index, None from
+the end on. An iterator runs in the thread that waits for results, some hundred robots ahead of them; robots that depend
+on results before need one call of evaluate() per generation. A function is called by several threads at the same time,
+in no particular order: use it where C++ does the work, as in lambda i: mercurysim.random_network(1, first=i)[0].
+seconds: simulated time per robot, settling included [s].
+settle: at its start; nothing is measured before [s].
+sample_every: time between two samples [s]; path, work, highest and the strains are as good as they are dense. None =
+0.05 s.
+environment, solver, dt, damping, device, threads: as in Batch; with "cuda:all", each robot goes to one of the devices.
+hashes, states: whether results have the hash and the masses of the final state.
+memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
+portion: how many robots are loaded together, at most; None = chosen. Results do not depend on it.
+
+What the source raises comes out of next(), after the results before. A robot that breaks a rule, or an InputError of a
+function, is a Result with `failure`. Raises InputError for a value that is not accepted.)";
+
+// An iterator over results, as Python has it. One thread at a time takes results; close() may come from another one.
+// All functions are called with the GIL, which guards the members.
+class Results {
+ public:
+  Results(const EvaluationRequest& request, nb::object source);
+  ~Results() { close(); }
+  Results(const Results&) = delete;
+  Results& operator=(const Results&) = delete;
+
+  Result next();  // throws StopIteration
+  // Ends the evaluation. A thread that is in next() notices within a twentieth of a second.
+  void close();
+  std::vector<std::string> notes() const;
+
+  // For Python's garbage collector.
+  std::array<nb::handle, 2> references() const { return {source_, iterator_}; }
+  void forget_references() { source_.reset(), iterator_.reset(); }
+
+ private:
+  class Use;
+
+  void pull();
+  std::optional<Result> wait();
+
+  std::shared_ptr<const Configuration> configuration_;
+  bool hashes_, states_;
+  nb::object source_, iterator_;
+  std::size_t pulled_robots_ = 0;
+  std::shared_ptr<PulledSource> pulled_;  // null unless robots come from an iterator
+  std::shared_ptr<SourceError> error_ = std::make_shared<SourceError>();
+  std::shared_ptr<Evaluator> evaluator_;  // null once it is closed
+  std::vector<std::string> notes_;        // from then on
+  std::thread::id user_;                  // that is in next()
+};
+
+// The thread that is in next().
+class Results::Use {
+ public:
+  explicit Use(Results& results) : results_(results) {
+    if (results.user_ != std::thread::id()) throw nb::value_error("another call of next() has not returned yet");
+    results.user_ = std::this_thread::get_id();
+  }
+  ~Use() { results_.user_ = {}; }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+ private:
+  Results& results_;
+};
+
+Results::Results(const EvaluationRequest& request, nb::object source)
+    : configuration_(std::make_shared<Configuration>(request.configuration)), hashes_(request.hashes),
+      states_(request.states), source_(std::move(source)) {
+  EvaluationRequest complete = request;
+  RobotSource robots;
+  std::size_t count = Evaluator::unknown_count;
+  if (nb::isinstance<SharedRobot>(source_) || nb::isinstance<nb::list>(source_) || nb::isinstance<nb::tuple>(source_)) {
+    SharedRobots all = robots_of(source_);
+    count = all.size();
+    robots = source_of(std::move(all));
+  } else if (PyObject* const iterator = PyObject_GetIter(source_.ptr())) {
+    iterator_ = nb::steal(iterator);
+    pulled_ = std::make_shared<PulledSource>();
+    complete.serial_source = true;
+    robots = [pulled = pulled_](std::size_t) { return pulled->take(); };
+  } else {
+    PyErr_Clear();
+    if (!PyCallable_Check(source_.ptr()))
+      throw nb::type_error("source: give Robots, an iterator over them, or a function that returns one for an index");
+    robots = source_of_function(source_, error_);
+  }
+  const ReleasedGil released;
+  evaluator_ = std::make_shared<Evaluator>(complete, std::move(robots), count);
+}
+
+// Takes one robot from the iterator.
+void Results::pull() {
+  std::shared_ptr<const Robot> robot;
+  try {
+    const nb::object next = nb::steal(PyIter_Next(iterator_.ptr()));
+    if (next.is_valid())
+      robot = robot_from(next, pulled_robots_);
+    else if (PyErr_Occurred())
+      throw nb::python_error();
+  } catch (...) {
+    error_->keep(pulled_robots_, std::current_exception());
+  }
+  ++pulled_robots_;
+  pulled_->serve(std::move(robot));
+  error_->rethrow_if_urgent();
+}
+
+// One robot is taken for each result that is there, and as many as are wanted while there is none.
+Result Results::next() {
+  const Use use(*this);
+  while (evaluator_) {
+    if (pulled_ && pulled_->is_wanted()) pull();
+    if (std::optional<Result> result = wait()) return *std::move(result);
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+  throw nb::stop_iteration();
+}
+
+// Nothing if there is no result yet, and after the last one.
+std::optional<Result> Results::wait() {
+  std::shared_ptr<Evaluator> ours = evaluator_;  // another thread may close
+  if (!ours) return std::nullopt;
+  std::optional<Evaluation> evaluation;
+  bool is_over = false;
+  try {
+    const ReleasedGil released;
+    const std::shared_ptr<Evaluator> evaluator = std::move(ours);
+    if (evaluator->wait_for(milliseconds(pulled_ ? 0 : 50))) {
+      evaluation = evaluator->next();
+      is_over = !evaluation;
+    } else if (pulled_) {
+      pulled_->wait(milliseconds(1));
+    }
+  } catch (...) {
+    close();
+    throw;
+  }
+  if (is_over) {
+    close();
+    error_->rethrow();
+  }
+  if (!evaluation) return std::nullopt;
+  return Result{*std::move(evaluation), configuration_, hashes_, states_};
+}
+
+void Results::close() {
+  if (!evaluator_) return;
+  notes_ = evaluator_->notes();
+  if (pulled_) pulled_->close();
+  std::shared_ptr<Evaluator> evaluator = std::move(evaluator_);
+  const ReleasedGil released;
+  evaluator->stop();
+  while (evaluator.use_count() > 1) std::this_thread::sleep_for(milliseconds(1));  // a thread is in next()
+  evaluator.reset();
+}
+
+std::vector<std::string> Results::notes() const { return evaluator_ ? evaluator_->notes() : notes_; }
+
+int visit_references(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  for (const nb::handle reference : nb::inst_ptr<Results>(self)->references()) Py_VISIT(reference.ptr());
+  return 0;
+}
+
+int clear_references(PyObject* self) {
+  if (!nb::inst_ready(self)) return 0;
+  nb::inst_ptr<Results>(self)->close();
+  nb::inst_ptr<Results>(self)->forget_references();
+  return 0;
+}
+
+PyType_Slot results_slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(visit_references)},
+                               {Py_tp_clear, reinterpret_cast<void*>(clear_references)},
+                               {0, nullptr}};
+
+constexpr double sample_period = 0.05;  // [s]
+
+std::int64_t steps_in(double seconds, double dt, const char* name) {
+  const double steps = seconds / dt;
+  if (!(seconds >= 0) || !(steps < 9e15))
+    throw InputError(name, std::string(nb::str(nb::handle(nb::cast(seconds))).c_str()) +
+                               " is not accepted; give 0 s or more, and fewer than 9e15 steps");
+  return std::llround(steps);
+}
+
+nb::object evaluate(nb::object source, double seconds, nb::handle environment, const std::string& solver, double dt,
+                    double damping, nb::handle device, int threads, double settle, std::optional<double> sample_every,
+                    bool hashes, bool states, std::optional<std::size_t> memory_limit,
+                    std::optional<std::size_t> portion) {
+  const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
+  validate(configuration);
+  const std::int64_t steps = steps_in(seconds, dt, "seconds"), settling = steps_in(settle, dt, "settle");
+  if (settling > steps) throw InputError("settle", "it is longer than seconds, which include it");
+  const std::int64_t period = steps_in(sample_every.value_or(sample_period), dt, "sample_every");
+  const EvaluationRequest request{.configuration = configuration,
+                                  .settling = settling,
+                                  .steps = steps - settling,
+                                  .sample_every = std::max<std::int64_t>(1, period),
+                                  .hashes = hashes,
+                                  .states = states,
+                                  .memory_limit = memory_limit.value_or(0),
+                                  .portion = portion.value_or(0)};
+  nb::object results = nb::cast(std::make_unique<Results>(request, std::move(source)));
+  nb::module_::import_("mercurysim._mercury").attr("_open_results").attr("add")(results);
+  return results;
+}
+
+}  // namespace
+
+void bind_evaluate(nb::module_& module) {
+  bind_result(module);
+  nb::class_<Results>(
+      module, "Results", nb::type_slots(results_slots), nb::is_weak_referenceable(),
+      "The iterator over Results that evaluate() returns. As a context manager it is closed at the end.")
+      .def("__iter__", [](nb::handle_t<Results> self) { return nb::borrow(self); })
+      .def("__next__", &Results::next)
+      .def("__enter__", [](nb::handle_t<Results> self) { return nb::borrow(self); })
+      .def(
+          "__exit__", [](Results& self, const nb::args&) { self.close(); }, nb::arg("error"))
+      .def("close", &Results::close, "Ends the evaluation: robots that are being stepped are given up.")
+      .def_prop_ro("notes", &Results::notes,
+                   "Lines worth reading so far, as that a robot is too large for the chip; usually none.")
+      .def("__reduce_ex__", [](const Results&, nb::handle) -> nb::object {
+        throw nb::type_error("the results of evaluate() cannot be pickled or copied: collect them in a list");
+      });
+  module.def("evaluate", &evaluate, nb::arg("source"), nb::arg("seconds"), nb::kw_only(),
+             nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
+             nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
+             nb::arg("sample_every") = nb::none(), nb::arg("hashes") = false, nb::arg("states") = false,
+             nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(), evaluate_description);
+  // What is open when the interpreter exits is closed while threads can still run.
+  const nb::object open = nb::module_::import_("weakref").attr("WeakSet")();
+  module.attr("_open_results") = open;
+  nb::module_::import_("atexit").attr("register")(nb::cpp_function([open] {
+    for (const nb::handle results : nb::list(open)) nb::cast<Results&>(results).close();
+  }));
+}
+
+}  // namespace mercury::python

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "python/src/result.h"
+
+#include <nanobind/stl/string.h>
+
+#include <span>
+#include <string>
+
+#include "mercury/quantity.h"
+#include "python/src/arguments.h"
+#include "python/src/bindings.h"
+#include "python/src/telemetry.h"
+
+namespace mercury::python {
+namespace {
+
+bool was_stepped(const Result& self) { return self.evaluation.robot && self.evaluation.failure.empty(); }
+
+double quantity(const Result& self, const Quantity& quantity) {
+  return quantity.value({*self.evaluation.robot, self.evaluation, *self.configuration});
+}
+
+double distance(const Result& self) {
+  return was_stepped(self) ? quantity(self, quantities()[*find_quantity("distance")]) : 0;
+}
+
+nb::dict all_quantities(const Result& self) {
+  nb::dict values;
+  if (!was_stepped(self)) return values;
+  for (const Quantity& each : quantities()) values[nb::str(each.name.data(), each.name.size())] = quantity(self, each);
+  return values;
+}
+
+nb::object record(const Telemetry& telemetry) { return telemetry_array(std::span(&telemetry, 1))[0]; }
+
+std::string represent(const Result& self) {
+  const std::string robot = "<Result " + std::to_string(self.evaluation.index) + ": ";
+  if (!was_stepped(self)) return robot + self.evaluation.failure + ">";
+  return robot + nb::str(nb::handle(nb::cast(distance(self)))).c_str() + " m in " +
+         std::to_string(self.evaluation.steps) + " steps" + (self.evaluation.end.exploded ? ", exploded>" : ">");
+}
+
+// Of a member of Evaluation.
+template <class Member>
+auto value_of(Member member) {
+  return [member](const Result& self) { return self.evaluation.*member; };
+}
+
+}  // namespace
+
+void bind_result(nb::module_& module) {
+  nb::class_<Result>(module, "Result",
+                     "What became of one robot in evaluate(). All numbers are 0 if `failure` says that the robot could "
+                     "not be\nstepped.")
+      .def_prop_ro("index", value_of(&Evaluation::index), "Of the robot in the source.")
+      .def_prop_ro(
+          "robot",
+          [](const Result& self) {
+            return self.evaluation.robot ? nb::cast(SharedRobot{self.evaluation.robot}) : nb::none();
+          },
+          "The robot; None if the source raised InputError instead of giving one.")
+      .def_prop_ro(
+          "failure",
+          [](const Result& self) {
+            return self.evaluation.failure.empty() ? nb::none() : nb::cast(self.evaluation.failure);
+          },
+          "Why the robot cannot be used, one line; None if it was stepped.")
+      .def_prop_ro("steps", value_of(&Evaluation::steps), "Steps of the trial after settling.")
+      .def_prop_ro(
+          "start", [](const Result& self) { return record(self.evaluation.start); },
+          "Telemetry after settling: a record with the fields of Batch.telemetry().")
+      .def_prop_ro(
+          "end", [](const Result& self) { return record(self.evaluation.end); }, "Telemetry at the end, as `start`.")
+      .def_prop_ro("distance", &distance,
+                   "How far the center of mass went from start to end; on land along the ground [m].")
+      .def_prop_ro("path", value_of(&Evaluation::path),
+                   "Length of the path of the center of mass, from sample to sample [m].")
+      .def_prop_ro("work", value_of(&Evaluation::work), "That the muscles did, from sample to sample [J].")
+      .def_prop_ro("highest", value_of(&Evaluation::highest), "Largest z of the center of mass of all samples [m].")
+      .def_prop_ro("largest_strain", value_of(&Evaluation::largest_strain),
+                   "Largest strain of a spring of all samples [1].")
+      .def_prop_ro("strained_share", value_of(&Evaluation::strained_share),
+                   "Largest share of the springs that were strained by more than half at the same time [1].")
+      .def_prop_ro(
+          "exploded", [](const Result& self) { return self.evaluation.end.exploded; },
+          "Whether the robot left the finite and was frozen.")
+      .def_prop_ro("quantities", &all_quantities,
+                   "All quantities that `mercury evolve` knows, by name: speed, efficiency, body_lengths, ... Empty if "
+                   "the robot\ncould not be stepped.")
+      .def_prop_ro(
+          "hash",
+          [](const Result& self) {
+            return self.has_hash && was_stepped(self) ? nb::cast(self.evaluation.hash) : nb::none();
+          },
+          "Batch.hash() of the final state; None unless evaluate(hashes=True).")
+      .def_prop_ro(
+          "positions",
+          [](const Result& self) {
+            return self.has_state && was_stepped(self) ? vector_array(self.evaluation.state.positions) : nb::none();
+          },
+          "Final positions, (masses, 3) float32 [m], a NumPy array; None unless evaluate(states=True).")
+      .def_prop_ro(
+          "velocities",
+          [](const Result& self) {
+            return self.has_state && was_stepped(self) ? vector_array(self.evaluation.state.velocities) : nb::none();
+          },
+          "Final velocities, (masses, 3) float32 [m/s]; as positions.")
+      .def("__repr__", &represent);
+}
+
+}  // namespace mercury::python
