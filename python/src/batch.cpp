@@ -54,6 +54,11 @@ Batch::~Batch() {
   simulation_.reset();
 }
 
+void Batch::leave_stream() {
+  if (const int device = simulation_->cuda_device(); device >= 0 && last_stream_->exchange(nullptr))
+    synchronize_cuda_device(device);
+}
+
 void Batch::change_robots() {
   springs_ = springs_of(robots_);
   steps_at_once_ = simulation_->cuda_device() >= 0
@@ -94,7 +99,7 @@ void Batch::step(std::int64_t steps, nb::handle stream) {
 void Batch::reset(nb::handle mask, nb::handle stream) {
   void* const cuda_stream = stream_from(stream);
   if (mask.is_none()) {
-    use([](Simulation& simulation) { simulation.reset(); });
+    change([](Simulation& simulation) { simulation.reset(); });
     return;
   }
   const auto check_size = [](std::size_t size, std::size_t robots) {
@@ -105,7 +110,7 @@ void Batch::reset(nb::handle mask, nb::handle stream) {
   const int device = cuda_device_of(mask);
   if (device < 0) {
     const std::vector<std::uint8_t> values = mask_from(mask);
-    use([&](Simulation& simulation) {
+    change([&](Simulation& simulation) {
       check_size(values.size(), simulation.size());
       simulation.reset(values);
     });
@@ -123,31 +128,27 @@ void Batch::reset(nb::handle mask, nb::handle stream) {
 }
 
 std::size_t Batch::add(const SharedRobots& robots) {
-  std::size_t first = 0;
-  {
-    const ReleasedGil released;
-    const std::lock_guard lock(mutex_);
-    first = simulation_->add(robots);
+  const std::size_t first = change([&](Simulation& simulation) {
+    const std::size_t index = simulation.add(robots);
     robots_.insert(robots_.end(), robots.begin(), robots.end());
     change_robots();
-  }
+    return index;
+  });
   forget_arrays();
   return first;
 }
 
 void Batch::keep(nb::handle robots) {
   const std::vector<std::int64_t> indices = indices_from(robots);
-  {
-    const ReleasedGil released;
-    const std::lock_guard lock(mutex_);
+  change([&](Simulation& simulation) {
     std::vector<std::size_t> kept;
     for (const std::int64_t index : indices) kept.push_back(checked_index(index, robots_.size()));
-    simulation_->keep(kept);
+    simulation.keep(kept);
     SharedRobots remaining;
     for (const std::size_t index : kept) remaining.push_back(robots_[index]);
     robots_.swap(remaining);
     change_robots();
-  }
+  });
   forget_arrays();
 }
 

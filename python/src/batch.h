@@ -34,6 +34,15 @@ class Batch {
     const std::lock_guard lock(mutex_);
     return use(*simulation_);
   }
+  // The same for what changes the robots. Without a stream, that is in the legacy default stream of a CUDA device: what
+  // the batch has queued in another one is done before.
+  template <class Change>
+  auto change(const Change& change) {
+    const ReleasedGil released;
+    const std::lock_guard lock(mutex_);
+    leave_stream();
+    return change(*simulation_);
+  }
 
   // In portions between which Ctrl-C ends it.
   void step(std::int64_t steps, nb::handle stream);
@@ -56,6 +65,7 @@ class Batch {
 
   template <class Make>
   nb::object cached(std::size_t place, const Make& make);
+  void leave_stream();   // to be called with the lock
   void change_robots();  // to be called with the lock, without the GIL
   void forget_arrays();  // to be called with the GIL
 

@@ -101,7 +101,7 @@ void configure(Batch& self, nb::handle environment, const std::optional<std::str
   if (!environment.is_none()) other = environment_of(environment);
   std::optional<Solver> other_solver;
   if (solver) other_solver = solver_named(*solver);
-  self.use([&](Simulation& simulation) {
+  self.change([&](Simulation& simulation) {
     Configuration configuration = simulation.configuration();
     if (other) configuration.environment = *other;
     if (other_solver) configuration.solver = *other_solver;
@@ -118,7 +118,7 @@ void set_state(Batch& self, std::int64_t robot, nb::handle positions, nb::handle
   const std::vector<Vec3> x = vectors_from(positions, masses, "positions");
   const std::vector<Vec3> v =
       velocities.is_none() ? std::vector<Vec3>(masses) : vectors_from(velocities, masses, "velocities");
-  self.use([&](Simulation& simulation) { simulation.set_state(checked_index(robot, simulation.size()), x, v); });
+  self.change([&](Simulation& simulation) { simulation.set_state(checked_index(robot, simulation.size()), x, v); });
 }
 
 template <class T>
