@@ -92,25 +92,44 @@ std::string name_of_material(const Robot& robot, MaterialId id) {
   return robot.material_names[id];
 }
 
-// Replaces the default table by air and those materials that the springs have.
-void give_own_table(Robot& robot) {
-  if (!robot.materials.empty()) return;
+// Gives the robot a table of air and those materials that springs or actuators have.
+void keep_used_materials(Robot& robot) {
+  const std::span<const Material> defaults = default_materials();
+  const bool had_defaults = robot.materials.empty();
+  const std::vector<Material> table =
+      had_defaults ? std::vector<Material>(defaults.begin(), defaults.end()) : std::exchange(robot.materials, {});
+  const std::vector<std::string> names = std::exchange(robot.material_names, {});
   std::array<MaterialId, max_materials> new_id{};
   std::array<bool, max_materials> used{};
   for (const Spring& spring : robot.springs) used[spring.material] = true;
   for (const Actuator& actuator : robot.actuators)
     for (const MaterialId id : actuator.materials) used[id] = true;
   used[air] = true;
-  for (std::size_t id = 0; id < used.size(); ++id) {
+  for (std::size_t id = 0; id < table.size(); ++id) {
     if (!used[id]) continue;
     new_id[id] = static_cast<MaterialId>(robot.materials.size());
-    robot.materials.push_back(default_materials()[id]);
-    robot.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
+    robot.materials.push_back(table[id]);
+    if (had_defaults) robot.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
+    if (!names.empty()) robot.material_names.push_back(names[id]);
   }
   for (Spring& spring : robot.springs) spring.material = new_id[spring.material];
   for (Actuator& actuator : robot.actuators)
     for (MaterialId& id : actuator.materials) id = new_id[id];
 }
+
+// By material: whether one of the chosen springs has it, and whether another has.
+struct MaterialUses {
+  std::array<bool, max_materials> inside{}, outside{};
+
+  MaterialUses(const Robot& robot, const std::vector<bool>& chosen) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) (chosen[i] ? inside : outside)[robot.springs[i].material] = true;
+  }
+  std::size_t shared() const {
+    std::size_t count = 0;
+    for (std::size_t id = 0; id < inside.size(); ++id) count += inside[id] && outside[id] ? 1 : 0;
+    return count;
+  }
+};
 
 }  // namespace
 
@@ -142,7 +161,7 @@ std::vector<Actuator> actuators_of(const Robot& robot) {
 
 void add_actuator(Robot& robot, const std::string& name, std::span<const std::uint32_t> springs) {
   Robot changed = robot;
-  give_own_table(changed);
+  if (changed.materials.empty()) keep_used_materials(changed);
   std::vector<bool> chosen(changed.springs.size());
   for (const std::uint32_t i : springs) {
     if (i >= chosen.size())
@@ -150,20 +169,25 @@ void add_actuator(Robot& robot, const std::string& name, std::span<const std::ui
                                                std::to_string(chosen.size()));
     chosen[i] = true;
   }
-  std::array<bool, max_materials> inside{}, outside{}, driven{};
-  for (std::size_t i = 0; i < chosen.size(); ++i) (chosen[i] ? inside : outside)[changed.springs[i].material] = true;
+  std::array<bool, max_materials> driven{};
   for (const Actuator& actuator : changed.actuators)
     for (const MaterialId id : actuator.materials) driven[id] = true;
+  MaterialUses uses(changed, chosen);
+  for (std::size_t id = 1; id < max_materials; ++id)
+    if (uses.inside[id] && driven[id])
+      throw InputError("actuator " + name, "springs of material " + std::to_string(id) + " have an actuator already");
+  if (changed.materials.size() + uses.shared() > max_materials) {
+    keep_used_materials(changed);
+    uses = MaterialUses(changed, chosen);
+  }
+  if (changed.materials.size() + uses.shared() > max_materials)
+    throw InputError("actuator " + name, "needs more than 255 materials; a robot has at most 255 and air");
   Actuator added{.name = name, .materials = {}};
   std::array<MaterialId, max_materials> new_id{};
   for (std::size_t id = 1; id < max_materials; ++id) {
-    if (!inside[id]) continue;
-    if (driven[id])
-      throw InputError("actuator " + name, "springs of material " + std::to_string(id) + " have an actuator already");
+    if (!uses.inside[id]) continue;
     new_id[id] = static_cast<MaterialId>(id);
-    if (outside[id]) {
-      if (changed.materials.size() == max_materials)
-        throw InputError("actuator " + name, "needs more than 255 materials; a robot has at most 255 and air");
+    if (uses.outside[id]) {
       new_id[id] = static_cast<MaterialId>(changed.materials.size());
       changed.materials.push_back(changed.materials[id]);
       if (!changed.material_names.empty()) changed.material_names.push_back(changed.material_names[id]);

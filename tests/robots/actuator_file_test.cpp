@@ -181,6 +181,23 @@ TEST_P(ActuatorsInFiles, MoreActuatorsThanMaterialsAreRefused) {
   EXPECT_THAT(refusal(star(256, 256)), HasSubstr("at most 255 are accepted"));
 }
 
+TEST(AddActuator, AFullTableLosesMaterialsThatNoSpringHas) {
+  const auto defaults = default_materials();
+  Robot robot{.masses = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}};
+  robot.materials.assign(defaults.begin(), defaults.end());
+  robot.materials.resize(max_materials, {7, 0.1f, 1, 2});
+  robot.material_names.assign(robot.materials.size(), "");
+  robot.material_names[200] = "fin";
+  robot.springs = {{0, 1, 200, 1}, {1, 2, 200, 1}, {2, 3, 255, 1}, {3, 4, 255, 1}};
+  robot.actuators = {{"rest", {9, 255}}};
+  add_actuator(robot, "first", std::vector<std::uint32_t>{0});
+  EXPECT_EQ(materials_of_springs(robot), (std::vector{4, 2, 3, 3}));
+  EXPECT_EQ(robot.materials,
+            (std::vector{Material{}, defaults[9], defaults[200], Material{7, 0.1f, 1, 2}, defaults[200]}));
+  EXPECT_THAT(robot.material_names, ElementsAre("", "", "fin", "", "fin"));
+  EXPECT_THAT(robot.actuators, ElementsAre(Actuator{"rest", {1, 3}}, Actuator{"first", {4}}));
+}
+
 TEST(ActuatorsInCbor, NothingIsAllocatedForActuatorsThatAreOnlyAnnounced) {
   using namespace std::string_literals;
   const auto refusal = [](const std::string& cbor) -> std::string {

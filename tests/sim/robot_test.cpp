@@ -206,8 +206,17 @@ TEST(Actuators, ThatCannotBeMadeAreRefused) {
   add_actuator(robot, "corner", std::array{1u});
   EXPECT_EQ(message_of_actuator(robot, {1}), "actuator fin: springs of material 2 have an actuator already");
   EXPECT_EQ(message_of_actuator(robot, {}), "/actuators/1: an actuator needs at least one material or spring");
-  robot.materials.resize(max_materials);
-  robot.material_names.resize(max_materials, "spare");
+}
+
+TEST(Actuators, NeedRoomInATableThatSpringsUseWhole) {
+  Robot robot;
+  robot.materials.resize(max_materials, {50, 0.1f, 1, 0});
+  for (int i = 0; i <= max_materials; ++i) robot.masses.push_back({static_cast<float>(i), 0, 0});
+  for (std::uint16_t i = 0; i < max_materials; ++i)
+    robot.springs.push_back({i, static_cast<std::uint16_t>(i + 1), static_cast<MaterialId>(i == 0 ? 255 : i), 1});
+  validate(robot);
+  EXPECT_EQ(message_of_actuator(robot, {1}), "accepted");
+  EXPECT_EQ(message_of_actuator(robot, {0, 255}), "accepted");
   EXPECT_EQ(message_of_actuator(robot, {0}),
             "actuator fin: needs more than 255 materials; a robot has at most 255 and air");
 }

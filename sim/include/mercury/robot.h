@@ -57,9 +57,9 @@ std::span<const Material> materials_of(const Robot& robot);
 std::vector<Actuator> actuators_of(const Robot& robot);
 
 // Makes an actuator of these springs, by their indices. Springs of an actuator need materials that no other springs
-// have. So each of their materials is copied, unless no other spring has it. A robot with the default table gets a
-// table of its own, with air and the materials that its springs have. Throws InputError if there is no such spring, if
-// one of them has an actuator already, or if the table would have more than max_materials.
+// have. So each of their materials is copied, unless no other spring has it. A robot with the default table, or one
+// whose table has no room, gets a table of air and the materials that its springs have. Throws InputError if there is
+// no such spring, if one of them has an actuator already, or if the table would have more than max_materials.
 void add_actuator(Robot& robot, const std::string& name, std::span<const std::uint32_t> springs);
 
 // Distance of two masses at rest [m], the default of Spring::rest_length.
