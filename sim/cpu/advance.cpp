@@ -16,15 +16,18 @@ class FactorCache {
  public:
   explicit FactorCache(Muscles& muscles) : muscles_(muscles) {}
 
-  // The factors of the body's materials, perhaps of others, too.
-  const std::array<FactorId, max_materials>& factors_of(const Body& body) {
+  // The factors of the body's materials, perhaps of others, too. Driven ones have been added before.
+  std::array<FactorId, max_materials> factors_of(const Body& body) {
     if (!is_table_of(body)) known_ = {};
     table_ = body.materials;
     std::array<bool, max_materials> wanted;
     for (std::size_t id = 0; id < max_materials; ++id) wanted[id] = body.measures.used[id] && !known_[id];
+    for (const DrivenMaterial& driven : body.drives.materials) wanted[driven.id] = false;
     for (std::size_t id = 0; id < max_materials; ++id) known_[id] |= wanted[id];
     muscles_.add(table_, wanted, factors_);
-    return factors_;
+    std::array<FactorId, max_materials> factors = factors_;
+    for (const DrivenMaterial& driven : body.drives.materials) factors[driven.id] = driven.factor;
+    return factors;
   }
 
  private:
@@ -40,8 +43,16 @@ class FactorCache {
   std::array<FactorId, max_materials> factors_{};
 };
 
+template <class Work>
+void for_each_body(WorkBatch& batch, const Work& work) {
+  for (LockstepGroup& group : batch.groups)
+    for (Body* const body : group.bodies) work(*body);
+  for (Body* const body : batch.bodies) work(*body);
+}
+
 void update_spring_parameters(WorkBatch& batch, const AnyEnvironmentModel& model) {
   batch.muscles = {};
+  for_each_body(batch, [&](Body& body) { add_driven_factors(body, batch.muscles); });
   FactorCache factor_cache(batch.muscles);
   for (LockstepGroup& group : batch.groups) {
     std::vector<std::array<FactorId, max_materials>> factors;
@@ -93,6 +104,7 @@ void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting,
 std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
                     std::int64_t steps) {
   if (batch.spring_parameters_are_stale) update_spring_parameters(batch, setting.model);
+  for_each_body(batch, [&](Body& body) { read_drives(body, batch.muscles); });
   std::size_t broken_up = 0;
   const auto break_up_counted = [&](LockstepGroup& group) {
     break_up(group, batch);

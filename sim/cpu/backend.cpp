@@ -60,9 +60,13 @@ class CpuBackend final : public Backend {
     append(robots);
   }
 
-  void add(std::span<const Robot* const> robots, std::size_t first_new) override { append(robots.subspan(first_new)); }
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override {
+    drive_nothing();
+    append(robots.subspan(first_new));
+  }
 
   void keep(std::span<const Robot* const>, std::span<const std::size_t> indices) override {
+    drive_nothing();
     std::vector<std::unique_ptr<Body>> kept;
     kept.reserve(indices.size());
     for (const std::size_t i : indices) kept.push_back(std::move(bodies_[i]));
@@ -83,6 +87,8 @@ class CpuBackend final : public Backend {
       const Body& body = *bodies_[i];
       now.materials.insert(now.materials.end(), body.materials.begin(), body.materials.end());
       now.materials.resize((i + 1) * max_materials);
+      for (const DrivenMaterial& driven : body.drives.materials)
+        now.materials[i * max_materials + driven.id] = driven.own;
       now.perturbations.insert(now.perturbations.end(), body.perturbations.begin(), body.perturbations.end());
     }
     return now;
@@ -155,11 +161,16 @@ class CpuBackend final : public Backend {
 
   void write_materials(std::span<const Material> tables) override {
     for_each_body([&](std::size_t i) { replace_table(i, tables.subspan(i * max_materials, max_materials)); });
-    for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
+    materials_changed();
   }
   void write_materials(std::size_t robot, std::span<const Material> table) override {
     replace_table(robot, table);
-    for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
+    materials_changed();
+  }
+  bool set_actuation(const ActuationSources& sources) override {
+    for_each_body([&](std::size_t i) { set_drives(*bodies_[i], sources, i); });
+    materials_changed();
+    return true;
   }
 
   void set_perturbations(std::span<const Perturbation> perturbations) override {
@@ -231,6 +242,19 @@ class CpuBackend final : public Backend {
     batches_.clear();
     loose_.clear();
     loosened_since_grouping_ = changes_since_grouping_ = 0;
+  }
+
+  void drive_nothing() {
+    bool driven = false;
+    for (const auto& body : bodies_) {
+      driven = driven || !body->drives.materials.empty();
+      remove_drives(*body);
+    }
+    if (driven) materials_changed();
+  }
+
+  void materials_changed() {
+    for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
   }
 
   void replace_table(std::size_t robot, std::span<const Material> table) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mercury/backend.h"
@@ -14,6 +15,7 @@ namespace mercury::test {
 // A CPU backend behind the interface, without its own add(), keep() and step_and_report().
 class PlainBackend final : public Backend {
  public:
+  explicit PlainBackend(std::unique_ptr<Backend> cpu = make_cpu_backend({})) : cpu_(std::move(cpu)) {}
   std::string device_name() const override { return cpu_->device_name(); }
   std::vector<std::string> notes() const override { return cpu_->notes(); }
   std::size_t robots_at_once() const override { return cpu_->robots_at_once(); }
@@ -48,7 +50,7 @@ class PlainBackend final : public Backend {
   }
 
  private:
-  std::unique_ptr<Backend> cpu_ = make_cpu_backend({});
+  std::unique_ptr<Backend> cpu_;
 };
 
 }  // namespace mercury::test

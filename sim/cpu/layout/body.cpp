@@ -57,6 +57,7 @@ void prepare_contacts(Body& body) {
 void set_materials(Body& body, std::span<const Material> table) {
   body.changed_materials.assign(table.begin(), table.end());
   body.materials = body.changed_materials;
+  for (DrivenMaterial& driven : body.drives.materials) driven.own = table[driven.id];
 }
 
 void clear(Sums& sums) {

@@ -30,6 +30,7 @@
 
 #include "mercury/backend.h"
 #include "sim/cpu/layout/aligned.h"
+#include "sim/cpu/layout/drives.h"
 #include "sim/cpu/layout/lattice_cells.h"
 #include "sim/cpu/layout/near_pairs.h"
 #include "sim/cpu/layout/slots.h"
@@ -81,8 +82,9 @@ struct Body {
   std::vector<FacePair> face_pairs;
   std::vector<LatticeCell> cells;
   Slots slots;
-  std::span<const Material> materials;      // by id: those of the robot, or `changed_materials`
-  std::vector<Material> changed_materials;  // max_materials elements if the caller has written them
+  std::span<const Material> materials;      // by id, as they are now: those of the robot, or `changed_materials`
+  std::vector<Material> changed_materials;  // max_materials elements if the caller has written or drives them
+  Drives drives;
   FixedPointScale scale;
   // By spring, in units: k of the force solver, or xpbd_stiffness(). 0 for springs of air.
   std::vector<float> stiffness;
@@ -122,7 +124,8 @@ Body make_body(const Robot& robot, std::size_t lanes);
 void prepare_to_step_alone(Body& body);
 void prepare_contacts(Body& body);
 
-// Replaces the materials by a table of max_materials elements. To be followed by update_spring_parameters().
+// Replaces the materials by a table of max_materials elements; what the caller drives has these as its own until the
+// next step. To be followed by update_spring_parameters().
 void set_materials(Body& body, std::span<const Material> table);
 
 // Computes what depends on materials and configuration.

@@ -2,6 +2,7 @@
 #include "sim/cpu/layout/muscles.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace mercury::cpu {
 namespace {
@@ -20,7 +21,7 @@ void Muscles::add(std::span<const Material> table, const std::array<bool, max_ma
   for (std::size_t id = 0; id < table.size(); ++id) {
     if (!wanted[id]) continue;
     const Material& m = table[id];
-    const Movement movement = m.amplitude == 0 ? Movement{0, 0, 0} : Movement{m.amplitude, m.frequency, m.phase};
+    const Movement movement = m.amplitude == 0 ? Movement{0, 0, 0} : movement_of(m);
     const auto [found, is_new] = factor_of_.emplace(movement, static_cast<FactorId>(movements_.size()));
     if (is_new) {
       movements_.push_back(m);
@@ -30,10 +31,34 @@ void Muscles::add(std::span<const Material> table, const std::array<bool, max_ma
   }
 }
 
+FactorId Muscles::add_driven() {
+  movements_.push_back({});
+  current_ = false;
+  return static_cast<FactorId>(movements_.size() - 1);
+}
+
+void Muscles::drive(FactorId factor, const Material& material) {
+  if (movement_of(movements_[factor]) == movement_of(material)) return;
+  movements_[factor] = material;
+  driven_.push_back(factor);
+}
+
+void Muscles::place(std::size_t factor) {
+  const MusclePhase muscle = muscle_phase(movements_[factor], clock_);
+  amplitude[factor] = movements_[factor].amplitude;
+  phase[factor] = phase_at(muscle, clock_.step - clock_.base_step);
+  per_step[factor] = muscle.per_step;
+}
+
 void Muscles::move_to(const Clock& clock) {
   const bool goes_on = current_ && clock.dt == clock_.dt && clock.base_time == clock_.base_time &&
                        clock.base_step == clock_.base_step && clock.step == step;
-  if (goes_on) return;
+  const std::vector<FactorId> driven = std::exchange(driven_, {});
+  if (goes_on) {
+    clock_ = clock;
+    for (const FactorId factor : driven) place(factor);
+    return;
+  }
   clock_ = clock;
   step = clock.step;
   current_ = true;
@@ -41,12 +66,7 @@ void Muscles::move_to(const Clock& clock) {
   amplitude.assign(padded, 0);
   phase.assign(padded, 0);
   per_step.assign(padded, 0);
-  for (std::size_t i = 0; i < size(); ++i) {
-    const MusclePhase muscle = muscle_phase(movements_[i], clock);
-    amplitude[i] = movements_[i].amplitude;
-    phase[i] = phase_at(muscle, clock.step - clock.base_step);
-    per_step[i] = muscle.per_step;
-  }
+  for (std::size_t i = 0; i < size(); ++i) place(i);
 }
 
 }  // namespace mercury::cpu

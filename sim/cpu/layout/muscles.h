@@ -25,6 +25,10 @@ class Muscles {
   // Adds the wanted materials of a table and sets the factor of each; the other elements of `factors` stay.
   void add(std::span<const Material> table, const std::array<bool, max_materials>& wanted,
            std::array<FactorId, max_materials>& factors);
+  // Adds a factor that no add() returns, with a movement that may change.
+  FactorId add_driven();
+  // Gives such a factor the movement of this material, from the next move_to() on.
+  void drive(FactorId factor, const Material& material);
   // The number of factors.
   std::size_t size() const { return movements_.size(); }
 
@@ -38,10 +42,16 @@ class Muscles {
 
  private:
   using Movement = std::tuple<float, float, float>;  // amplitude, frequency, phase
+  static Movement movement_of(const Material& material) {
+    return {material.amplitude, material.frequency, material.phase};
+  }
+  void place(std::size_t factor);
+
   std::vector<Material> movements_;
   std::map<Movement, FactorId> factor_of_;
-  Clock clock_;           // of the last move_to()
-  bool current_ = false;  // the phases are those of `step` by clock_
+  std::vector<FactorId> driven_;  // since the last move_to()
+  Clock clock_;                   // of the last move_to()
+  bool current_ = false;          // the phases are those of `step` by clock_
 };
 
 }  // namespace mercury::cpu
