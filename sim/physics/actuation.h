@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A muscle that a program drives: L = L0 (1 + dL0 u) with u in [-1, 1] instead of the sine.
 //
-// The muscle law (muscle.h) gives this length without any change: with frequency 0, the angle is the phase, and with the
-// phase arcsin u the sine is u. So a drive is a change of the material, and no kernel knows of it.
+// The muscle law (muscle.h) gives this length without any change: with frequency 0, the angle is the phase, and with
+// the phase arcsin u the sine is u. So a drive is a change of the material, and no kernel knows of it.
 #pragma once
 
 #include <cmath>
