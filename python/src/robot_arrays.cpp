@@ -213,6 +213,28 @@ std::vector<Material> materials_from(nb::handle array) {
   return materials;
 }
 
+VoxelGrid grid_from(nb::handle given) {
+  const nb::object array = as_array("grid", given);
+  require_numbers("grid", array);
+  if (nb::cast<std::size_t>(array.attr("ndim")) != 3)
+    throw InputError("grid", "must have the shape (x, y, z), not " + shape_of(array));
+  const auto shape = nb::cast<std::vector<std::size_t>>(nb::list(array.attr("shape")));
+  for (const std::size_t size : shape)
+    if (size > VoxelGrid::max_cells) throw InputError("grid", "a shape of " + shape_of(array) + " is too large");
+  const auto size = [&](std::size_t axis) { return static_cast<int>(shape[axis]); };
+  VoxelGrid grid(size(0), size(1), size(2));
+  using Numbers = nb::ndarray<nb::numpy, const double, nb::ndim<3>, nb::f_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Numbers>(numpy().attr("asfortranarray")(array, nb::arg("dtype") = "float64"));
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    const double number = numbers.data()[i];
+    if (!is_index(number, base_material_count + 1))
+      throw InputError("grid", "material " + as_text(nb::float_(number)) + " is not accepted; give 0 to " +
+                                   std::to_string(base_material_count));
+    grid.cells[i] = static_cast<MaterialId>(number);
+  }
+  return grid;
+}
+
 void add_actuators(Robot& robot, nb::handle actuators) {
   if (!nb::isinstance<nb::dict>(actuators)) refuse_type("actuators", "a dict of names and spring indices", actuators);
   for (const auto [key, springs] : nb::borrow<nb::dict>(actuators)) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mercury/robot.h"
+#include "mercury/voxel.h"
 
 namespace mercury::python {
 
@@ -21,6 +22,8 @@ std::vector<Spring> springs_from(nanobind::handle array, const Robot& robot);
 std::vector<Face> faces_from(nanobind::handle array, const Robot& robot);  // (k, 3)
 // (l, 4): stiffness, amplitude, frequency, phase; or fields of these names.
 std::vector<Material> materials_from(nanobind::handle array);
+
+VoxelGrid grid_from(nanobind::handle array);  // (x, y, z): materials 0 to 22
 
 // Adds actuators of a mapping {name: springs}. Springs are indices, or a mask with one bool per spring.
 void add_actuators(Robot& robot, nanobind::handle actuators);

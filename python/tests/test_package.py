@@ -19,6 +19,11 @@ def test_the_version_is_that_of_the_program(mercury):
     assert mercury("--version").split()[1] == mercurysim.__version__
 
 
+def test_the_version_of_the_distribution_is_that_of_the_module():
+    project = (Path(__file__).resolve().parents[1] / "pyproject.toml").read_text()
+    assert re.search(r'^version = "([^"]+)"', project, re.MULTILINE).group(1) == mercurysim.__version__
+
+
 def test_everything_public_has_a_docstring():
     for name in mercurysim.__all__:
         thing = getattr(mercurysim, name)

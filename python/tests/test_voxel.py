@@ -48,6 +48,29 @@ def test_bad_grids_are_refused_in_one_line(grid, options, message):
     assert "\n" not in str(error.value)
 
 
-def test_a_grid_of_another_dimension_is_a_type_error():
-    with pytest.raises(TypeError):
-        mercurysim.voxel(np.ones((2, 2), np.uint8))
+@pytest.mark.parametrize(
+    "grid, options, error, message",
+    [
+        (np.ones((2, 2)), {}, mercurysim.InputError, r"^grid: must have the shape \(x, y, z\), not \(2, 2\)$"),
+        (None, {}, TypeError, "^grid: must be an array of numbers, not of object$"),
+        (np.ones((1, 1, 1), complex), {}, TypeError, "^grid: must be an array of numbers, not of complex128$"),
+        (np.full((1, 1, 1), 257), {}, mercurysim.InputError, "^grid: material 257.0 is not accepted; give 0 to 22$"),
+        (np.full((1, 1, 1), 1.5), {}, mercurysim.InputError, "^grid: material 1.5 is not accepted"),
+        (np.full((1, 1, 1), np.nan), {}, mercurysim.InputError, "^grid: material nan is not accepted"),
+        (np.full((1, 1, 1), -1), {}, mercurysim.InputError, "^grid: material -1.0 is not accepted"),
+        (np.ones((1, 1, 1)), {"edge": "wide"}, TypeError, "^edge: must be a number, not str$"),
+        (np.ones((1, 1, 1)), {"edge": 1e300}, mercurysim.InputError, "edge"),
+        (np.ones((1, 1, 1)), {"name": None}, TypeError, "^name: must be a text, not NoneType$"),
+    ],
+)
+def test_values_of_the_wrong_kind_are_refused_in_one_line(grid, options, error, message):
+    with pytest.raises(error, match=message) as caught:
+        mercurysim.voxel(grid, **options)
+    assert "\n" not in str(caught.value)
+
+
+def test_layouts_and_types_of_grids_do_not_matter():
+    grid = np.random.default_rng(1).integers(1, 23, (4, 3, 2))
+    expected = mercurysim.voxel(grid)
+    for other in (grid.tolist(), grid.astype(np.uint8), grid.astype(float), np.asfortranarray(grid), grid[::-1][::-1]):
+        assert mercurysim.voxel(other) == expected
