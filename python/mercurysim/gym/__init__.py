@@ -16,8 +16,8 @@ try:
 except ImportError:
     raise ImportError("mercurysim.gym needs Gymnasium: pip install 'mercurysim[gym]'") from None
 
+from ..bodies import eel, quadruped
 from ._environment import RobotEnv
-from ._robots import eel, quadruped
 from ._single import SingleEnv
 from ._tasks import SwimEnv, WalkEnv
 

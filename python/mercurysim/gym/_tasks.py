@@ -4,9 +4,9 @@ from __future__ import annotations
 from typing import Any
 
 from .. import Land, Ocean, Robot
+from ..bodies import eel, quadruped
 from ._bodies import Motion
 from ._environment import RobotEnv
-from ._robots import eel, quadruped
 
 
 class SwimEnv(RobotEnv):

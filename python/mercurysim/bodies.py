@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots to learn with. Their muscles work in opposite pairs: one drive signal bends a part of the body."""
+"""Robots by code, to learn with. Their muscles work in opposite pairs: one drive signal bends a part of the body."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .. import Robot, voxel
+from . import Robot, voxel
 
 PASSIVE, NEAR, FAR = 1, 2, 3  # materials: no muscle; a muscle that the drive makes longer; one that it makes shorter
 

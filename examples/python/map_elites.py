@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MAP-Elites (Mouret and Clune 2015; the package ribs) on bodies: the farthest swimmer of each size and share of air.
+
+    python map_elites.py [GENERATIONS [ROBOTS]]
+
+Bodies are voxel robots that Mercury mutates; a generation is one batch of robots of different shapes.
+"""
+import sys
+
+import numpy as np
+from ribs.archives import GridArchive
+
+import mercurysim
+
+generations, count = (int(text) for text in (sys.argv[1:] + ["20", "64"][len(sys.argv) - 1 :]))
+
+
+def measure(robot):
+    """Number of masses, and the share of air in the box around the robot."""
+    info = robot.info()
+    return info["masses"], 1 - info["volume"] / np.prod(info["extent"])
+
+
+def distances(robots, seconds=5):
+    """How far each robot swims [m]."""
+    batch = mercurysim.Batch(robots, environment=mercurysim.Ocean(), dt=2e-3)
+    start = batch.telemetry()["center_of_mass"].copy()
+    batch.step(round(seconds / batch.dt))
+    end = batch.telemetry()
+    way = np.linalg.norm(end["center_of_mass"] - start, axis=1)
+    return np.where(end["exploded"], 0, way)
+
+
+archive = GridArchive(solution_dim=1, dims=[8, 8], ranges=[(0, 400), (0, 0.8)])
+bodies = []  # a solution is the index of a body
+for generation in range(generations):
+    if generation == 0:
+        children = mercurysim.random_voxel(count, seed=1)
+    else:
+        parents = archive.sample_elites(count)["solution"][:, 0].astype(int)
+        children = [bodies[i].mutate(strength=1, muscles=1, seed=len(bodies) + k) for k, i in enumerate(parents)]
+    indices = len(bodies) + np.arange(count)
+    bodies += children
+    archive.add(indices[:, None], distances(children), [measure(robot) for robot in children])
+    stats = archive.stats
+    print(f"generation {generation + 1:3}: {stats.num_elites} cells, best {stats.obj_max:.3f} m, sum {stats.qd_score:.2f} m")
+
+best = bodies[int(archive.best_elite["solution"][0])]
+print(f"{best.name}: {best.info()['masses']} masses")
+best.save("map_elites_best.json")
