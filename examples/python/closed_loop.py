@@ -3,8 +3,8 @@
 
     python closed_loop.py
 
-Positions are read and drive signals are written in the memory of the batch, every 0.04 s. Prints how near each eel comes
-to its target, and how near a second eel comes that does not steer.
+Positions are read and drive signals are written in the memory of the batch, every 0.04 s. Prints how near each eel
+comes to its target, and how near a second eel comes that does not steer.
 """
 import numpy as np
 
@@ -12,7 +12,7 @@ import mercurysim
 from mercurysim.bodies import eel
 
 BEARINGS = np.radians([-90, -45, 0, 45, 90])  # of the targets, positive to the left
-DISTANCE, SECONDS, FREQUENCY, WAVES = 1.5, 40, 6, 1.0  # [m], [s], [rad/s], wavelengths along the body
+DISTANCE, SECONDS, FREQUENCY, WAVES = 1.5, 40, 6, 1.2  # [m], [s], [rad/s], wavelengths along the body
 
 robot = eel()
 segments, count = len(robot.actuators), len(BEARINGS)
@@ -34,7 +34,7 @@ while batch.time < SECONDS:
     way = np.tile(targets, (2, 1)) - centers[:, :2]
     nearest = np.minimum(nearest, np.linalg.norm(way, axis=1))
     heading = (positions[:, head].mean(axis=1) - positions[:, tail].mean(axis=1))[:, :2]
-    turn = np.clip(angle(heading, way), -0.5, 0.5)
+    turn = np.clip(angle(heading, way), -0.4, 0.4)
     turn[count:] = 0
     wave = np.sin(FREQUENCY * batch.time + 2 * np.pi * WAVES * np.arange(segments) / segments)
     drive[:] = 0.7 * wave - turn[:, None]  # u > 0 bends a segment to the right

@@ -14,7 +14,7 @@ import mercurysim
 from mercurysim.bodies import eel
 
 generations = int(sys.argv[1]) if len(sys.argv) > 1 else 30
-robot = eel(segments=10)
+robot = eel(segments=10, amplitude=0.2)
 search = CMA(mean=np.zeros(len(robot.actuators)), sigma=1.0, population_size=32, seed=1)
 batch = mercurysim.Batch([robot] * search.population_size, dt=2e-3, device="cpu")
 muscles = batch.actuation  # without a drive signal, muscles follow L0 (1 + amplitude sin(frequency t + phase))

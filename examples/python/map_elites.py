@@ -21,7 +21,7 @@ def measure(robot):
     return info["masses"], 1 - info["volume"] / np.prod(info["extent"])
 
 
-def distances(robots, seconds=5):
+def distances(robots, seconds=10):
     """How far each robot swims [m]."""
     batch = mercurysim.Batch(robots, environment=mercurysim.Ocean(), dt=2e-3)
     start = batch.telemetry()["center_of_mass"].copy()
@@ -31,7 +31,7 @@ def distances(robots, seconds=5):
     return np.where(end["exploded"], 0, way)
 
 
-archive = GridArchive(solution_dim=1, dims=[8, 8], ranges=[(0, 400), (0, 0.8)])
+archive = GridArchive(solution_dim=1, dims=[8, 8], ranges=[(40, 240), (0.1, 0.6)])
 bodies = []  # a solution is the index of a body
 for generation in range(generations):
     if generation == 0:
@@ -42,8 +42,8 @@ for generation in range(generations):
     indices = len(bodies) + np.arange(count)
     bodies += children
     archive.add(indices[:, None], distances(children), [measure(robot) for robot in children])
-    stats = archive.stats
-    print(f"generation {generation + 1:3}: {stats.num_elites} cells, best {stats.obj_max:.3f} m, sum {stats.qd_score:.2f} m")
+    cells, best, total = archive.stats.num_elites, archive.stats.obj_max, archive.stats.qd_score
+    print(f"generation {generation + 1:3}: {cells} cells, best {best:.3f} m, sum {total:.2f} m")
 
 best = bodies[int(archive.best_elite["solution"][0])]
 print(f"{best.name}: {best.info()['masses']} masses")

@@ -7,8 +7,8 @@
     observations, infos = env.reset(seed=1)
     observations, rewards, terminations, truncations, infos = env.step(env.action_space.sample())
 
-SwimEnv and WalkEnv take one robot, copied as often as wanted, or thousands of different ones. gymnasium.make_vec() knows
-them as "mercurysim/Swim-v0" and "mercurysim/Walk-v0", gymnasium.make() as environments of one robot.
+SwimEnv and WalkEnv take one robot, copied as often as wanted, or thousands of different ones. gymnasium.make_vec()
+knows them as "mercurysim/Swim-v0" and "mercurysim/Walk-v0", gymnasium.make() as environments of one robot.
 """
 
 try:

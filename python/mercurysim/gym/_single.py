@@ -8,7 +8,7 @@ import numpy as np
 
 
 class SingleEnv(gymnasium.Env):
-    """One robot as a gymnasium.Env. `vector` is an environment of one robot, in NumPy, that is never reset by itself."""
+    """One robot as a gymnasium.Env. `vector` is an environment of one robot, in NumPy, without autoreset."""
 
     def __init__(self, vector: Any) -> None:
         self.vector = vector
