@@ -11,6 +11,7 @@
 namespace mercury {
 
 std::string option_of(std::string_view parameter) {
+  if (parameter == "output") return "-o";
   std::string option = "--";
   for (const char letter : parameter) {
     option += letter == '_' ? '-' : letter;

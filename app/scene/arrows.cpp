@@ -55,10 +55,10 @@ Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
     : simulation_(simulation), kinds_(kinds), longest_(0.5f * mean_size(simulation)) {
   const Environment& environment = simulation.configuration().environment;
   if (kinds.contact && !std::holds_alternative<Land>(environment))
-    throw InputError("--show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
+    throw ParameterError("show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
   if ((kinds.drag || kinds.lift) && !has_face_forces(environment))
-    throw InputError("--show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
-                                           kinds.drag ? "drag" : "lift", name_of(environment)));
+    throw ParameterError("show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
+                                             kinds.drag ? "drag" : "lift", name_of(environment)));
 }
 
 // The length of an arrow of one unit, as a share of the longest.

@@ -25,8 +25,8 @@ struct ArrowKinds {
 // long. It grows with larger values by steps of 1, 2 and 5. No arrow is longer than one robot.
 class Arrows {
  public:
-  // Throws InputError("--show: ...") for drag or lift in an environment without forces on faces, and for contact in one
-  // without a floor.
+  // Throws ParameterError("show", ...) for drag or lift in an environment without forces on faces, and for contact in
+  // one without a floor.
   Arrows(const Simulation& simulation, ArrowKinds kinds);
 
   // All arrows at this time. `telemetry`: one per robot. Exploded robots have no arrows.

@@ -60,8 +60,8 @@ std::size_t robot_named(const std::string& name, std::span<const std::string> na
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error == std::errc{} && end == name.data() + name.size() && number < names.size()) return number;
-  throw InputError("--camera", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", name,
-                                           names.size() - 1));
+  throw ParameterError(
+      "camera", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", name, names.size() - 1));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ render::Orbit direction_of(const CameraPlan& plan, bool on_ground);
 
 class CameraController {
  public:
-  // `names`: of the robots. Throws InputError("--camera: ...") when the plan follows an unknown robot.
+  // `names`: of the robots. Throws ParameterError("camera", ...) when the plan follows an unknown robot.
   CameraController(const CameraPlan& plan, const PictureFrame& picture, std::span<const std::string> names);
 
   // The camera of the next frame. Call it once per frame with the boxes of the robots and the time since the last frame

@@ -92,8 +92,8 @@ CameraPlan camera_named(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto mode = mode_named(text.substr(0, colon));
   if (!mode || (colon != std::string::npos && *mode != CameraMode::follow))
-    throw InputError("--camera", fmt::format("\"{}\" is not accepted; give {}, follow:ROBOT or a camera file (.json)",
-                                             text, mode_names()));
+    throw ParameterError("camera", fmt::format("\"{}\" is not accepted; give {}, follow:ROBOT or a camera file (.json)",
+                                               text, mode_names()));
   CameraPlan plan{.mode = *mode};
   if (colon != std::string::npos) plan.robot = text.substr(colon + 1);
   return plan;

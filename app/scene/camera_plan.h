@@ -36,7 +36,7 @@ struct CameraPlan {
 // "group", "follow", "turntable", "top", "still".
 std::string_view name_of(CameraMode mode);
 
-// "turntable", "follow:eel", or the name of a camera file (*.json). Throws InputError("--camera: ...").
+// "turntable", "follow:eel", or the name of a camera file (*.json). Throws ParameterError("camera", ...).
 CameraPlan camera_named(const std::string& text);
 
 // A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1],

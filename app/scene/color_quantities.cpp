@@ -145,7 +145,7 @@ const ColorQuantity& color_quantity(std::string_view key) {
     if (quantity.key == key) return quantity;
     keys.push_back(quantity.key);
   }
-  throw InputError("--color", fmt::format("\"{}\" is not accepted; give {}", key, fmt::join(keys, ", ")));
+  throw ParameterError("color", fmt::format("\"{}\" is not accepted; give {}", key, fmt::join(keys, ", ")));
 }
 
 std::string environments_of(const ColorQuantity& quantity) {

@@ -59,7 +59,7 @@ std::span<const ColorQuantity> color_quantities();
 // The first of them: each material's own colour.
 inline const ColorQuantity& material_color() { return color_quantities().front(); }
 
-// Throws InputError("--color: ...") that lists all keys.
+// Throws ParameterError("color", ...) that lists all keys.
 const ColorQuantity& color_quantity(std::string_view key);
 
 // The environments that have a quantity: "ocean". Empty = all.

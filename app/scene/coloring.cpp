@@ -33,8 +33,8 @@ Coloring::Coloring(const Simulation& simulation, const ColorQuantity& quantity)
     : simulation_(simulation), quantity_(quantity) {
   const Environment& environment = simulation.configuration().environment;
   if (!quantity.exists_in(environment))
-    throw InputError("--color", fmt::format("{}: {} has no {}; it applies to {}", quantity.key, name_of(environment),
-                                            quantity.requirement, environments_of(quantity)));
+    throw ParameterError("color", fmt::format("{}: {} has no {}; it applies to {}", quantity.key, name_of(environment),
+                                              quantity.requirement, environments_of(quantity)));
   face_offsets_.push_back(0);
   spring_offsets_.push_back(0);
   for (std::size_t i = 0; i < simulation.size(); ++i) {

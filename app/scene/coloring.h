@@ -18,7 +18,7 @@ struct ColorValues {
 // Computes the values of one quantity on all cores. Refers to the simulation, whose robots must not change meanwhile.
 class Coloring {
  public:
-  // Throws InputError("--color: ...") if the environment does not have the quantity.
+  // Throws ParameterError("color", ...) if the environment does not have the quantity.
   Coloring(const Simulation& simulation, const ColorQuantity& quantity);
 
   const ColorQuantity& quantity() const { return quantity_; }

@@ -71,8 +71,8 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   if (options.layout == Layout::race) grid = {1, static_cast<int>(robots.size())};
   const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
   if (robots.size() > columns * rows)
-    throw InputError("--grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows", robots.size(),
-                                           grid.columns, grid.rows));
+    throw ParameterError("grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows",
+                                             robots.size(), grid.columns, grid.rows));
   // The largest robot of each column and row decides its size.
   std::vector<float> widths(columns, 0.4f * width), heights(rows, 0.4f * height);
   for (std::size_t i = 0; i < robots.size(); ++i) {

@@ -48,7 +48,7 @@ struct LayoutOptions {
 
 // The offset of each robot. Seen from the view's direction, the robots then form a grid, the first one at the upper
 // left, and none hides another while it stays in its cell. The middle of the grid is at the origin. Throws
-// InputError("--grid: ...") if the robots do not fit into the grid.
+// ParameterError("grid", ...) if the robots do not fit into the grid.
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
 
 }  // namespace mercury

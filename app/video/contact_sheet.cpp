@@ -13,11 +13,11 @@ namespace mercury {
 ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap)
     : output_(output), grid_(grid), frame_(frame), gap_(gap) {
   if (std::filesystem::path(output).extension() != ".png")
-    throw InputError("-o", output + ": a picture is written as .png; give such a name");
+    throw ParameterError("output", output + ": a picture is written as .png; give such a name");
   const int width = grid.columns * (frame.width + gap) - gap, height = grid.rows * (frame.height + gap) - gap;
   if (width < 1 || height < 1 || width > 32768 || height > 32768)
-    throw InputError("--size", fmt::format("the picture would be {}x{}; give a size that leads to 1x1 to 32768x32768",
-                                           width, height));
+    throw ParameterError(
+        "size", fmt::format("the picture would be {}x{}; give a size that leads to 1x1 to 32768x32768", width, height));
   make_parent_folder(output);
   sheet_ = {.width = width, .height = height, .format = render::PixelFormat::rgb, .bytes = {}};
   sheet_.bytes.assign(render::image_size(sheet_.format, width, height), 0x10);

@@ -56,9 +56,9 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
 // Creates the file at once, so that an unusable name is reported before anything is computed.
 void create(const std::string& output, const UnfinishedFile& file) {
   if (std::filesystem::exists(output) && !std::filesystem::is_regular_file(output))
-    throw InputError("-o", output + " is not a file that can be replaced");
+    throw ParameterError("output", output + " is not a file that can be replaced");
   const int descriptor = ::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw InputError("-o", output + " cannot be written: " + std::strerror(errno));
+  if (descriptor < 0) throw ParameterError("output", output + " cannot be written: " + std::strerror(errno));
   ::close(descriptor);
 }
 
@@ -109,7 +109,7 @@ FfmpegWriter::FfmpegWriter(const std::string& output, VideoKind kind, const Vide
   try {
     encoder_.emplace(program_, ffmpeg_arguments(kind, settings, file_.path().string()));
   } catch (const CannotStart& error) {
-    if (!settings.ffmpeg.empty()) throw InputError("--ffmpeg", program_ + " cannot be started: " + error.what());
+    if (!settings.ffmpeg.empty()) throw ParameterError("ffmpeg", program_ + " cannot be started: " + error.what());
     if (program_ != "ffmpeg") throw InputError("MERCURY_FFMPEG", program_ + " cannot be started: " + error.what());
     throw VideoError(
         "ffmpeg was not found: install the package ffmpeg (apt install ffmpeg), name the program with --ffmpeg, or "

@@ -19,10 +19,11 @@ std::size_t worker_count() { return std::max(1u, std::thread::hardware_concurren
 PngFolder::PngFolder(const std::filesystem::path& folder) : folder_(folder), queue_(worker_count()) {
   std::error_code error;
   made_folder_ = std::filesystem::create_directory(folder_, error);
-  if (error) throw InputError("-o", "cannot make the folder " + folder.string() + ": " + error.message());
-  if (!std::filesystem::is_directory(folder_)) throw InputError("-o", folder.string() + " is a file, not a folder");
+  if (error) throw ParameterError("output", "cannot make the folder " + folder.string() + ": " + error.message());
+  if (!std::filesystem::is_directory(folder_))
+    throw ParameterError("output", folder.string() + " is a file, not a folder");
   if (access(folder_.c_str(), W_OK) != 0)
-    throw InputError("-o", "the folder " + folder.string() + " cannot be written into");
+    throw ParameterError("output", "the folder " + folder.string() + " cannot be written into");
   for (std::size_t i = 0; i < worker_count(); ++i) workers_.emplace_back([this] { work(); });
 }
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/scene/view_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <ranges>
+#include <string_view>
+#include <vector>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180; }
+
+render::Theme theme_named(const std::string& name) {
+  if (name == "dark") return render::Theme::dark;
+  if (name == "light") return render::Theme::light;
+  throw ParameterError("theme", fmt::format("\"{}\" is not accepted; give dark, light", name));
+}
+
+Layout layout_named(const std::string& name) {
+  if (name == "grid") return Layout::grid;
+  if (name == "race") return Layout::race;
+  throw ParameterError("layout", fmt::format("\"{}\" is not accepted; give grid, race", name));
+}
+
+render::CutPlane cut_from(const std::string& text) {
+  static const std::map<std::string, Eigen::Vector3f> axes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
+                                                           {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+  const std::size_t colon = text.find(':');
+  const auto axis = axes.find(text.substr(0, colon));
+  float place = 0;
+  bool placed = true;
+  if (colon != std::string::npos) {
+    const char *begin = text.data() + colon + 1, *all = text.data() + text.size();
+    const auto [end, error] = std::from_chars(begin, all, place);
+    placed = begin != all && end == all && error == std::errc{} && std::isfinite(place);
+  }
+  if (axis == axes.end() || !placed)
+    throw ParameterError(
+        "cut", fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place as in y:0.2", text));
+  return {.normal = axis->second, .offset = axis->second.sum() * place};
+}
+
+void validate(const ViewWords& words) {
+  if (words.scale) {
+    const auto [low, high] = *words.scale;
+    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
+      throw ParameterError("scale", fmt::format("\"{:g},{:g}\" is not accepted; give the lower end first", low, high));
+  }
+  if (words.grid && (words.grid->columns < 1 || words.grid->rows < 1))
+    throw ParameterError("grid", fmt::format("{}x{} is not accepted; give columns and rows above 0",
+                                             words.grid->columns, words.grid->rows));
+  if (words.azimuth && !std::isfinite(*words.azimuth))
+    throw ParameterError("azimuth", "give a finite number of degrees");
+  if (words.elevation && !(std::abs(*words.elevation) <= 90))
+    throw ParameterError("elevation", "give -90 to 90 degrees");
+  if (words.zoom && !(std::isfinite(*words.zoom) && *words.zoom > 0))
+    throw ParameterError("zoom", fmt::format("{} is not accepted; give a finite number > 0", *words.zoom));
+}
+
+void set_race(ViewSettings& settings) {
+  if (settings.grid) throw ParameterError("grid", "not together with layout race, which has one lane a robot");
+  settings.shown.labels = settings.shown.path = true;
+  // Lanes run along x, to the right, seen from high and far so that they look alike.
+  if (!settings.camera.azimuth) settings.camera.azimuth = radians(-90);
+  if (!settings.camera.elevation) settings.camera.elevation = radians(50);
+  settings.camera.field_of_view = std::min(settings.camera.field_of_view, radians(20));
+}
+
+}  // namespace
+
+Shown shown_from(const std::string& text) {
+  Shown shown{.skin = false, .clock = false};
+  const std::vector<std::pair<std::string_view, bool*>> items{{"skin", &shown.skin},
+                                                              {"springs", &shown.springs},
+                                                              {"masses", &shown.masses},
+                                                              {"drag", &shown.arrows.drag},
+                                                              {"lift", &shown.arrows.lift},
+                                                              {"velocity", &shown.arrows.velocity},
+                                                              {"gravity", &shown.arrows.gravity},
+                                                              {"contact", &shown.arrows.contact},
+                                                              {"path", &shown.path},
+                                                              {"labels", &shown.labels},
+                                                              {"captions", &shown.captions},
+                                                              {"legend", &shown.legend},
+                                                              {"clock", &shown.clock},
+                                                              {"scale", &shown.scale_bar}};
+  for (std::size_t start = 0, end = 0; end != std::string::npos; start = end + 1) {
+    end = text.find(',', start);
+    const std::string_view word = std::string_view(text).substr(start, end - start);
+    const auto item = std::ranges::find(items, word, [](const auto& known) { return known.first; });
+    if (item == items.end())
+      throw ParameterError("show", fmt::format("\"{}\" is not accepted; give some of {}", word,
+                                               fmt::join(items | std::views::keys, ",")));
+    *item->second = true;
+  }
+  return shown;
+}
+
+ViewSettings view_settings(const ViewWords& words) {
+  validate(words);
+  ViewSettings settings{
+      .color = &color_quantity(words.color), .scale = words.scale, .smooth = words.smooth, .grid = words.grid};
+  settings.caption = words.caption;
+  settings.theme = theme_named(words.theme);
+  settings.layout = layout_named(words.layout);
+  if (words.cut) settings.cut = cut_from(*words.cut);
+  if (!words.camera.empty()) settings.camera = camera_named(words.camera);
+  if (settings.layout == Layout::race) set_race(settings);
+  if (words.azimuth) settings.camera.azimuth = radians(*words.azimuth);
+  if (words.elevation) settings.camera.elevation = radians(*words.elevation);
+  if (words.zoom) settings.camera.zoom = *words.zoom;
+  settings.shown.legend = settings.color->has_values();
+  if (words.show) settings.shown = shown_from(*words.show);
+  return settings;
+}
+
+}  // namespace mercury

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a picture shows robots, as users write it: words and numbers of the command line and of programs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/scene/view_settings.h"
+
+namespace mercury {
+
+struct ViewWords {
+  std::string color{material_color().key};       // key of a quantity: "strain"
+  std::optional<std::pair<float, float>> scale;  // ends of the colours' scale; absent = fits
+  std::optional<std::string> show;               // exactly what is shown: "skin,labels"; absent = the usual
+  std::string caption;                           // text in the upper left corner; further lines are smaller
+  std::string theme = "dark";                    // "dark" or "light"
+  bool smooth = false;                           // round skins rather than edged ones
+  std::optional<std::string> cut;                // cuts away what lies beyond a plane: "y:0.2"
+  std::string layout = "grid";                   // "grid" or "race"
+  std::optional<Grid> grid;                      // absent = what fills the picture
+  std::string camera;                            // see camera_named(); empty = the whole group
+  std::optional<float> azimuth, elevation;       // where the eye is [degrees]
+  std::optional<float> zoom;                     // above 1 = closer
+};
+
+// Throws ParameterError that names the member that cannot be used.
+ViewSettings view_settings(const ViewWords& words);
+
+// "skin,labels,clock": shows exactly these. Throws ParameterError("show", ...) that lists the possible words.
+Shown shown_from(const std::string& text);
+
+}  // namespace mercury

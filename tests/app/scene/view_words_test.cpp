@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words that describe a picture, and the messages for those that cannot be used.
+#include "app/scene/view_words.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "mercury/error.h"
+
+namespace mercury::test {
+namespace {
+
+TEST(ViewWords, WithoutWordsSettingsHaveTheirDefaults) {
+  const ViewSettings settings = view_settings({});
+  EXPECT_EQ(settings.color, &material_color());
+  EXPECT_EQ(settings.theme, render::Theme::dark);
+  EXPECT_EQ(settings.layout, Layout::grid);
+  EXPECT_EQ(settings.camera.mode, CameraMode::group);
+  EXPECT_TRUE(settings.shown.skin && settings.shown.clock);
+  EXPECT_FALSE(settings.shown.legend || settings.shown.springs || settings.cut || settings.grid);
+}
+
+TEST(ViewWords, WordsBecomeSettings) {
+  const ViewSettings settings = view_settings({.color = "strain",
+                                               .scale = std::pair(-1.0f, 2.0f),
+                                               .caption = "eels",
+                                               .theme = "light",
+                                               .cut = "-y:0.25",
+                                               .grid = Grid{3, 2},
+                                               .camera = "turntable",
+                                               .azimuth = 180.0f,
+                                               .zoom = 2.0f});
+  EXPECT_EQ(settings.color, &color_quantity("strain"));
+  EXPECT_EQ(settings.scale, std::pair(-1.0f, 2.0f));
+  EXPECT_EQ(settings.caption, "eels");
+  EXPECT_EQ(settings.theme, render::Theme::light);
+  // What has y < 0.25 is cut away: -y > -0.25.
+  EXPECT_EQ(settings.cut->normal, Eigen::Vector3f(0, -1, 0));
+  EXPECT_EQ(settings.cut->offset, -0.25f);
+  EXPECT_EQ(settings.grid->columns, 3);
+  EXPECT_EQ(settings.camera.mode, CameraMode::turntable);
+  EXPECT_FLOAT_EQ(settings.camera.azimuth.value(), std::numbers::pi_v<float>);
+  EXPECT_EQ(settings.camera.zoom, 2);
+  EXPECT_TRUE(settings.shown.legend) << "values need a legend";
+}
+
+TEST(ViewWords, ShowIsExact) {
+  const Shown shown = view_settings({.color = "strain", .show = "springs,labels,drag"}).shown;
+  EXPECT_TRUE(shown.springs && shown.labels && shown.arrows.drag);
+  EXPECT_FALSE(shown.skin || shown.clock || shown.legend || shown.arrows.lift);
+}
+
+TEST(ViewWords, ErrorsNameTheParameter) {
+  const auto refused = [](const std::function<void(ViewWords&)>& change) {
+    ViewWords words;
+    change(words);
+    try {
+      view_settings(words);
+    } catch (const ParameterError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      return error.parameter();
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(refused([](ViewWords& w) { w.color = "mood"; }), "color");
+  EXPECT_EQ(refused([](ViewWords& w) { w.theme = "pink"; }), "theme");
+  EXPECT_EQ(refused([](ViewWords& w) { w.layout = "heap"; }), "layout");
+  EXPECT_EQ(refused([](ViewWords& w) { w.camera = "drone"; }), "camera");
+  for (const char* show : {"bones", "", "skin,", "skin,,clock", "skin clock"})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.show = show; }), "show") << show;
+  for (const char* cut : {"w", "", "y:", "y:here", "y:0.2m", "y:nan"})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.cut = cut; }), "cut") << cut;
+  for (const auto& scale : {std::pair(1.0f, 1.0f), std::pair(2.0f, 1.0f), std::pair(0.0f, INFINITY)})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.scale = scale; }), "scale");
+  EXPECT_EQ(refused([](ViewWords& w) { w.grid = Grid{0, 3}; }), "grid");
+  EXPECT_EQ(refused([](ViewWords& w) { w.azimuth = NAN; }), "azimuth");
+  EXPECT_EQ(refused([](ViewWords& w) { w.elevation = 91.0f; }), "elevation");
+  EXPECT_EQ(refused([](ViewWords& w) { w.zoom = 0.0f; }), "zoom");
+  EXPECT_EQ(refused([](ViewWords& w) {
+              w.layout = "race";
+              w.grid = Grid{2, 2};
+            }),
+            "grid");
+}
+
+}  // namespace
+}  // namespace mercury::test
