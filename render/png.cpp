@@ -22,16 +22,21 @@ std::uint32_t png_format(PixelFormat format) {
   }
 }
 
-[[noreturn]] void fail(const std::string& path, const std::string& why) { throw std::runtime_error(path + ": " + why); }
-
-}  // namespace
-
-void write_png(const std::string& path, const Image& image) {
+png_image description_of(const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = png_uint_32(image.width);
   png.height = png_uint_32(image.height);
   png.format = png_format(image.format);
+  return png;
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) { throw std::runtime_error(path + ": " + why); }
+
+}  // namespace
+
+void write_png(const std::string& path, const Image& image) {
+  png_image png = description_of(image);
   const std::string temporary = path + ".part";
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (!file) fail(path, std::strerror(errno));
@@ -43,6 +48,16 @@ void write_png(const std::string& path, const Image& image) {
   const std::string why = error ? std::strerror(error) : !written ? png.message : std::strerror(errno);
   std::remove(temporary.c_str());
   fail(path, why);
+}
+
+std::vector<std::uint8_t> png_bytes(const Image& image) {
+  png_image png = description_of(image);
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.bytes.data(), 0, nullptr))
+    throw std::runtime_error(png.message);
+  bytes.resize(size);
+  return bytes;
 }
 
 Image read_png(const std::string& path) {

@@ -2,7 +2,9 @@
 // PNG files.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "render/readback.h"
 
@@ -11,6 +13,9 @@ namespace mercury::render {
 // Writes an rgb or rgba image to a temporary name and renames it, so that a file is complete or absent. Throws
 // std::runtime_error "<path>: <what the system says>"; std::invalid_argument for another format.
 void write_png(const std::string& path, const Image& image);
+
+// The bytes of a PNG file. Throws as write_png() does.
+std::vector<std::uint8_t> png_bytes(const Image& image);
 
 // Reads a PNG as rgb, or as rgba if it has transparency. Throws std::runtime_error.
 Image read_png(const std::string& path);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/group_video.h"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -12,18 +10,6 @@
 
 namespace mercury {
 namespace {
-
-VideoTiming timing_of(const GroupVideoOptions& options) {
-  const double interval = options.speed / options.frames_per_second;
-  if (!(std::isfinite(options.seconds) && options.seconds > 0))
-    throw InputError("seconds", "give a finite number above 0");
-  if (!(std::isfinite(interval) && interval > 0)) throw InputError("speed", "give a finite number above 0");
-  const double frames = std::round(options.seconds / interval);
-  if (frames > 1e7) throw InputError("seconds", "that would be too many frames");
-  return {.frames = std::max<std::int64_t>(1, static_cast<std::int64_t>(frames)),
-          .interval = interval,
-          .pace = 1 / options.frames_per_second};
-}
 
 Simulation simulation_of(const std::vector<LiveRobot>& live, const Configuration& configuration) {
   std::vector<Robot> robots;
@@ -70,7 +56,7 @@ struct GroupVideo::Parts {
   bool write() {
     const VideoKind kind = video_kind_of(options.output);
     const PictureSize size = encoded_size(kind, options.size);
-    const VideoTiming timing = timing_of(options);
+    const VideoTiming timing = video_timing(options.seconds, options.speed, options.frames_per_second);
     {
       const std::lock_guard lock(mutex);
       status.total = timing.frames;

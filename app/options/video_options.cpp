@@ -77,13 +77,9 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
   validate();
   if (single_picture()) return plan_pictures(seconds);
   const VideoKind kind = video_kind_of(output_);
-  const double rate = frames_per_second_.value_or(kind == VideoKind::gif ? 25 : 30);
-  const double frames = seconds / speed_ * rate;
-  if (frames > 1e8) throw InputError("--seconds", fmt::format("{:.3g} frames are too many for a video", frames));
   return {.size = encoded_size(kind, asked_size()),
           .pixels = pixel_format_of(kind),
-          .timing = {
-              .frames = std::max<std::int64_t>(1, std::llround(frames)), .interval = speed_ / rate, .pace = 1 / rate}};
+          .timing = video_timing(seconds, speed_, frames_per_second_.value_or(usual_frame_rate(kind)))};
 }
 
 VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {

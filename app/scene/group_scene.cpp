@@ -113,7 +113,8 @@ void GroupScene::place_floor() {
 
 // The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {
-  scene_.surroundings = tiles_.empty() ? surroundings_of(environment_) : render::Surroundings::none;
+  const bool plain = settings_.plain || !tiles_.empty();
+  scene_.surroundings = plain ? render::Surroundings::none : surroundings_of(environment_);
   scene_.flow = eigen(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;

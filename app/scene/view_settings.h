@@ -32,6 +32,7 @@ struct ViewSettings {
   std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits all values so far
   Shown shown;
   render::Theme theme = render::Theme::dark;
+  bool plain = false;  // a plain backdrop rather than water or land
   bool smooth = false;
   std::optional<render::CutPlane> cut;
   Layout layout = Layout::grid;

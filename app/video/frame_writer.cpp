@@ -14,30 +14,34 @@ namespace {
 namespace fs = std::filesystem;
 
 void require_usable(const std::string& output, VideoKind kind, const VideoSettings& settings) {
-  const auto [width, height] = settings.size;
-  if (width < 1 || height < 1 || width > 16384 || height > 16384)
-    throw InputError("--size", std::to_string(width) + "x" + std::to_string(height) +
-                                   " is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384");
+  require_drawable(settings.size);
   if (!(settings.frames_per_second > 0 && settings.frames_per_second <= 1000))
-    throw InputError("--fps", "give a number above 0 and up to 1000");
+    throw ParameterError("fps", "give a number above 0 and up to 1000");
   if (kind == VideoKind::gif && settings.frames_per_second > 50)
-    throw InputError("--fps", "a GIF shows at most 50 frames/s; give 50 or less, or another format");
+    throw ParameterError("fps", "a GIF shows at most 50 frames/s; give 50 or less, or another format");
   if (settings.size != encoded_size(kind, settings.size))
     throw InputError(output, "this format needs an even width and height");
 }
 
 }  // namespace
 
+void require_drawable(PictureSize size) {
+  const auto [width, height] = size;
+  if (width < 1 || height < 1 || width > 16384 || height > 16384)
+    throw ParameterError("size", std::to_string(width) + "x" + std::to_string(height) +
+                                     " is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384");
+}
+
 void make_parent_folder(const fs::path& output) {
   const fs::path parent = output.parent_path();
   std::error_code error;
   if (!parent.empty()) fs::create_directories(parent, error);
-  if (error) throw InputError("-o", "cannot make the folder " + parent.string() + ": " + error.message());
+  if (error) throw ParameterError("output", "cannot make the folder " + parent.string() + ": " + error.message());
 }
 
 VideoKind video_kind_of(const std::string& output) {
   const fs::path path(output);
-  if (output.empty()) throw InputError("-o", "give a file (.mp4, .webm or .gif) or a folder for PNG pictures");
+  if (output.empty()) throw ParameterError("output", "give a file (.mp4, .webm or .gif) or a folder for PNG pictures");
   if (fs::is_directory(path) || path.filename().empty()) return VideoKind::png_folder;
   const std::string extension = path.extension().string();
   if (extension == ".mp4") return VideoKind::mp4;
@@ -45,10 +49,14 @@ VideoKind video_kind_of(const std::string& output) {
   if (extension == ".gif") return VideoKind::gif;
   if (extension.empty()) return VideoKind::png_folder;
   if (extension == ".png")
-    throw InputError("-o", output + " is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder");
-  throw InputError("-o", output + ": \"" + extension +
-                             "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
+    throw ParameterError("output",
+                         output + " is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder");
+  throw ParameterError("output",
+                       output + ": \"" + extension +
+                           "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
 }
+
+double usual_frame_rate(VideoKind kind) { return kind == VideoKind::gif ? 25 : 30; }
 
 PictureSize encoded_size(VideoKind kind, PictureSize size) {
   if (pixel_format_of(kind) != render::PixelFormat::yuv420) return size;

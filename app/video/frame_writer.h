@@ -34,6 +34,9 @@ VideoKind video_kind_of(const std::string& output);
 // The format of the frames that FrameWriter::write takes: yuv420 if the encoder wants that, else rgb.
 render::PixelFormat pixel_format_of(VideoKind kind);
 
+// Frames per second, unless the user asks for another number.
+double usual_frame_rate(VideoKind kind);
+
 // The size of the video when the user asks for `size`: H.264 and VP9 take 4:2:0 pictures, whose sides are even, so odd
 // sides are rounded up.
 PictureSize encoded_size(VideoKind kind, PictureSize size);
@@ -57,11 +60,14 @@ class FrameWriter {
   virtual std::string description() const = 0;
 };
 
+// Throws ParameterError("size", ...) unless both sides are from 1 to 16384.
+void require_drawable(PictureSize size);
+
 // Opens a writer of the kind video_kind_of(output), and makes missing parent folders. Throws InputError when the name
 // or the settings cannot be used, VideoError when the encoder cannot be started.
 std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const VideoSettings& settings);
 
-// Makes the parent folders of a file. Throws InputError("-o: ...").
+// Makes the parent folders of a file. Throws ParameterError("output", ...).
 void make_parent_folder(const std::filesystem::path& output);
 
 // The encoder program: this option, else MERCURY_FFMPEG, else "ffmpeg".

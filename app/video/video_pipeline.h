@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/scene/view_settings.h"
+#include "app/video/group_drawing.h"
 #include "app/video/video_stages.h"
 #include "render/context.h"
 #include "render/renderer.h"
@@ -24,7 +25,7 @@ struct OffscreenRenderer {
 OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
                                           int cuda_device = -1);
 
-// Simulates, draws and encodes a group of robots: owns the simulation, the scene and the camera, and refers to the
+// Simulates, draws and encodes a group of robots: owns the simulation and what is drawn of it, and refers to the
 // renderer.
 class VideoPipeline {
  public:
@@ -45,10 +46,7 @@ class VideoPipeline {
  private:
   OffscreenRenderer& offscreen_;
   Simulation simulation_;
-  GroupPlacement placement_;
-  GroupScene scene_;
-  CameraController camera_;
-  DetailObserver details_;
+  GroupDrawing drawing_;
   ChosenBridge bridge_;
 };
 

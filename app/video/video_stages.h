@@ -18,10 +18,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "app/scene/camera_controller.h"
-#include "app/scene/group_scene.h"
-#include "app/scene/scene_details.h"
 #include "app/video/frame_writer.h"
+#include "app/video/group_drawing.h"
 #include "app/video/position_bridge.h"
 #include "mercury/simulation.h"
 #include "render/renderer.h"
@@ -42,6 +40,10 @@ struct VideoTiming {
   double pace = 0;      // time between frames when the video plays [s]
 };
 
+// The frames of a video of `seconds` of simulated time; `speed`: simulated seconds per second of video. At least one.
+// Throws ParameterError("seconds", ...), ("speed", ...) or ("fps", ...) for values that cannot be used.
+VideoTiming video_timing(double seconds, double speed, double frames_per_second);
+
 struct VideoResult {
   std::int64_t frames = 0;   // written
   bool interrupted = false;  // the user stopped it before the last frame
@@ -56,9 +58,7 @@ std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double
 struct VideoParts {
   Simulation& simulation;
   PositionBridge& bridge;
-  DetailObserver& details;
-  GroupScene& scene;
-  CameraController& camera;
+  GroupDrawing& drawing;  // of the simulation; the renderer has its bodies
   render::Renderer& renderer;
   FrameWriter& writer;
   render::PixelFormat pixels;

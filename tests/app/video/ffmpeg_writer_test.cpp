@@ -235,7 +235,7 @@ TEST_F(FailingVideo, MissingEncoderNamesThePackage) {
 
 TEST_F(FailingVideo, NamedEncoderMustExist) {
   expect_failure<InputError>({.size = small, .ffmpeg = path("none")},
-                             "--ffmpeg: " + path("none") + " cannot be started: No such file or directory");
+                             "ffmpeg: " + path("none") + " cannot be started: No such file or directory");
 }
 
 TEST_F(FailingVideo, FolderThatCannotBeMadeIsBadInput) {

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/film.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/video/frame_encoder.h"
+#include "app/video/group_drawing.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t waiting_snapshots = 4;  // added, not yet drawn
+
+float aspect_of(PictureSize size) { return static_cast<float>(size.width) / static_cast<float>(size.height); }
+
+// Waits for a task. A machine without OpenGL is a DeviceError like a machine without a GPU.
+void wait_for(std::future<void>& task) {
+  try {
+    task.get();
+  } catch (const render::ContextError& error) {
+    throw DeviceError(std::string("cannot draw: ") + error.what());
+  }
+}
+
+void prepare(DrawingThread::Canvas& canvas, PictureSize size, render::Quality quality) {
+  render::Renderer& renderer = canvas.offscreen.renderer;
+  renderer.set_quality(quality);
+  try {
+    renderer.resize(size.width, size.height);
+  } catch (const render::ContextError& error) {
+    throw ParameterError("size", error.what());
+  }
+}
+
+// Reports what cannot be drawn before anything else is done.
+void require_canvas(DrawingThread& thread, PictureSize size, render::Quality quality) {
+  std::future<void> made = thread.post([=](DrawingThread::Canvas& canvas) { prepare(canvas, size, quality); });
+  wait_for(made);
+}
+
+void show_bodies(DrawingThread::Canvas& canvas, const std::shared_ptr<GroupDrawing>& drawing) {
+  if (canvas.owner == drawing) return;
+  drawing->set_bodies(canvas.offscreen.renderer);
+  canvas.owner = drawing;
+}
+
+VideoSettings video_settings(const std::string& output, const FilmOptions& options) {
+  const VideoKind kind = video_kind_of(output);
+  return {.size = encoded_size(kind, options.size),
+          .frames_per_second = options.frames_per_second == 0 ? usual_frame_rate(kind) : options.frames_per_second,
+          .crf = options.crf,
+          .ffmpeg = options.ffmpeg};
+}
+
+}  // namespace
+
+render::Image picture_of(DrawingThread& thread, const Simulation& simulation, const PictureOptions& options) {
+  require_drawable(options.size);
+  const auto drawing = std::make_shared<GroupDrawing>(simulation, options.view, aspect_of(options.size));
+  const auto bridge = make_host_bridge();
+  FrameSnapshot snapshot = drawing->take(*bridge);
+  render::Image picture;
+  std::future<void> drawn = thread.post([&](DrawingThread::Canvas& canvas) {
+    prepare(canvas, options.size, options.quality);
+    show_bodies(canvas, drawing);
+    drawing->draw(snapshot, *bridge, canvas.offscreen.renderer, 0);
+    picture = render::read(canvas.offscreen.renderer);
+    canvas.owner = nullptr;  // the drawing refers to the caller's simulation
+  });
+  wait_for(drawn);
+  return picture;
+}
+
+struct Film::Parts {
+  Parts(DrawingThread& drawing_thread, const Simulation& filmed, const std::string& output, const FilmOptions& given)
+      : thread(drawing_thread), simulation(filmed), options(given), settings(video_settings(output, given)),
+        pixels(pixel_format_of(video_kind_of(output))), writer(open_frame_writer(output, settings)),
+        encoder(std::make_unique<FrameEncoder>(*writer)) {}
+
+  const pid_t process = getpid();
+  DrawingThread& thread;
+  const Simulation& simulation;
+  const FilmOptions options;
+  const VideoSettings settings;
+  const render::PixelFormat pixels;
+  std::unique_ptr<FrameWriter> writer;
+  std::unique_ptr<FrameEncoder> encoder;
+  std::int64_t frames = 0;
+  std::deque<std::future<void>> waiting;
+  bool ended = false;
+
+  std::vector<const Robot*> robots;  // of the drawing
+  Environment environment;
+  std::shared_ptr<GroupDrawing> drawing;
+  std::unique_ptr<PositionBridge> bridge = make_host_bridge();
+  std::optional<render::Readback> readback;  // used on the drawing thread only
+
+  // Another drawing when the robots or the environment are others.
+  void follow_simulation() {
+    const Environment& now = simulation.configuration().environment;
+    std::vector<const Robot*> present;
+    for (std::size_t i = 0; i < simulation.size(); ++i) present.push_back(&simulation.robot(i));
+    if (drawing && present == robots && now == environment) return;
+    drawing = std::make_shared<GroupDrawing>(simulation, options.view, aspect_of(settings.size));
+    robots = std::move(present);
+    environment = now;
+  }
+
+  void add_frame() {
+    encoder->rethrow();
+    follow_simulation();
+    while (waiting.size() >= waiting_snapshots) take_oldest();
+    const auto snapshot = std::make_shared<FrameSnapshot>(drawing->take(*bridge));
+    waiting.push_back(thread.post([this, snapshot, shown = drawing](DrawingThread::Canvas& canvas) {
+      prepare(canvas, settings.size, options.quality);
+      show_bodies(canvas, shown);
+      shown->draw(*snapshot, *bridge, canvas.offscreen.renderer, 1 / settings.frames_per_second);
+      if (!readback) readback.emplace(pixels, settings.size.width, settings.size.height);
+      if (!readback->full() || encoder->take(*readback)) readback->start(canvas.offscreen.renderer);
+    }));
+    ++frames;
+  }
+
+  void take_oldest() {
+    std::future<void> oldest = std::move(waiting.front());
+    waiting.pop_front();
+    wait_for(oldest);
+  }
+
+  void finish() {
+    while (!waiting.empty()) take_oldest();
+    if (frames == 0) throw VideoError("the film has no frames; nothing was kept");
+    std::future<void> passed_on = thread.post([this](DrawingThread::Canvas&) {
+      while (readback->pending() > 0 && encoder->take(*readback)) {
+      }
+    });
+    wait_for(passed_on);
+    encoder->finish();
+    writer->finish();
+  }
+
+  // Gives back what belongs to the drawing thread, and removes the file unless it is finished.
+  void end() {
+    ended = true;
+    encoder->abandon();
+    for (std::future<void>& task : waiting) task.wait();
+    waiting.clear();
+    thread
+        .post([this](DrawingThread::Canvas& canvas) {
+          if (canvas.owner == drawing) canvas.owner = nullptr;
+          readback.reset();
+          drawing.reset();
+        })
+        .wait();
+    encoder.reset();
+    writer.reset();
+  }
+
+  void require_usable() const {
+    if (process != getpid()) throw DeviceError("a film goes on only in the process that began it");
+    if (ended) throw InputError("the film has ended; begin another one");
+  }
+};
+
+Film::Film(DrawingThread& thread, const Simulation& simulation, const std::string& output, const FilmOptions& options)
+    : parts_(std::make_unique<Parts>(thread, simulation, output, options)) {
+  Parts& parts = *parts_;
+  parts.follow_simulation();
+  require_canvas(thread, parts.settings.size, options.quality);
+}
+
+Film::~Film() {
+  if (parts_->process != getpid())
+    (void)parts_.release();  // the encoder, the file and the threads are those of the parent
+  else
+    discard();
+}
+
+void Film::add_frame() {
+  parts_->require_usable();
+  parts_->add_frame();
+}
+
+void Film::finish() {
+  parts_->require_usable();
+  try {
+    parts_->finish();
+  } catch (...) {
+    parts_->end();
+    throw;
+  }
+  parts_->end();
+}
+
+void Film::discard() {
+  if (!parts_->ended && parts_->process == getpid()) parts_->end();
+}
+
+std::int64_t Film::frames() const { return parts_->frames; }
+double Film::frames_per_second() const { return parts_->settings.frames_per_second; }
+PictureSize Film::size() const { return parts_->settings.size; }
+
+VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::string& output, const FilmOptions& options,
+                    double seconds, const std::function<bool()>& go_on) {
+  constexpr std::chrono::milliseconds between_questions(50);
+  VideoSettings settings = video_settings(output, options);
+  const VideoTiming timing = video_timing(seconds, options.speed, settings.frames_per_second);
+  settings.expected_frames = timing.frames;
+  const std::unique_ptr<FrameWriter> writer = open_frame_writer(output, settings);
+  ViewSettings view = options.view;
+  view.speed = options.speed;
+  VideoControl control;
+  VideoResult result;
+  std::future<void> made = thread.post([&](DrawingThread::Canvas& canvas) {
+    prepare(canvas, settings.size, options.quality);
+    canvas.owner = nullptr;
+    VideoPipeline pipeline(canvas.offscreen, std::move(simulation), view);
+    result = pipeline.run(*writer, pixel_format_of(video_kind_of(output)), timing, true, &control);
+  });
+  while (go_on && made.wait_for(between_questions) != std::future_status::ready)
+    if (!go_on()) control.stop = true;
+  wait_for(made);
+  if (!result.interrupted) writer->finish();
+  return result;
+}
+
+}  // namespace mercury

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/video/group_drawing.h"
+
+#include <utility>
+#include <variant>
+
+#include "app/scene/group_layout.h"
+
+namespace mercury {
+namespace {
+
+bool on_land(const Simulation& simulation) {
+  return std::holds_alternative<Land>(simulation.configuration().environment);
+}
+
+std::vector<std::string> names_of(const Simulation& simulation) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < simulation.size(); ++i) names.push_back(simulation.robot(i).name);
+  return names;
+}
+
+GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& settings, float aspect) {
+  std::vector<render::Bounds> bounds;
+  for (std::size_t i = 0; i < simulation.size(); ++i) bounds.push_back(rest_bounds(simulation.robot(i)));
+  const bool land = on_land(simulation);
+  if (settings.board) {
+    // The simulation sets robots down on the floor.
+    for (render::Bounds& robot : bounds)
+      if (land && !robot.empty()) robot = robot.moved({0, 0, -robot.low.z()});
+    return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
+  }
+  // From straight above, robots that swim are laid out as if on the ground.
+  const bool flat = land || settings.camera.mode == CameraMode::top;
+  return {.offsets = grid_layout(bounds, {.layout = settings.layout,
+                                          .grid = settings.grid,
+                                          .aspect = aspect,
+                                          .view = direction_of(settings.camera, land),
+                                          .on_ground = flat}),
+          .camera = settings.camera};
+}
+
+// The edges of the picture where text is written and no robot should be, as shares of its sides.
+render::Insets free_edges(const ViewSettings& settings) {
+  render::Insets free;
+  if (settings.shown.legend) free.right = 0.1f;
+  if (settings.shown.labels || settings.shown.captions) free.top = 0.07f;
+  if (settings.shown.clock || settings.shown.scale_bar) free.bottom = 0.03f;
+  return free;
+}
+
+}  // namespace
+
+GroupDrawing::GroupDrawing(const Simulation& simulation, const ViewSettings& settings, float aspect,
+                           std::span<const std::string> names)
+    : simulation_(simulation), placement_(placement_of(simulation, settings, aspect)),
+      scene_(simulation, placement_.offsets, settings),
+      camera_(placement_.camera, {.aspect = aspect, .free = free_edges(settings), .on_ground = on_land(simulation)},
+              names_of(simulation)),
+      details_(simulation, settings) {
+  for (std::size_t i = 0; i < names.size(); ++i) scene_.set_name(i, names[i]);
+  if (settings.board) scene_.set_background(placement_.tiles, placement_.texts);
+}
+
+FrameSnapshot GroupDrawing::take(PositionBridge& bridge) {
+  FrameSnapshot snapshot{.time = simulation_.time(), .telemetry = simulation_.telemetry()};
+  snapshot.details = details_.observe(snapshot.telemetry);
+  snapshot.positions = bridge.take(simulation_);
+  return snapshot;
+}
+
+void GroupDrawing::draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed) {
+  scene_.update(snapshot.time, snapshot.telemetry, std::move(snapshot.details));
+  bridge.show(*snapshot.positions, renderer, scene_.scene());
+  renderer.draw(scene_.scene(), camera_.at(scene_.bounds(), elapsed));
+}
+
+}  // namespace mercury

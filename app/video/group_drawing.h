@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A group of simulated robots, laid out in a picture and ready to be drawn at any time of the simulation.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/scene/board.h"
+#include "app/scene/camera_controller.h"
+#include "app/scene/group_scene.h"
+#include "app/scene/scene_details.h"
+#include "app/scene/view_settings.h"
+#include "app/video/position_bridge.h"
+#include "mercury/simulation.h"
+#include "render/renderer.h"
+
+namespace mercury {
+
+// What one frame shows.
+struct FrameSnapshot {
+  double time = 0;  // [s]
+  std::unique_ptr<PositionSnapshot> positions;
+  std::vector<Telemetry> telemetry;
+  SceneDetails details;
+};
+
+// The simulating thread calls take() and the drawing thread everything else, possibly at the same time. Refers to the
+// simulation, whose robots stay the same.
+class GroupDrawing {
+ public:
+  // `aspect` of the picture; `names`: one per robot, shown instead of its own; empty = its own. Uses no OpenGL. Throws
+  // InputError for a setting that does not suit the robots or their environment.
+  GroupDrawing(const Simulation& simulation, const ViewSettings& settings, float aspect,
+               std::span<const std::string> names = {});
+
+  // Gives the robots to a renderer. Call it before draw(), and again when the renderer has drawn others.
+  void set_bodies(render::Renderer& renderer) const { scene_.set_bodies(renderer); }
+
+  // The simulation's present state.
+  FrameSnapshot take(PositionBridge& bridge);
+  // Draws it. `bridge`: that of take(). `elapsed`: since the previous picture, for the camera [s of video].
+  void draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed);
+
+ private:
+  const Simulation& simulation_;
+  GroupPlacement placement_;
+  GroupScene scene_;
+  CameraController camera_;
+  DetailObserver details_;
+};
+
+}  // namespace mercury

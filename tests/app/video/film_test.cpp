@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures and films that a program makes of its simulations.
+#include "app/video/film.h"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <thread>
+
+#include "mercury/error.h"
+#include "mercury/random_voxel.h"
+#include "render/png.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using render::Image;
+using testing::HasSubstr;
+
+constexpr PictureSize small{160, 90};
+
+class FilmTest : public FolderTest {
+ protected:
+  void SetUp() override {
+    FolderTest::SetUp();
+    try {
+      render::make_context({.kind = kind})->release();
+    } catch (const render::ContextError& error) {
+      GTEST_SKIP() << "no OpenGL here: " << error.what();
+    }
+  }
+
+  FilmOptions options(double rate = 10) const { return {.size = small, .frames_per_second = rate}; }
+
+  static constexpr render::ContextKind kind = render::ContextKind::automatic;
+  DrawingThread thread_{kind};
+  Simulation simulation_{{.device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 1, 2)};
+};
+
+// The mean difference of two pictures' bytes.
+double difference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.bytes.size(); ++i) sum += std::abs(a.bytes[i] - b.bytes[i]);
+  return sum / static_cast<double>(a.bytes.size());
+}
+
+TEST_F(FilmTest, PictureHasTheRequestedSizeAndShowsTheRobots) {
+  const Image picture = picture_of(thread_, simulation_, {.size = {161, 91}});
+  EXPECT_EQ(picture.width, 161);
+  EXPECT_EQ(picture.height, 91);
+  EXPECT_EQ(picture.bytes.size(), 3u * 161 * 91);
+  // Without skins, springs and masses, only the surroundings are left.
+  const Image empty = picture_of(thread_, simulation_, {.size = {161, 91}, .view = {.shown = {.skin = false}}});
+  EXPECT_GT(difference(picture, empty), 1);
+}
+
+TEST_F(FilmTest, SameStateGivesTheSameBytesFromAnyThread) {
+  const Image first = picture_of(thread_, simulation_, {.size = small});
+  simulation_.step(500);
+  const Image moved = picture_of(thread_, simulation_, {.size = {90, 160}});
+  EXPECT_NE(moved.bytes, first.bytes);
+  simulation_.reset();
+  std::vector<Image> again(4);
+  for (Image& picture : again) std::thread([&] { picture = picture_of(thread_, simulation_, {.size = small}); }).join();
+  for (const Image& picture : again) EXPECT_EQ(picture.bytes, first.bytes);
+}
+
+TEST_F(FilmTest, QualitiesAndQuantitiesDiffer) {
+  simulation_.step(300);
+  std::set<std::string> pictures;
+  for (const ColorQuantity& quantity : color_quantities()) {
+    const Image picture = picture_of(thread_, simulation_, {.size = small, .view = {.color = &quantity}});
+    EXPECT_TRUE(pictures.emplace(picture.bytes.begin(), picture.bytes.end()).second) << quantity.key;
+  }
+  const Image low = picture_of(thread_, simulation_, {.size = small, .quality = render::Quality::low});
+  const Image high = picture_of(thread_, simulation_, {.size = small, .quality = render::Quality::high});
+  EXPECT_NE(low.bytes, high.bytes);
+  EXPECT_LT(difference(low, high), 10);
+}
+
+TEST_F(FilmTest, FilmHasAFramePerCall) {
+  {
+    Film film(thread_, simulation_, path("a.mp4"), options());
+    for (int frame = 0; frame < 25; ++frame, simulation_.step(10)) film.add_frame();
+    EXPECT_EQ(film.frames(), 25);
+    film.finish();
+    EXPECT_THROW(film.add_frame(), InputError);
+    EXPECT_THROW(film.finish(), InputError);
+  }
+  EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "25");
+  EXPECT_EQ(probe(path("a.mp4"))["r_frame_rate"], "10/1");
+  EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
+}
+
+TEST_F(FilmTest, FramesArePicturesOfTheirMoment) {
+  Film film(thread_, simulation_, path("frames/"), {.size = small});
+  std::vector<Image> pictures;
+  for (int frame = 0; frame < 6; ++frame, simulation_.step(200)) {
+    film.add_frame();
+    // Pictures and other films between frames change nothing.
+    pictures.push_back(picture_of(thread_, simulation_, {.size = small}));
+  }
+  film.finish();
+  const auto frames = listing("frames");
+  ASSERT_EQ(frames.size(), 6u);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Image frame = render::read_png(path("frames/" + frames[i]));
+    // The camera of a film follows a little late, so later frames are only similar.
+    if (i == 0)
+      EXPECT_EQ(frame.bytes, pictures[0].bytes);
+    else
+      EXPECT_LT(difference(frame, pictures[i]), 8) << i;
+  }
+}
+
+TEST_F(FilmTest, TwoFilmsAtOnceDoNotMix) {
+  Simulation other({.device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 7, 3));
+  Film alone(thread_, simulation_, path("alone/"), {.size = small});
+  for (int frame = 0; frame < 4; ++frame, simulation_.step(50)) alone.add_frame();
+  alone.finish();
+  simulation_.reset();
+  Film one(thread_, simulation_, path("one/"), {.size = small});
+  Film two(thread_, other, path("two/"), {.size = {90, 160}, .quality = render::Quality::medium});
+  for (int frame = 0; frame < 4; ++frame, simulation_.step(50)) {
+    one.add_frame();
+    two.add_frame();
+  }
+  two.finish();
+  one.finish();
+  for (const std::string& frame : listing("alone")) EXPECT_EQ(read("alone/" + frame), read("one/" + frame)) << frame;
+  EXPECT_EQ(listing("two").size(), 4u);
+}
+
+TEST_F(FilmTest, FilmShowsRobotsThatAreAddedAndKept) {
+  Film film(thread_, simulation_, path("frames/"), {.size = small});
+  film.add_frame();
+  simulation_.add(random_voxel_robots({}, 9, 3));
+  film.add_frame();
+  const std::vector<std::size_t> last{4};
+  simulation_.keep(last);
+  film.add_frame();
+  const Image one = picture_of(thread_, simulation_, {.size = small});
+  film.finish();
+  EXPECT_EQ(render::read_png(path("frames/frame-00002.png")).bytes, one.bytes);
+}
+
+TEST_F(FilmTest, DiscardedFilmLeavesTheOldFile) {
+  write("a.mp4", "old");
+  {
+    Film film(thread_, simulation_, path("a.mp4"), options());
+    for (int frame = 0; frame < 20; ++frame) film.add_frame();
+  }
+  Film(thread_, simulation_, path("b.mp4"), options()).discard();
+  EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
+  EXPECT_EQ(read("a.mp4"), "old");
+}
+
+TEST_F(FilmTest, FilmWithoutFramesIsAnError) {
+  Film film(thread_, simulation_, path("a.mp4"), options());
+  EXPECT_THROW(film.finish(), VideoError);
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+TEST_F(FilmTest, DyingEncoderIsReported) {
+  write("dying", "#!/bin/sh\necho 'out of ink' >&2\nexit 4\n", true);
+  FilmOptions dying = options();
+  dying.ffmpeg = path("dying");
+  Film film(thread_, simulation_, path("a.mp4"), dying);
+  try {
+    for (;;) film.add_frame();
+  } catch (const VideoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("ended with status 4: out of ink"));
+  }
+  film.discard();
+  EXPECT_THROW(film_of(thread_, Simulation({.device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 1, 1)),
+                       path("b.mp4"), dying, 5),
+               VideoError);
+  EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
+  EXPECT_EQ(picture_of(thread_, simulation_, {.size = small}).width, small.width) << "the thread goes on";
+}
+
+TEST_F(FilmTest, WholeFilmsHaveTheirFramesAndCanBeStopped) {
+  const auto robots = random_voxel_robots({}, 1, 2);
+  const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
+  EXPECT_EQ(film_of(thread_, Simulation(cpu, robots), path("a.mp4"), options(), 1.2).frames, 12);
+  EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "12");
+  FilmOptions fast = options();
+  fast.speed = 4;
+  EXPECT_EQ(film_of(thread_, Simulation(cpu, robots), path("b.webm"), fast, 2).frames, 5);
+  const VideoResult stopped =
+      film_of(thread_, Simulation(cpu, robots), path("c.mp4"), options(), 1e5, [] { return false; });
+  EXPECT_TRUE(stopped.interrupted);
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a.mp4", "b.webm"}));
+}
+
+TEST_F(FilmTest, BadOptionsAreRefusedByName) {
+  const auto refused = [&](const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const ParameterError& error) {
+      return error.parameter();
+    }
+    return std::string("nothing");
+  };
+  for (const PictureSize size : {PictureSize{0, 90}, PictureSize{160, -1}, PictureSize{20000, 90}})
+    EXPECT_EQ(refused([&] { picture_of(thread_, simulation_, {.size = size}); }), "size");
+  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.avi"), options()); }), "output");
+  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.gif"), options(60)); }), "fps");
+  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.mp4"), options(-1)); }), "fps");
+  ViewSettings pressure{.color = &color_quantity("pressure")};
+  Simulation land({.environment = Land{}, .device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 1, 1));
+  EXPECT_EQ(refused([&] { picture_of(thread_, land, {.size = small, .view = pressure}); }), "color");
+  EXPECT_EQ(refused([&] { film_of(thread_, std::move(land), path("a.mp4"), options(), NAN); }), "seconds");
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+// In the child of a fork, drawing is an error in one line and ends nothing of the parent.
+TEST_F(FilmTest, ForkedProcessGetsAnErrorAndLeavesTheFilmAlone) {
+  {
+    Film film(thread_, simulation_, path("a.mp4"), options());
+    film.add_frame();
+    const pid_t child = fork();
+    if (child == 0) {
+      int refusals = 0;
+      try {
+        picture_of(thread_, simulation_, {.size = small});
+      } catch (const DeviceError&) {
+        ++refusals;
+      }
+      try {
+        film.add_frame();
+      } catch (const DeviceError&) {
+        ++refusals;
+      }
+      film.~Film();
+      thread_.~DrawingThread();
+      _exit(refusals);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    film.add_frame();
+    film.finish();
+  }
+  EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "2");
+}
+
+TEST(DrawingThread, EndsWithoutHavingBegun) { const DrawingThread thread; }
+
+}  // namespace
+}  // namespace mercury::test
