@@ -30,6 +30,7 @@ from ._mercury import (
     random_voxel,
     voxel,
 )
+from ._pictures import Film, Look, Video, picture, render
 
 __version__: str = getattr(_mercury, "__version__")
 
@@ -38,19 +39,24 @@ __all__ = [
     "Array",
     "Batch",
     "DeviceError",
+    "Film",
     "InputError",
     "Land",
+    "Look",
     "Ocean",
     "OceanSimple",
     "Result",
     "Results",
     "Robot",
+    "Video",
     "__version__",
     "evaluate",
     "load",
+    "picture",
     "random_network",
     "random_painted",
     "random_shell",
     "random_voxel",
+    "render",
     "voxel",
 ]

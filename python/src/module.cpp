@@ -12,4 +12,5 @@ NB_MODULE(_mercury, module) {
   bind_array(module);
   bind_batch(module);
   bind_evaluate(module);
+  bind_pictures(module);
 }

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures and films of robots, without a window or a display."""
+
+from __future__ import annotations
+
+import atexit
+import base64
+import os
+import shutil
+import weakref
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Sequence, TypedDict
+
+from . import _mercury
+from ._mercury import Batch, DeviceError, InputError, Robot
+
+if TYPE_CHECKING:
+    import numpy
+    from typing_extensions import Unpack
+
+    Environment = Any
+
+
+class Look(TypedDict, total=False):
+    """How a picture shows robots: the options of `mercury render`, all of them optional."""
+
+    color: str  # colour by "material", "activation", "strain", "force", "speed", "pressure", "energy", ...
+    scale: tuple[float, float]  # ends of the colours' scale; else it fits
+    show: str | Sequence[str]  # exactly what is shown: "skin,springs,labels,path,legend,clock,scale,velocity,..."
+    camera: str  # "group", "follow", "follow:NAME", "turntable", "top", "still", or a camera file (.json)
+    azimuth: float  # where the eye is, around the robots from +x [degrees]
+    elevation: float  # height of the eye above the horizon [degrees]
+    zoom: float  # above 1: closer
+    layout: str  # "grid", or "race": lanes side by side
+    grid: tuple[int, int]  # columns and rows
+    theme: str  # "dark" or "light"
+    caption: str  # text in the upper left corner; further lines are smaller
+    cut: str  # cuts away what lies beyond a plane: "y:0.2"
+    smooth: bool  # round skins rather than edged ones
+    quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
+
+
+def _words(look: Look) -> dict[str, Any]:
+    words = dict(look)
+    if isinstance(words.get("show"), (list, tuple)):
+        words["show"] = ",".join(words["show"])
+    return words
+
+
+def picture(
+    what: Batch | Robot | Sequence[Robot],
+    size: tuple[int, int] = (1280, 720),
+    *,
+    environment: Environment = None,
+    **look: Unpack[Look],
+) -> numpy.ndarray:
+    """A picture of a batch as it is now, or of robots at rest: an array (height, width, 3) of uint8.
+
+    `size` is (width, height) in pixels. `environment` is what robots at rest are shown in; a batch has its own. `look`
+    are the options of Look, such as color="strain" or camera="top". The same state gives the same bytes. Any thread may
+    call it; pictures are drawn one after the other on a thread of Mercury's own, without a display.
+
+    Raises InputError for what cannot be used, and DeviceError where there is no OpenGL, or in a process that was forked
+    from one that has drawn: start processes with the method "spawn".
+    """
+    return _mercury._picture(what, size, environment, _words(look))
+
+
+def _ffmpeg() -> str:
+    """The encoder: MERCURY_FFMPEG, else `ffmpeg` on PATH, else that of the package imageio-ffmpeg."""
+    if named := os.environ.get("MERCURY_FFMPEG"):
+        return named
+    if found := shutil.which("ffmpeg"):
+        return found
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        raise DeviceError(
+            "ffmpeg was not found: install it (apt install ffmpeg, or pip install imageio-ffmpeg), name the program in "
+            "MERCURY_FFMPEG, or write PNG pictures into a folder"
+        ) from None
+
+
+def _output(path: str | os.PathLike[str]) -> tuple[str, str]:
+    """The file or folder, and the encoder that it needs."""
+    output = os.fspath(path)
+    if not isinstance(output, str):
+        raise TypeError(f"output: text or a path is expected, not {type(output).__name__}")
+    if output.endswith(".png"):
+        raise InputError(f"output: {output} is one picture; use picture(), or give .mp4, .webm, .gif or a folder")
+    return output, _ffmpeg() if output.endswith((".mp4", ".webm", ".gif")) else "ffmpeg"
+
+
+def _rate(output: str, fps: float | None) -> float:
+    if fps is None:
+        return 25.0 if output.endswith(".gif") else 30.0
+    if not fps > 0:
+        raise InputError(f"fps: {fps} is not accepted; give a finite number > 0 frames/s")
+    return float(fps)
+
+
+class Video:
+    """A finished video: a file, or a folder of PNG pictures. Notebooks show it inline."""
+
+    _largest_inline = 32 << 20  # bytes; larger ones would make notebooks unusable
+
+    def __init__(self, path: str | os.PathLike[str], frames: int, size: tuple[int, int], fps: float):
+        self.path = Path(path)
+        self.frames = frames  # number of frames
+        self.size = size  # (width, height) [pixels]
+        self.fps = fps  # frames per second
+
+    def __repr__(self) -> str:
+        return f"Video({str(self.path)!r}, {self.frames} frames, {self.size[0]}x{self.size[1]})"
+
+    def __fspath__(self) -> str:
+        return str(self.path)
+
+    def _repr_html_(self) -> str | None:
+        kind = self.path.suffix[1:]
+        if kind not in ("mp4", "webm", "gif") or not self.path.is_file():
+            return None
+        if self.path.stat().st_size > self._largest_inline:
+            return f"<code>{escape(repr(self))}</code>: too large to be shown here"
+        data = base64.b64encode(self.path.read_bytes()).decode()
+        style = f'style="max-width: 100%; width: {self.size[0]}px; aspect-ratio: {self.size[0]} / {self.size[1]}"'
+        if kind == "gif":
+            return f'<img src="data:image/gif;base64,{data}" alt="{escape(self.path.name)}" {style}>'
+        return f'<video controls loop muted playsinline {style} src="data:video/{kind};base64,{data}"></video>'
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        html = self._repr_html_()
+        return {"text/plain": repr(self)} | ({"text/html": html} if html else {})
+
+
+def render(
+    what: Robot | Sequence[Robot] | str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    seconds: float | None = None,
+    *,
+    environment: Environment = None,
+    solver: str = "force",
+    dt: float = 1e-3,
+    damping: float = 0.1,
+    device: str = "auto",
+    threads: int = 0,
+    size: tuple[int, int] = (1280, 720),
+    fps: float | None = None,
+    speed: float = 1,
+    crf: int | None = None,
+    **look: Unpack[Look],
+) -> Video:
+    """Simulates robots, or plays a recording (the path of a .h5 file), and makes a video of it.
+
+    `output` is a file (.mp4, .webm, .gif) or a folder for PNG pictures. `seconds` are simulated (default 10; of a
+    recording, all), `speed` of them per second of video, `fps` frames per second of video (default 30; 25 for .gif).
+    `crf` is the encoder's: lower is better and larger. `environment`, `solver`, `dt`, `damping`, `device` and `threads`
+    are those of Batch; a recording has its own. `look` are the options of Look.
+
+    The result shows itself in notebooks. Ctrl-C ends it and keeps nothing. Raises InputError for what cannot be used,
+    and DeviceError where there is no OpenGL or no encoder.
+    """
+    path, ffmpeg = _output(output)
+    rate = _rate(path, fps)
+    filming = dict(size=size, fps=rate, speed=speed, crf=-1 if crf is None else crf, ffmpeg=ffmpeg, look=_words(look))
+    if isinstance(what, (str, os.PathLike)):
+        frames = _mercury._render_recording(os.fspath(what), path, seconds, **filming)
+    else:
+        simulating = dict(
+            environment=environment, solver=solver, dt=dt, damping=damping, device=device, threads=threads
+        )
+        frames = _mercury._render_robots(what, path, 10.0 if seconds is None else seconds, **simulating, **filming)
+    return Video(path, frames, _encoded(path, size), rate)
+
+
+def _encoded(path: str, size: tuple[int, int]) -> tuple[int, int]:
+    """H.264 and VP9 have even sides."""
+    even = path.endswith((".mp4", ".webm"))
+    return (size[0] + size[0] % 2, size[1] + size[1] % 2) if even else (size[0], size[1])
+
+
+class Film:
+    """Films a batch that you step yourself.
+
+        with mercurysim.Film("swim.mp4", batch) as film:
+            for _ in range(300):
+                batch.step(33)
+                film.frame()
+        film  # in a notebook: the video
+
+    `output`, `size`, `fps`, `crf` and `look` are those of render(). Drawing and encoding go on in the background. When
+    the block of `with` ends, the film is completed; when it ends by an exception, nothing is kept. Robots that are added
+    to the batch or removed from it change the layout of the next frame.
+    """
+
+    def __init__(
+        self,
+        output: str | os.PathLike[str],
+        batch: Batch,
+        *,
+        fps: float | None = None,
+        size: tuple[int, int] = (1280, 720),
+        crf: int | None = None,
+        **look: Unpack[Look],
+    ):
+        self.path, ffmpeg = _output(output)
+        self.video: Video | None = None  # once the film is closed
+        self._film = _mercury._Film(
+            self.path, batch, size, _rate(self.path, fps), -1 if crf is None else crf, ffmpeg, _words(look)
+        )
+        _films.add(self)
+
+    def frame(self) -> None:
+        """Adds the batch as it is now. Waits while several frames are behind. Raises what an earlier frame raised."""
+        self._film.add_frame()
+
+    @property
+    def frames(self) -> int:
+        """Number of frames so far."""
+        return self._film.frames
+
+    def close(self) -> Video:
+        """Completes the film, and returns the video. Raises DeviceError if the encoder fails or there is no frame."""
+        if self.video is None:
+            self._film.finish()
+            self.video = Video(self.path, self._film.frames, self._film.size, self._film.fps)
+        return self.video
+
+    def discard(self) -> None:
+        """Ends the film and keeps nothing. A file of that name that was there before stays as it was."""
+        self._film.discard()
+
+    def __enter__(self) -> Film:
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        if kind is None:
+            self.close()
+        else:
+            self.discard()
+
+    def __repr__(self) -> str:
+        return repr(self.video) if self.video else f"Film({self.path!r}, {self.frames} frames so far)"
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        return self.video._repr_mimebundle_() if self.video else {"text/plain": repr(self)}
+
+
+_films: weakref.WeakSet[Film] = weakref.WeakSet()
+
+
+def _end() -> None:
+    """Films that are not closed keep nothing, and the drawing thread ends while the interpreter still works."""
+    for film in list(_films):
+        film.discard()
+    _mercury._end_drawing()
+
+
+atexit.register(_end)

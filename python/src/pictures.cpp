@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures and films. mercurysim/pictures.py wraps what is here.
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "app/recording/trajectory_playback.h"
+#include "app/scene/view_words.h"
+#include "app/video/film.h"
+#include "mercury/error.h"
+#include "python/src/batch.h"
+#include "python/src/bindings.h"
+#include "python/src/values.h"
+#include "render/png.h"
+
+namespace mercury::python {
+namespace {
+
+// The thread that draws for this process, from the first picture to the interpreter's exit.
+std::unique_ptr<DrawingThread>& drawing_thread() {
+  // Never destroyed: end_drawing() does what is necessary while the interpreter still works.
+  static auto* thread = new std::unique_ptr<DrawingThread>(std::make_unique<DrawingThread>());
+  return *thread;
+}
+
+DrawingThread& drawing() {
+  if (!drawing_thread()) throw DeviceError("the interpreter exits; nothing is drawn any more");
+  return *drawing_thread();
+}
+
+void end_drawing() { drawing_thread().reset(); }
+
+// Errors of the encoder and of OpenGL are those of the machine.
+template <class Work>
+auto with_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const VideoError& error) {
+    throw DeviceError(error.what());
+  } catch (const render::ContextError& error) {
+    throw DeviceError(error.what());
+  }
+}
+
+// The words of a picture, as keyword arguments of Python. None = the usual.
+struct Look {
+  ViewWords words;
+  std::string quality = "auto";
+};
+
+float small_number_from(const std::string& name, nb::handle value) {
+  return static_cast<float>(number_from(name, value));
+}
+
+// The two elements of a sequence, each taken by `element`.
+template <class Element>
+auto pair_from(const std::string& name, nb::handle value, const char* wanted, const Element& element) {
+  if (!PySequence_Check(value.ptr()) || nb::isinstance<nb::str>(value) || nb::len(value) != 2)
+    refuse_type(name, wanted, value);
+  return std::pair(element(name, value[0]), element(name, value[1]));
+}
+
+int side_from(const std::string& name, nb::handle value) {
+  return static_cast<int>(whole_from(name, value, 1, 1 << 20));
+}
+
+PictureSize size_from(nb::handle value) {
+  const auto [width, height] = pair_from("size", value, "a pair of whole numbers (width, height)", side_from);
+  return {width, height};
+}
+
+void take_word(Look& look, const std::string& name, nb::handle value) {
+  ViewWords& words = look.words;
+  const std::map<std::string, std::function<void()>> takes{
+      {"color", [&] { words.color = text_from(name, value); }},
+      {"scale", [&] { words.scale = pair_from(name, value, "a pair of numbers", small_number_from); }},
+      {"show", [&] { words.show = text_from(name, value); }},
+      {"camera", [&] { words.camera = text_from(name, value); }},
+      {"azimuth", [&] { words.azimuth = small_number_from(name, value); }},
+      {"elevation", [&] { words.elevation = small_number_from(name, value); }},
+      {"zoom", [&] { words.zoom = small_number_from(name, value); }},
+      {"layout", [&] { words.layout = text_from(name, value); }},
+      {"grid",
+       [&] {
+         const auto [columns, rows] = pair_from(name, value, "a pair of whole numbers (columns, rows)", side_from);
+         words.grid = Grid{columns, rows};
+       }},
+      {"theme", [&] { words.theme = text_from(name, value); }},
+      {"caption", [&] { words.caption = text_from(name, value); }},
+      {"cut", [&] { words.cut = text_from(name, value); }},
+      {"smooth", [&] { words.smooth = bool_from(name, value); }},
+      {"quality", [&] { look.quality = text_from(name, value); }}};
+  if (const auto found = takes.find(name); found != takes.end()) return found->second();
+  std::vector<std::string> names;
+  for (const auto& [known, take] : takes) names.push_back(known);
+  throw nb::type_error(("\"" + name + "\" is not an option of pictures" + suggestion(name, names)).c_str());
+}
+
+Look look_of(const nb::dict& given) {
+  Look look;
+  for (const auto& [key, value] : given)
+    if (!value.is_none()) take_word(look, nb::cast<std::string>(key), value);
+  return look;
+}
+
+render::Quality quality_of(const std::string& name) {
+  try {
+    return render::quality_named(name);
+  } catch (const std::invalid_argument&) {
+    throw ParameterError("quality", "\"" + name + "\" is not accepted; give auto, low, medium, high");
+  }
+}
+
+PictureOptions picture_options(nb::handle size, const nb::dict& given) {
+  const Look look = look_of(given);
+  return {.size = size_from(size), .view = view_settings(look.words), .quality = quality_of(look.quality)};
+}
+
+FilmOptions film_options(nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
+                         const nb::dict& given) {
+  if (crf < -1 || crf > 63)
+    throw ParameterError("crf", std::to_string(crf) + " is not accepted; give 0 to 51 (.mp4) or 63 (.webm)");
+  const PictureOptions picture = picture_options(size, given);
+  return {.size = picture.size,
+          .view = picture.view,
+          .quality = picture.quality,
+          .frames_per_second = fps,
+          .speed = speed,
+          .crf = crf,
+          .ffmpeg = ffmpeg};
+}
+
+// Robots at rest.
+Simulation resting(const SharedRobots& robots, const Environment& environment) {
+  return {Configuration{.environment = environment, .device = {.kind = DeviceKind::cpu}}, robots};
+}
+
+render::Image picture(nb::handle what, nb::handle environment, const PictureOptions& options) {
+  DrawingThread& thread = drawing();
+  return with_errors([&] {
+    if (nb::isinstance<Batch>(what)) {
+      if (!environment.is_none()) throw ParameterError("environment", "a batch has one already");
+      return nb::cast<const Batch&>(what).use(
+          [&](const Simulation& simulation) { return picture_of(thread, simulation, options); });
+    }
+    const SharedRobots robots = robots_of(what);
+    if (robots.empty()) throw InputError("there is no robot to show");
+    const Environment surroundings = environment_of(environment);
+    const ReleasedGil released;
+    return picture_of(thread, resting(robots, surroundings), options);
+  });
+}
+
+nb::object array_of(render::Image image) {
+  auto* bytes = new std::vector<std::uint8_t>(std::move(image.bytes));
+  const nb::capsule owner(bytes, [](void* memory) noexcept { delete static_cast<std::vector<std::uint8_t>*>(memory); });
+  return nb::cast(nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<3>>(
+      bytes->data(), {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), 3}, owner));
+}
+
+// A small picture for notebooks; None where nothing can be drawn, so that they show the text instead.
+nb::object thumbnail(nb::handle what) {
+  PictureOptions options{.size = {480, 270}};
+  options.view.shown.clock = false;
+  try {
+    const std::vector<std::uint8_t> png = render::png_bytes(picture(what, nb::none(), options));
+    return nb::bytes(png.data(), png.size());
+  } catch (const std::exception&) {
+    return nb::none();
+  }
+}
+
+// Asks Python for Ctrl-C while the interpreter's lock is released.
+class InterruptWatch {
+ public:
+  bool go_on() {
+    const nb::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() != 0) interrupted_.emplace();
+    return !interrupted_;
+  }
+  void rethrow() {
+    if (interrupted_) throw nb::python_error(std::move(*interrupted_));
+  }
+
+ private:
+  std::optional<nb::python_error> interrupted_;
+};
+
+// Returns the number of frames.
+std::int64_t render_simulation(Simulation simulation, const std::string& output, double seconds,
+                               const FilmOptions& options) {
+  DrawingThread& thread = drawing();
+  InterruptWatch watch;
+  VideoResult result;
+  {
+    const ReleasedGil released;
+    result = with_errors([&] {
+      return film_of(thread, std::move(simulation), output, options, seconds, [&] { return watch.go_on(); });
+    });
+  }
+  watch.rethrow();
+  return result.frames;
+}
+
+std::int64_t render_robots(nb::handle robots, const std::string& output, double seconds, nb::handle environment,
+                           const std::string& solver, double dt, double damping, const std::string& device, int threads,
+                           nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
+                           const nb::dict& look) {
+  const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
+  Configuration configuration{.dt = dt,
+                              .damping = damping,
+                              .solver = solver_named(solver),
+                              .environment = environment_of(environment),
+                              .device = device_named(device)};
+  configuration.device.threads = threads;
+  const SharedRobots shared = robots_of(robots);
+  if (shared.empty()) throw InputError("there is no robot to film");
+  std::optional<Simulation> simulation;
+  {
+    const ReleasedGil released;
+    simulation.emplace(configuration, shared);
+  }
+  return render_simulation(std::move(*simulation), output, seconds, options);
+}
+
+std::int64_t render_recording(const std::string& path, const std::string& output, std::optional<double> seconds,
+                              nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
+                              const nb::dict& look) {
+  const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
+  const auto recording = std::make_shared<TrajectoryReader>(path);
+  if (recording->frames() == 0) throw InputError(path, "holds no frames");
+  const double length = recording->time(recording->frames() - 1) - recording->time(0);
+  return render_simulation(playback(recording), output, seconds.value_or(length), options);
+}
+
+// A film of a batch, as Python has it.
+class BatchFilm {
+ public:
+  BatchFilm(const std::string& output, const Batch& batch, nb::handle size, double fps, int crf,
+            const std::string& ffmpeg, const nb::dict& look)
+      : batch_(batch) {
+    const FilmOptions options = film_options(size, fps, 1, crf, ffmpeg, look);
+    DrawingThread& thread = drawing();
+    with_errors(
+        [&] { batch.use([&](const Simulation& simulation) { film_.emplace(thread, simulation, output, options); }); });
+  }
+  ~BatchFilm() {
+    const ReleasedGil released;
+    film_.reset();
+  }
+
+  void add_frame() {
+    with_errors([&] { batch_.use([&](const Simulation&) { film_->add_frame(); }); });
+  }
+  void finish() {
+    with_errors([&] { batch_.use([&](const Simulation&) { film_->finish(); }); });
+  }
+  void discard() {
+    batch_.use([&](const Simulation&) { film_->discard(); });
+  }
+  std::int64_t frames() const { return film_->frames(); }
+  double frames_per_second() const { return film_->frames_per_second(); }
+  std::pair<int, int> size() const { return {film_->size().width, film_->size().height}; }
+
+ private:
+  const Batch& batch_;  // kept by Python
+  std::optional<Film> film_;
+};
+
+template <class Shown>
+void add_thumbnail() {
+  const nb::handle type = nb::type<Shown>();
+  nb::setattr(type, "_repr_png_",
+              nb::cpp_function([](nb::handle_t<Shown> self) { return thumbnail(self); }, nb::name("_repr_png_"),
+                               nb::scope(type), nb::is_method(), "A small picture for notebooks, as PNG."));
+}
+
+}  // namespace
+
+void bind_pictures(nb::module_& module) {
+  module.def(
+      "_picture",
+      [](nb::handle what, nb::handle size, nb::handle environment, const nb::dict& look) {
+        return array_of(picture(what, environment, picture_options(size, look)));
+      },
+      nb::arg("what"), nb::arg("size"), nb::arg("environment").none(), nb::arg("look"));
+  module.def("_render_robots", &render_robots, nb::arg("robots"), nb::arg("output"), nb::arg("seconds"),
+             nb::arg("environment").none(), nb::arg("solver"), nb::arg("dt"), nb::arg("damping"), nb::arg("device"),
+             nb::arg("threads"), nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"),
+             nb::arg("look"));
+  module.def("_render_recording", &render_recording, nb::arg("path"), nb::arg("output"), nb::arg("seconds").none(),
+             nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
+  module.def("_end_drawing", &end_drawing);
+  nb::class_<BatchFilm>(module, "_Film")
+      .def(nb::init<const std::string&, const Batch&, nb::handle, double, int, const std::string&, const nb::dict&>(),
+           nb::arg("output"), nb::arg("batch"), nb::arg("size"), nb::arg("fps"), nb::arg("crf"), nb::arg("ffmpeg"),
+           nb::arg("look"), nb::keep_alive<1, 3>())
+      .def("add_frame", &BatchFilm::add_frame)
+      .def("finish", &BatchFilm::finish)
+      .def("discard", &BatchFilm::discard)
+      .def_prop_ro("frames", &BatchFilm::frames)
+      .def_prop_ro("fps", &BatchFilm::frames_per_second)
+      .def_prop_ro("size", &BatchFilm::size);
+  add_thumbnail<SharedRobot>();
+  add_thumbnail<Batch>();
+}
+
+}  // namespace mercury::python
