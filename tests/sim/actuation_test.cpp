@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "bodies.h"
+#include "mercury/error.h"
+#include "plain_backend.h"
 #include "shared_batch.h"
 #include "sim/physics/actuation.h"
 
@@ -249,6 +251,32 @@ TEST_P(ActuationOf, NamingActuatorsChangesNoBit) {
   batch->step(50);
   EXPECT_EQ(batch->hash(1), batch->hash(0));
   EXPECT_EQ(actuators_of(named).size(), 1u);
+}
+
+// A backend that reads the arrays itself and has no room for more robots.
+class FullBackend final : public test::PlainBackend {
+ public:
+  void add(std::span<const Robot* const>, std::size_t) override {
+    reads_arrays = false;
+    throw DeviceError("no room");
+  }
+  bool set_actuation(const ActuationSources& sources) override {
+    reads_arrays = sources.drive != nullptr;
+    return true;
+  }
+  bool reads_arrays = false;
+};
+
+TEST(Actuation, GoesOnAfterRobotsCouldNotBeAdded) {
+  const Robot robot = bodies::pair({50, 0.3f, 4, 1});
+  auto made = std::make_unique<FullBackend>();
+  const FullBackend& backend = *made;
+  Simulation simulation({}, std::span(&robot, 1), std::move(made));
+  const auto drive = simulation.actuation().drive;
+  EXPECT_TRUE(backend.reads_arrays);
+  EXPECT_THROW(simulation.add(robot), DeviceError);
+  EXPECT_TRUE(backend.reads_arrays);
+  EXPECT_EQ(simulation.actuation().drive.data, drive.data);
 }
 
 TEST(Actuation, CpuAndCudaAgree) {

@@ -13,7 +13,7 @@
 namespace mercury::test {
 
 // A CPU backend behind the interface, without its own add(), keep() and step_and_report().
-class PlainBackend final : public Backend {
+class PlainBackend : public Backend {
  public:
   explicit PlainBackend(std::unique_ptr<Backend> cpu = make_cpu_backend({})) : cpu_(std::move(cpu)) {}
   std::string device_name() const override { return cpu_->device_name(); }

@@ -157,6 +157,21 @@ TEST_P(SharedArrays, OfABatchBeforeAddAndKeepStayAsTheyWere) {
   EXPECT_EQ(batch.vectors(second), later);
 }
 
+TEST_P(SharedArrays, HoldWhatCopyPositionsWrites) {
+  const std::vector<Robot> robots = crowd();
+  SharedBatch batch = this->batch({}, robots), other = this->batch({}, robots);
+  const auto target = other->shared_state(StateArray::positions);
+  if (batch->cuda_device() < 0) {
+    EXPECT_THROW(batch->copy_positions(target.data.get()), std::logic_error);
+    return;
+  }
+  batch->step_in_stream(20, reinterpret_cast<void*>(std::uintptr_t{2}));  // cudaStreamPerThread
+  batch->copy_positions(target.data.get());
+  std::vector<Vec3> x(batch->mass_count());
+  batch->read_positions(x);
+  EXPECT_EQ(other.vectors(target), x);
+}
+
 TEST_P(SharedArrays, OutliveTheirSimulation) {
   const std::vector<Robot> robots = crowd();
   SharedArray<float> positions;
