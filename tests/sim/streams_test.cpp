@@ -35,7 +35,7 @@ TEST_P(StepsInAStream, GiveTheHashesOfSteps) {
   expected.step(200);
   for (int call = 0; call < 10; ++call) {
     legacy.step_in_stream(20, legacy_stream);
-    own.step_in_stream(17, stream_of_thread);
+    own.step_in_stream(17, call % 2 == 0 ? stream_of_thread : legacy_stream);
     own.step(3);
   }
   EXPECT_EQ(legacy.steps(), 200);
