@@ -184,10 +184,14 @@ void validate(const MutationRequest& request) {
       throw ParameterError(name, text_of(strength) + " is not accepted; give 0 or more");
 }
 
+// A robot as messages name it.
+static std::string shown_name(const Robot& robot) { return robot.name.empty() ? "a robot without a name" : robot.name; }
+
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
   const Generator* generator = generator_of(parent);
   if (!generator)
-    throw InputError(parent.name, "cannot be mutated; only " + generator_kinds() + " robots know how they were made");
+    throw InputError(shown_name(parent),
+                     "cannot be mutated; only " + generator_kinds() + " robots know how they were made");
   return generator->mutate(parent, request, name);
 }
 
@@ -195,11 +199,12 @@ Robot cross_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std
   const Generator *generator = generator_of(a), *other = generator_of(b);
   for (const auto& [robot, its_own] : {std::pair(&a, generator), std::pair(&b, other)})
     if (!its_own)
-      throw InputError(robot->name, "cannot be crossed; only " + generator_kinds() + " robots know how they were made");
+      throw InputError(shown_name(*robot),
+                       "cannot be crossed; only " + generator_kinds() + " robots know how they were made");
   if (generator != other)
-    throw InputError(a.name + " and " + b.name,
+    throw InputError(shown_name(a) + " and " + shown_name(b),
                      "cannot be crossed, " + generator->noun + " and " + other->noun + "; give two robots of one kind");
-  if (!generator->cross) throw InputError(a.name, "cannot be crossed, " + generator->noun + " has no crossover");
+  if (!generator->cross) throw InputError(shown_name(a), "cannot be crossed, " + generator->noun + " has no crossover");
   return generator->cross(a, b, seed, name);
 }
 

@@ -38,8 +38,11 @@ void set(const std::string& name, const auto& parameter, Vec3& to, nb::handle va
     return;
   }
   std::vector<float> numbers;
-  for (const nb::handle number : value) numbers.push_back(static_cast<float>(number_from(name, number)));
-  if (numbers.size() != 3)
+  for (const nb::handle number : value) {
+    numbers.push_back(static_cast<float>(number_from(name, number)));
+    if (numbers.size() > 3) throw InputError(name, "more than 3 numbers are not accepted; give " + wanted);
+  }
+  if (numbers.size() < 3)
     throw InputError(name, std::to_string(numbers.size()) + " numbers are not accepted; give " + wanted);
   to = {numbers[0], numbers[1], numbers[2]};
 }
@@ -149,7 +152,7 @@ void bind(nb::module_& module, const char* name) {
       .def(
           "__setstate__",
           [name](Kind& self, const nb::dict& values) {
-            new (&self) Kind(changed(name, Kind{}, nb::borrow<nb::kwargs>(values)));
+            new (&self) Kind(changed(name, Kind{}, nb::steal<nb::kwargs>(PyDict_Copy(values.ptr()))));
           },
           nb::arg("state"), nb::sig("def __setstate__(self, state: dict[str, typing.Any], /) -> None"));
   for (const char* method : {"replace", "__replace__"}) {

@@ -56,7 +56,12 @@ struct Source {
 std::vector<nb::object> items_of(const std::string& name, const std::string& wanted, nb::handle value) {
   if (PyUnicode_Check(value.ptr()) || !nb::isinstance<nb::iterable>(value)) refuse_type(name, wanted, value);
   std::vector<nb::object> items;
-  for (const nb::handle item : value) items.push_back(nb::borrow(item));
+  constexpr std::size_t most = 100;  // no parameter takes more; an iterator may have no end
+  for (const nb::handle item : value) {
+    items.push_back(nb::borrow(item));
+    if (items.size() > most)
+      throw InputError(name, "more than " + std::to_string(most) + " values are not accepted; give " + wanted);
+  }
   return items;
 }
 

@@ -44,6 +44,11 @@ void require_numbers(const std::string& what, nb::handle array) {
 
 std::string shape_of(nb::handle array) { return as_text(array.attr("shape")); }
 
+// A copy in double precision, which no other thread changes.
+nb::object copied(nb::handle array, const char* order) {
+  return numpy().attr("array")(array, nb::arg("dtype") = "float64", nb::arg("order") = order);
+}
+
 // Numbers row after row, in double precision, which holds every index and every float exactly.
 class Table {
  public:
@@ -60,9 +65,9 @@ class Table {
       if (optional > 0) wanted += " or (n, " + std::to_string(fields.size()) + ")";
       throw InputError(what, "must have the shape " + wanted + ", not " + shape_of(array));
     }
-    rows_ = shape[0];
-    columns_ = shape[1];
-    numbers_ = nb::cast<Numbers>(numpy().attr("ascontiguousarray")(array, nb::arg("dtype") = "float64"));
+    numbers_ = nb::cast<Numbers>(copied(array, "C"));
+    rows_ = numbers_.shape(0);
+    columns_ = numbers_.shape(1);
   }
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }
@@ -133,7 +138,7 @@ std::vector<std::uint32_t> spring_indices_from(const std::string& what, nb::hand
   }
   require_numbers(what, array);
   using Numbers = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-  const auto numbers = nb::cast<Numbers>(numpy().attr("ascontiguousarray")(array, nb::arg("dtype") = "float64"));
+  const auto numbers = nb::cast<Numbers>(copied(array, "C"));
   std::vector<std::uint32_t> indices(numbers.shape(0));
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const double number = numbers.data()[i];
@@ -218,13 +223,14 @@ VoxelGrid grid_from(nb::handle given) {
   require_numbers("grid", array);
   if (nb::cast<std::size_t>(array.attr("ndim")) != 3)
     throw InputError("grid", "must have the shape (x, y, z), not " + shape_of(array));
-  const auto shape = nb::cast<std::vector<std::size_t>>(nb::list(array.attr("shape")));
-  for (const std::size_t size : shape)
-    if (size > VoxelGrid::max_cells) throw InputError("grid", "a shape of " + shape_of(array) + " is too large");
-  const auto size = [&](std::size_t axis) { return static_cast<int>(shape[axis]); };
-  VoxelGrid grid(size(0), size(1), size(2));
+  if (nb::cast<std::size_t>(array.attr("size")) > VoxelGrid::max_cells)
+    throw InputError("grid", "a shape of " + shape_of(array) + " is too large");
   using Numbers = nb::ndarray<nb::numpy, const double, nb::ndim<3>, nb::f_contig, nb::device::cpu>;
-  const auto numbers = nb::cast<Numbers>(numpy().attr("asfortranarray")(array, nb::arg("dtype") = "float64"));
+  const auto numbers = nb::cast<Numbers>(copied(array, "F"));
+  const auto size = [&](std::size_t axis) {
+    return static_cast<int>(std::min(numbers.shape(axis), VoxelGrid::max_cells + 1));
+  };
+  VoxelGrid grid(size(0), size(1), size(2));
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     const double number = numbers.data()[i];
     if (!is_index(number, base_material_count + 1))
@@ -237,9 +243,10 @@ VoxelGrid grid_from(nb::handle given) {
 
 void add_actuators(Robot& robot, nb::handle actuators) {
   if (!nb::isinstance<nb::dict>(actuators)) refuse_type("actuators", "a dict of names and spring indices", actuators);
-  for (const auto [key, springs] : nb::borrow<nb::dict>(actuators)) {
-    const std::string name = text_from("actuators", key);
-    add_actuator(robot, name, spring_indices_from("actuator " + name, springs, robot));
+  // A copy, since making arrays may run code that changes the dict.
+  for (const nb::handle item : nb::list(actuators.attr("items")())) {
+    const std::string name = text_from("actuators", item[0]);
+    add_actuator(robot, name, spring_indices_from("actuator " + name, item[1], robot));
   }
 }
 

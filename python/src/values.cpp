@@ -17,6 +17,7 @@ nb::object integer_from(const std::string& parameter, nb::handle value) {
   if (PyBool_Check(value.ptr())) refuse_type(parameter, "a whole number", value);
   PyObject* number = PyNumber_Index(value.ptr());
   if (!number) {
+    if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw nb::python_error();
     PyErr_Clear();
     refuse_type(parameter, "a whole number", value);
   }
@@ -64,6 +65,8 @@ double number_from(const std::string& parameter, nb::handle value) {
   const double number = PyFloat_AsDouble(value.ptr());
   if (number == -1.0 && PyErr_Occurred()) {
     const bool too_large = PyErr_ExceptionMatches(PyExc_OverflowError);
+    if (!too_large && !PyErr_ExceptionMatches(PyExc_TypeError) && !PyErr_ExceptionMatches(PyExc_ValueError))
+      throw nb::python_error();
     PyErr_Clear();
     if (too_large) throw ParameterError(parameter, "a number this large is not accepted; give a finite number");
     refuse_type(parameter, "a number", value);

@@ -78,6 +78,7 @@ def test_every_parameter_is_documented_with_its_unit(kind):
         (Ocean, {"flow": 1}, TypeError, r"^Ocean: flow: must be three numbers \(x, y, z\), not int$"),
         (Ocean, {"flow": "abc"}, TypeError, r"^Ocean: flow: must be three numbers \(x, y, z\), not str$"),
         (Ocean, {"flow": (1, 2)}, InputError, r"^Ocean: flow: 2 numbers are not accepted; give three numbers \(x, y, z\)$"),
+        (Ocean, {"flow": range(10**9)}, InputError, "^Ocean: flow: more than 3 numbers are not accepted; give three"),
         (Ocean, {"flow": (1, 2, "3")}, TypeError, "^Ocean: flow: must be a number, not str$"),
         (Ocean, {"gravity": (0, 0, float("inf"))}, InputError, "^Ocean: gravity: "),
         (Ocean, {"gravity": "down"}, TypeError, "^Ocean: gravity: must be three numbers .* or one number for"),

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import itertools
 import json
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -120,6 +121,8 @@ def test_words_and_lists_are_checked():
         mercurysim.random_voxel(symmetry=1)
     with pytest.raises(InputError, match="^hidden: 16 numbers are not accepted; give at most 15$"):
         mercurysim.random_network(hidden=[8] * 16)
+    with pytest.raises(InputError, match="^hidden: more than 100 values are not accepted"):
+        mercurysim.random_network(hidden=itertools.count(8))
     with pytest.raises(TypeError, match="^hidden: must be a sequence of whole numbers, not int$"):
         mercurysim.random_network(hidden=8)
 

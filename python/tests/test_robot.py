@@ -172,6 +172,42 @@ def test_bad_parts_are_refused_in_one_line(changes, error, message):
     assert type(caught.value) is error
 
 
+class Hostile:
+    """What NumPy cannot make an array of, such as a tensor in the memory of a GPU."""
+
+    def __init__(self, error):
+        self.error = error
+
+    def __array__(self, *_, **__):
+        raise self.error
+
+    __len__ = __index__ = __float__ = __array__
+
+
+def test_errors_of_other_libraries_become_one_line_or_pass():
+    with pytest.raises(TypeError, match="^masses: must be an array of numbers: cuda:0 is no place for NumPy$"):
+        tetrahedron(masses=Hostile(TypeError("cuda:0 is no place for NumPy\nsecond line")))
+    with pytest.raises(InputError, match="^springs: must be an array of numbers: ragged$"):
+        tetrahedron(springs=Hostile(ValueError("ragged")))
+    for error in (KeyboardInterrupt, MemoryError, ZeroDivisionError):
+        for call in (lambda bad: tetrahedron(faces=bad), lambda bad: tetrahedron(actuators={"fin": bad}),
+                     lambda bad: mercurysim.random_voxel(seed=bad), lambda bad: mercurysim.Ocean(density=bad)):
+            with pytest.raises(error):
+                call(Hostile(error()))
+
+
+def test_a_dict_of_actuators_may_change_while_it_is_read():
+    class Clears:
+        def __array__(self, *_, **__):
+            actuators.clear()
+            actuators.update({str(i): [0] for i in range(1000)})
+            gc.collect()
+            return np.array([0])
+
+    actuators = {"fin": Clears(), "tail": [1]}
+    assert list(tetrahedron(actuators=actuators).actuators) == ["fin", "tail"]
+
+
 def test_hostile_arrays_make_a_robot_or_an_error():
     """Random numbers of random types and shapes. A robot that is accepted has the numbers that were given."""
     chance = np.random.default_rng(1)
@@ -294,6 +330,7 @@ def test_mutants_and_crosses_depend_on_their_arguments_alone():
         (lambda robot: robot.mutate(seed=True), TypeError, "^seed: must be a whole number, not bool$"),
         (lambda robot: robot.cross(5), TypeError, "^other: must be a Robot, not int$"),
         (lambda robot: robot.cross(tetrahedron()), InputError, "^tetrahedron: cannot be crossed"),
+        (lambda robot: tetrahedron(name="").mutate(), InputError, "^a robot without a name: cannot be mutated"),
         (lambda robot: tetrahedron().mutate(), InputError, "^tetrahedron: cannot be mutated"),
     ],
 )
