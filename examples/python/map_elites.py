@@ -3,7 +3,7 @@
 
     python map_elites.py [GENERATIONS [ROBOTS]]
 
-Bodies are voxel robots that Mercury mutates; a generation is one batch of robots of different shapes.
+Bodies are voxel robots that Mercury mutates. evaluate() tries a generation of robots of different shapes at once.
 """
 import sys
 
@@ -21,16 +21,6 @@ def measure(robot):
     return info["masses"], 1 - info["volume"] / np.prod(info["extent"])
 
 
-def distances(robots, seconds=10):
-    """How far each robot swims [m]."""
-    batch = mercurysim.Batch(robots, environment=mercurysim.Ocean(), dt=2e-3)
-    start = batch.telemetry()["center_of_mass"].copy()
-    batch.step(round(seconds / batch.dt))
-    end = batch.telemetry()
-    way = np.linalg.norm(end["center_of_mass"] - start, axis=1)
-    return np.where(end["exploded"], 0, way)
-
-
 archive = GridArchive(solution_dim=1, dims=[8, 8], ranges=[(40, 240), (0.1, 0.6)])
 bodies = []  # a solution is the index of a body
 for generation in range(generations):
@@ -41,7 +31,8 @@ for generation in range(generations):
         children = [bodies[i].mutate(strength=1, muscles=1, seed=len(bodies) + k) for k, i in enumerate(parents)]
     indices = len(bodies) + np.arange(count)
     bodies += children
-    archive.add(indices[:, None], distances(children), [measure(robot) for robot in children])
+    results = mercurysim.evaluate(children, seconds=10, dt=2e-3)
+    archive.add(indices[:, None], [trial.distance for trial in results], [measure(robot) for robot in children])
     cells, best, total = archive.stats.num_elites, archive.stats.obj_max, archive.stats.qd_score
     print(f"generation {generation + 1:3}: {cells} cells, best {best:.3f} m, sum {total:.2f} m")
 
