@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the examples with short settings."""
-import csv
 import importlib.util
 import os
 import re
@@ -76,9 +75,3 @@ def test_a_recording_is_plotted(tmp_path, mercury):
     picture = matplotlib.image.imread(tmp_path / "swim.png")
     colors = {tuple(color) for color in picture[::2, ::2, :3].reshape(-1, 3).round(2)}
     assert len(colors) > 20  # axes, texts and two paths of different colors
-
-
-def learn(folder, robots, iterations):
-    """The first and the last rows of the table that ppo.py prints."""
-    rows = list(csv.DictReader(run("ppo.py", "--robots", robots, "--iterations", iterations, folder=folder).splitlines()))
-    return [{key: float(value) for key, value in rows[i].items()} for i in (0, -1)]
