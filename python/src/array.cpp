@@ -158,7 +158,8 @@ The array keeps its memory, also when its batch is gone. While the batch lives, 
 CPU the array can be indexed like one of NumPy, and assigned to if it is writable.
 
 Parts of the state are read-only. NumPy refuses to write to them. PyTorch and CuPy do not know read-only memory: what
-they write has no effect on the robots and is gone after the next step.
+they write has no effect on the robots and is gone after the next step. JAX takes it that arrays never change: give it
+the array again after each step.
 
 On CUDA, who takes an array by DLPack names a stream, and the array waits for the work of the batch unless that is in
 the same stream. Views taken before are ordered by streams alone: use them in the stream of Batch.step().)";
@@ -201,6 +202,10 @@ void bind_array(nb::module_& module) {
           "NumPy's name of the elements' type: float32 or bool.")
       .def_prop_ro("device", &device_of, "Where the memory is: 'cpu' or 'cuda:0'.")
       .def("__len__", [](const Array& self) { return self.shape[0]; })
+      .def("__bool__",
+           [](const Array&) -> bool {
+             throw nb::value_error("an array is neither true nor false; use numpy.any(array) or numpy.all(array)");
+           })
       .def("__repr__", &represent)
       .def("__getitem__", [](nb::handle_t<Array> self, nb::handle key) { return nb::object(numpy_view(self)[key]); })
       .def("__setitem__",

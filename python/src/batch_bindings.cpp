@@ -255,17 +255,17 @@ void bind_batch(nb::module_& module) {
   bind_actuation(module);
   nb::class_<Batch> batch(module, "Batch", batch_description);
   batch
-      .def("__init__", &init, nb::arg("robots"), nb::arg("environment") = nb::none(), nb::arg("solver") = "force",
-           nb::arg("dt") = 1e-3, nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0,
-           init_description)
+      .def("__init__", &init, nb::arg("robots").none(), nb::arg("environment") = nb::none(),
+           nb::arg("solver") = "force", nb::arg("dt") = 1e-3, nb::arg("damping") = 0.1, nb::arg("device") = "auto",
+           nb::arg("threads") = 0, init_description)
       .def("step", &Batch::step, nb::arg("n") = 1, nb::arg("stream") = nb::none(), step_description)
       .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(), reset_description)
       .def(
-          "add", [](Batch& self, nb::handle robots) { return self.add(robots_of(robots)); }, nb::arg("robots"),
+          "add", [](Batch& self, nb::handle robots) { return self.add(robots_of(robots)); }, nb::arg("robots").none(),
           "Adds a Robot or a sequence of them, at rest at the present time. Returns the index of the first.")
-      .def("keep", &Batch::keep, nb::arg("indices"),
+      .def("keep", &Batch::keep, nb::arg("indices").none(),
            "Keeps the robots of these indices, in this order, with their states, and removes the others.")
-      .def("set_state", &set_state, nb::arg("robot"), nb::arg("positions"), nb::arg("velocities") = nb::none(),
+      .def("set_state", &set_state, nb::arg("robot"), nb::arg("positions").none(), nb::arg("velocities") = nb::none(),
            "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
            "The robot has not exploded afterwards. Raises InputError for another shape.")
       .def("configure", &configure, nb::kw_only(), nb::arg("environment") = nb::none(), nb::arg("solver") = nb::none(),

@@ -262,7 +262,7 @@ void bind_evaluate(nb::module_& module) {
       .def("__reduce_ex__", [](const Results&, nb::handle) -> nb::object {
         throw nb::type_error("the results of evaluate() cannot be pickled or copied: collect them in a list");
       });
-  module.def("evaluate", &evaluate, nb::arg("source"), nb::arg("seconds"), nb::kw_only(),
+  module.def("evaluate", &evaluate, nb::arg("source").none(), nb::arg("seconds"), nb::kw_only(),
              nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
              nb::arg("sample_every") = nb::none(), nb::arg("hashes") = false, nb::arg("states") = false,

@@ -195,6 +195,16 @@ def test_array_protocol(on_cpu):
     assert np.mean(positions) == np.mean(positions.numpy())
 
 
+def test_arrays_take_part_in_expressions_of_numpy(on_cpu):
+    centers = on_cpu.centers.numpy()
+    assert np.array_equal(centers - on_cpu.centers, np.zeros((3, 3)))
+    assert np.array_equal(on_cpu.centers - centers, np.zeros((3, 3)))
+    assert not np.any(on_cpu.exploded)
+    assert [row.tolist() for row in on_cpu.centers] == centers.tolist()
+    with pytest.raises(ValueError, match="numpy.any"):
+        bool(on_cpu.exploded)
+
+
 def test_dlpack_copies_only_on_request(on_cpu):
     class Copied:
         def __init__(self, array, **options):

@@ -188,7 +188,7 @@ def test_ctrl_c_in_an_iterator_comes_at_once():
 
 
 def test_sources_of_other_things_are_refused(robots):
-    for source in ["eel", 3, None, object()]:
+    for source in ["eel", [1], [robots], 3, None, object()]:
         with pytest.raises(TypeError):
             list(evaluate(source))
     for source in [iter([robots[0], 1]), lambda index: robots[0] if index == 0 else 1]:
@@ -301,6 +301,24 @@ def test_everything_public_has_a_docstring():
         for name in vars(kind):
             if not name.startswith("_"):
                 assert inspect.getdoc(getattr(kind, name)), f"{kind.__name__}.{name}"
+
+
+INTERRUPTED = """
+import os, signal, threading
+import mercurysim
+results = mercurysim.evaluate(mercurysim.random_voxel(4, seed=1), 1e6, device="cpu")
+threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    next(results)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+results.close()
+"""
+
+
+def test_ctrl_c_ends_the_wait_for_a_result():
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
 
 
 SHUTDOWN = """
