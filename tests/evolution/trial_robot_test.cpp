@@ -76,11 +76,13 @@ TEST(TrialRobot, DamageTakesAboutItsShareOfTheVoxels) {
 }
 
 TEST(TrialRobot, PaintedRobotsAreDamagedAndKeepTheirMaterials) {
-  const Robot painted = random_cppn_robot({.smallest = {8, 6, 6}, .largest = {8, 6, 6}}, 1);
+  Robot painted = random_cppn_robot({.smallest = {8, 6, 6}, .largest = {8, 6, 6}}, 1);
+  painted.actuators = actuators_of(painted);
   const Robot damaged = trial_robot(painted, {.damage = 0.1}, 1, 0);
   EXPECT_LT(damaged.springs.size(), painted.springs.size());
   EXPECT_GT(damaged.springs.size(), painted.springs.size() / 3);
   EXPECT_EQ(damaged.materials, painted.materials);
+  EXPECT_EQ(damaged.actuators, painted.actuators);
 }
 
 TEST(TrialRobot, RobotsWithoutVoxelsCannotBeDamaged) {

@@ -239,6 +239,14 @@ TEST(GenomeSpaces, FoundersKeepTheirOwnMaterials) {
   EXPECT_EQ(other->decode(other->random(1, 0)->encode())->grow("a").materials, founder.materials);
 }
 
+TEST(GenomeSpaces, GivenBodiesKeepTheirActuators) {
+  Robot founder = given_robot();
+  founder.actuators = actuators_of(founder);
+  founder.actuators.front().name = "mine";
+  const auto space = make_genome_space({.genes = Genes::muscles, .founders = {founder}});
+  EXPECT_EQ(space->random(1, 5)->mutate(2, 3)->grow("a").actuators, founder.actuators);
+}
+
 TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
   const Robot voxel = random_voxel_robot({}, 1), unknown = given_robot();
   const auto refused = [](GenomeSpaceRequest request) { return refusal([&] { make_genome_space(request); }); };
