@@ -105,15 +105,27 @@ class Loop {
   std::vector<double> queued_, done_;
 };
 
+// 32 materials each: what a table needs for the materials that the springs of any one robot have.
+std::uint32_t table_chunks(const std::vector<Robot>& robots) {
+  std::size_t most = 0;
+  for (const Robot& robot : robots) {
+    std::vector<bool> used(max_materials);
+    for (const Spring& spring : robot.springs) used[spring.material] = true;
+    used[air] = true;
+    most = std::max(most, static_cast<std::size_t>(std::ranges::count(used, true)));
+  }
+  return static_cast<std::uint32_t>((most + cuda::lanes - 1) / cuda::lanes);
+}
+
 void print_launch(const std::vector<Robot>& robots, bool same_materials) {
   const cuda::BatchView batch{.robot_count = static_cast<std::uint32_t>(robots.size()),
                               .tile_stride = cuda::tiles_for(robots[0].masses.size()),
                               .record_words = 1};
-  const cuda::LaunchConfiguration launch =
-      cuda::choose_launch_configuration(Solver::force, Ocean{}, batch, same_materials, robots.size());
-  std::printf("%-22s %u robots per block, %u warps per robot, %u copies of the material table, %zu bytes\n",
+  const cuda::LaunchConfiguration launch = cuda::choose_launch_configuration(
+      Solver::force, Ocean{}, batch, same_materials, robots.size(), same_materials ? 8 : table_chunks(robots));
+  std::printf("%-22s %u robots per block, %u warps per robot, %u copies of %u materials, %zu bytes\n",
               same_materials ? "  one material table" : "  a table per robot", launch.robots_per_block,
-              launch.warps_per_robot, 1u << launch.table_copy_bits, launch.shared_bytes);
+              launch.warps_per_robot, 1u << launch.table_copy_bits, 32 * launch.table_chunks, launch.shared_bytes);
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ bool CudaBackend::set_actuation(const ActuationSources& sources) {
     for (const std::size_t i : robots_of[c])
       for (std::size_t id = 0; id < max_materials; ++id)
         if (const std::uint8_t actuator = sources.actuator_of[i * max_materials + id];
-            actuator != ActuationSources::no_actuator)
+            actuator != ActuationSources::no_actuator && robots.uses(places_[i].number, static_cast<MaterialId>(id)))
           driven.push_back(robots.driven_material(places_[i].number, static_cast<MaterialId>(id),
                                                   static_cast<std::uint32_t>(i * sources.columns + actuator)));
   }

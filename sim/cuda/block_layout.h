@@ -81,7 +81,7 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
                                              std::uint32_t fields) {
   BlockLayout layout{};
   const std::uint32_t tables = launch.shared_table ? 1 : launch.robots_per_block;
-  layout.tables = (tables * max_materials * parameter_bytes) << launch.table_copy_bits;
+  layout.tables = (tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits;
   layout.failures = layout.tables + launch.robots_per_block * 16;
   layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.contacts = layout.lengths;

@@ -26,7 +26,7 @@ class MaterialTable {
 
   // Writes the parameters of the launch's first step.
   __device__ void fill(const StepArguments& arguments) {
-    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+    for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const Material material = materials_[chunk * lanes + lane_];
       const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
       float value = static_cast<float>(stiffness);
@@ -40,7 +40,7 @@ class MaterialTable {
 
   // Writes the length factors of this many steps after the launch's first.
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
-    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+    for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const float amplitude = materials_[chunk * lanes + lane_].amplitude;
       if (step > 0 && !__any_sync(0xffffffffu, amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
@@ -52,7 +52,7 @@ class MaterialTable {
   // Replaces the coefficients, which are not needed after the launch's last step, by the rates of the length factors at
   // this many steps after the launch's first [1/s].
   __device__ void write_rates(const StepArguments& arguments, std::uint32_t step) {
-    for (std::uint32_t chunk = warp_; chunk < chunks; chunk += warps_) {
+    for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       const std::uint32_t id = chunk * lanes + lane_;
       spread(chunk, coefficient, muscle_rate(materials_[id], phase_at(phases_[id], now)));
@@ -60,7 +60,6 @@ class MaterialTable {
   }
 
  private:
-  static constexpr std::uint32_t chunks = max_materials / lanes;
   using Parameter = float Parameters::*;
   static constexpr Parameter coefficient = [] {
     if constexpr (solver == Solver::force)

@@ -193,8 +193,8 @@ void SizeClass::configure(const Configuration& configuration) {
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
-  launch_ =
-      choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials, batch_size);
+  launch_ = choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials,
+                                        batch_size, table_chunks_);
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(partner_fields_, launch_.on_chip ? fields : 0);
   address_partners(0, old_fields, partner_fields_);

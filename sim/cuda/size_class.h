@@ -76,9 +76,15 @@ class SizeClass {
   void publish_all_materials(const Configuration& configuration);
   // Queues a kernel in stream() that computes the phases, if materials or the clock's base or dt changed.
   void update_phases(const Clock& clock);
-  // From here on the steps read copies of the materials, some of which actuators drive (actuation.h).
+  // From here on the steps read copies of the materials, some of which actuators drive (actuation.h), and robots have
+  // tables of their own. So that these are small, the springs name only materials that springs of the robot have:
+  //
+  //   materials of a robot    0  1  2  3  4  5  6 ...  used: 2, 3, 6
+  //   its driven materials    0        1  2        3   air stays, since padding names it
+  //
   void begin_actuation();
   void end_actuation();
+  bool uses(std::uint32_t place, MaterialId id) const { return measures_[place].used[id]; }
   DrivenMaterial driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const;
   void set_perturbations(std::span<const DevicePerturbation> perturbations);
 
@@ -108,6 +114,10 @@ class SizeClass {
   // per tile, or slots (0).
   void address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
   void reserve_workspace(std::size_t bytes_per_robot);
+  // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
+  void rename_materials(std::span<const MaterialId> ids);
+  // Those of a place that springs have, behind air; max_materials elements.
+  std::vector<Material> driven_table(std::uint32_t place) const;
   template <class Visit>
   void for_each_array(const Visit& visit);
 
@@ -121,6 +131,7 @@ class SizeClass {
   std::vector<Material> materials_;        // [place][max_materials]
   LaunchConfiguration launch_;
   std::uint32_t partner_fields_ = 0;  // by which the partners of all spring records are addressed; 0 = slots
+  std::uint32_t table_chunks_ = max_materials / lanes;  // LaunchConfiguration::table_chunks
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
   bool same_materials_ = false;  // all robots have the same table
   bool phases_stale_ = true;
@@ -135,6 +146,7 @@ class SizeClass {
   ChunkedArray<Material> device_materials_;
   ChunkedArray<MusclePhase> phases_;
   DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty
+  std::vector<MaterialId> driven_ids_;      // the same: the index among them, by id
   DeviceArray<DevicePerturbation> perturbations_;
   DeviceArray<char> workspace_;
   std::unique_ptr<Stream> stream_ = std::make_unique<Stream>(), urgent_ = std::make_unique<Stream>(true);

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "sim/cuda/size_class.h"
 
@@ -14,6 +15,16 @@ constexpr unsigned threads = 256;
 __global__ void compute_phases(const Material* materials, MusclePhase* phases, std::size_t count, Clock clock) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (i < count) phases[i] = muscle_phase(materials[i], clock);
+}
+
+// One block per robot.
+__global__ void rename(std::uint32_t* records, std::size_t records_per_robot, std::uint32_t record_words,
+                       const MaterialId* ids) {
+  const std::size_t robot = blockIdx.x;
+  for (std::size_t i = threadIdx.x; i < records_per_robot; i += blockDim.x) {
+    std::uint32_t& key = records[(robot * records_per_robot + i) * record_words];
+    key = (key & ~0xffu) | ids[robot * max_materials + (key & 0xff)];
+  }
 }
 
 }  // namespace
@@ -36,14 +47,15 @@ void SizeClass::publish_materials(std::uint32_t place, const Configuration& conf
   device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
   device_materials_.write(place, table(place), urgent_->get());
   if (driven_materials_.size() > 0)
-    driven_materials_.write(std::size_t{place} * max_materials, table(place), urgent_->get());
+    driven_materials_.write(std::size_t{place} * max_materials, driven_table(place), urgent_->get());
   find_same_materials(0);
 }
 
 void SizeClass::publish_all_materials(const Configuration& configuration) {
   configure(configuration);
   device_materials_.write(0, materials_, urgent_->get());
-  if (driven_materials_.size() > 0) driven_materials_.write(0, materials_, urgent_->get());
+  for (std::uint32_t place = 0; driven_materials_.size() > 0 && place < size(); ++place)
+    driven_materials_.write(std::size_t{place} * max_materials, driven_table(place), urgent_->get());
   find_same_materials(0);
 }
 
@@ -59,24 +71,57 @@ void SizeClass::update_phases(const Clock& clock) {
 }
 
 void SizeClass::begin_actuation() {
-  const std::size_t count = std::size_t{size()} * max_materials;
-  driven_materials_ = DeviceArray<Material>(count);
-  check(cudaMemcpyAsync(driven_materials_.data(), device_materials_.data(), count * sizeof(Material),
-                        cudaMemcpyDeviceToDevice, urgent_->get()),
-        "copying materials");
-  urgent_->synchronize();
+  driven_ids_.assign(std::size_t{size()} * max_materials, air);
+  std::vector<Material> tables;
+  std::uint32_t most = 1;
+  for (std::uint32_t place = 0; place < size(); ++place) {
+    std::uint32_t count = 1;
+    for (std::size_t id = 1; id < max_materials; ++id)
+      if (measures_[place].used[id])
+        driven_ids_[std::size_t{place} * max_materials + id] = static_cast<MaterialId>(count++);
+    most = std::max(most, count);
+    std::ranges::copy(driven_table(place), std::back_inserter(tables));
+  }
+  driven_materials_ = DeviceArray<Material>(tables.size());
+  driven_materials_.write(0, tables, urgent_->get());
+  rename_materials(driven_ids_);
+  table_chunks_ = (most + lanes - 1) / lanes;
   phases_stale_ = true;
 }
 
 void SizeClass::end_actuation() {
   if (driven_materials_.size() == 0) return;
+  std::vector<MaterialId> ids(driven_ids_.size(), air);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (const MaterialId driven = driven_ids_[i]; driven != air)
+      ids[i / max_materials * max_materials + driven] = static_cast<MaterialId>(i % max_materials);
+  rename_materials(ids);
   driven_materials_ = DeviceArray<Material>();
+  driven_ids_.clear();
+  table_chunks_ = max_materials / lanes;
   phases_stale_ = true;
 }
 
+void SizeClass::rename_materials(std::span<const MaterialId> ids) {
+  DeviceArray<MaterialId> on_device(ids.size());
+  on_device.write(0, ids, urgent_->get());
+  rename<<<size(), threads, 0, urgent_->get()>>>(springs_.data(), sizes_.springs() / sizes_.record_words,
+                                                 sizes_.record_words, on_device.data());
+  check(cudaGetLastError(), "renaming the materials of springs");
+  urgent_->synchronize();
+}
+
+std::vector<Material> SizeClass::driven_table(std::uint32_t place) const {
+  std::vector<Material> driven{materials_[std::size_t{place} * max_materials]};
+  for (std::size_t id = 1; id < max_materials; ++id)
+    if (measures_[place].used[id]) driven.push_back(materials_[std::size_t{place} * max_materials + id]);
+  driven.resize(max_materials);
+  return driven;
+}
+
 DrivenMaterial SizeClass::driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const {
-  const std::size_t at = std::size_t{place} * max_materials + id;
-  return {device_materials_.data() + at, driven_materials_.data() + at, phases_.data() + at, setting};
+  const std::size_t first = std::size_t{place} * max_materials, driven = first + driven_ids_[first + id];
+  return {device_materials_.data() + first + id, driven_materials_.data() + driven, phases_.data() + driven, setting};
 }
 
 }  // namespace mercury::cuda

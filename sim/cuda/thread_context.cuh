@@ -58,7 +58,7 @@ struct BlockContext {
                    ? shared_memory + layout.lengths + number * contact_bytes(launch.contact_buckets, batch.tile_stride)
                    : workspace + (Memory::on_chip ? 0 : working_bytes);
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
-                     (launch.shared_table ? 0 : number * table_copies * max_materials);
+                     (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
     thread.material_table = shared_address(material_table + thread.lane % table_copies);
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
