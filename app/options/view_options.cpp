@@ -37,6 +37,7 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_text(command, "--caption", words_.caption, "Text in the upper left corner; further lines are smaller",
                "TEXT"));
   add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colours of the surroundings (default dark)"));
+  add(command.add_flag("--plain", words_.plain, "A plain backdrop rather than water or land"));
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", words_.cut, "Cut away what lies beyond a plane, as in y:0.2", "AXIS[:M]", text_from));
   add(add_choice(command, "--layout", words_.layout, {"grid", "race"}, "Robots in a grid, or in lanes side by side"));

@@ -112,6 +112,7 @@ ViewSettings view_settings(const ViewWords& words) {
       .color = &color_quantity(words.color), .scale = words.scale, .smooth = words.smooth, .grid = words.grid};
   settings.caption = words.caption;
   settings.theme = theme_named(words.theme);
+  settings.plain = words.plain;
   settings.layout = layout_named(words.layout);
   if (words.cut) settings.cut = cut_from(*words.cut);
   if (!words.camera.empty()) settings.camera = camera_named(words.camera);

@@ -16,6 +16,7 @@ struct ViewWords {
   std::optional<std::string> show;               // exactly what is shown: "skin,labels"; absent = the usual
   std::string caption;                           // text in the upper left corner; further lines are smaller
   std::string theme = "dark";                    // "dark" or "light"
+  bool plain = false;                            // a plain backdrop rather than water or land
   bool smooth = false;                           // round skins rather than edged ones
   std::optional<std::string> cut;                // cuts away what lies beyond a plane: "y:0.2"
   std::string layout = "grid";                   // "grid" or "race"

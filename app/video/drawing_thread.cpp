@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -26,7 +27,7 @@ struct DrawingThread::Parts {
   std::deque<Request> requests;
   bool ending = false;
   std::thread thread;
-  pid_t process = -1;  // in which the thread was started
+  std::atomic<pid_t> process = -1;  // in which the thread was started
 
   bool forked() const { return process != -1 && process != getpid(); }
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Sequence, TypedDict
 
 from . import _mercury
-from ._mercury import Batch, DeviceError, InputError, Robot
+from ._mercury import Batch, DeviceError, InputError, Robot, load
 
 if TYPE_CHECKING:
     import numpy
@@ -36,6 +36,7 @@ class Look(TypedDict, total=False):
     grid: tuple[int, int]  # columns and rows
     theme: str  # "dark" or "light"
     caption: str  # text in the upper left corner; further lines are smaller
+    plain: bool  # a plain backdrop rather than water or land
     cut: str  # cuts away what lies beyond a plane: "y:0.2"
     smooth: bool  # round skins rather than edged ones
     quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
@@ -153,7 +154,10 @@ def render(
     crf: int | None = None,
     **look: Unpack[Look],
 ) -> Video:
-    """Simulates robots, or plays a recording (the path of a .h5 file), and makes a video of it.
+    """Makes a video of robots, which it simulates, or of a recording, which it plays.
+
+    `what` are robots, the path of a robot file or of a folder of them, or the path of a recording (.h5). While a recording
+    is played, other threads must not use h5py.
 
     `output` is a file (.mp4, .webm, .gif) or a folder for PNG pictures. `seconds` are simulated (default 10; of a
     recording, all), `speed` of them per second of video, `fps` frames per second of video (default 30; 25 for .gif).
@@ -166,13 +170,18 @@ def render(
     path, ffmpeg = _output(output)
     rate = _rate(path, fps)
     filming = dict(size=size, fps=rate, speed=speed, crf=-1 if crf is None else crf, ffmpeg=ffmpeg, look=_words(look))
-    if isinstance(what, (str, os.PathLike)):
+    if isinstance(what, Batch):
+        raise TypeError("what: a batch is filmed by Film; give robots, or the path of a recording")
+    if isinstance(what, (str, os.PathLike)) and os.fspath(what).endswith(".h5"):
+        if environment is not None:
+            raise InputError("environment: a recording has its own")
         frames = _mercury._render_recording(os.fspath(what), path, seconds, **filming)
     else:
+        robots = load(what) if isinstance(what, (str, os.PathLike)) else what
         simulating = dict(
             environment=environment, solver=solver, dt=dt, damping=damping, device=device, threads=threads
         )
-        frames = _mercury._render_robots(what, path, 10.0 if seconds is None else seconds, **simulating, **filming)
+        frames = _mercury._render_robots(robots, path, 10.0 if seconds is None else seconds, **simulating, **filming)
     return Video(path, frames, _encoded(path, size), rate)
 
 

@@ -22,18 +22,23 @@ namespace mercury::python {
 namespace {
 
 // The thread that draws for this process, from the first picture to the interpreter's exit.
-std::unique_ptr<DrawingThread>& drawing_thread() {
+// Used with the GIL; who draws keeps a copy.
+std::shared_ptr<DrawingThread>& drawing_thread() {
   // Never destroyed: end_drawing() does what is necessary while the interpreter still works.
-  static auto* thread = new std::unique_ptr<DrawingThread>(std::make_unique<DrawingThread>());
+  static auto* thread = new std::shared_ptr<DrawingThread>(std::make_shared<DrawingThread>());
   return *thread;
 }
 
-DrawingThread& drawing() {
+std::shared_ptr<DrawingThread> drawing() {
   if (!drawing_thread()) throw DeviceError("the interpreter exits; nothing is drawn any more");
-  return *drawing_thread();
+  return drawing_thread();
 }
 
-void end_drawing() { drawing_thread().reset(); }
+void end_drawing() {
+  std::shared_ptr<DrawingThread> thread = std::move(drawing_thread());
+  const ReleasedGil released;
+  thread.reset();
+}
 
 // Errors of the encoder and of OpenGL are those of the machine.
 template <class Work>
@@ -92,6 +97,7 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
        }},
       {"theme", [&] { words.theme = text_from(name, value); }},
       {"caption", [&] { words.caption = text_from(name, value); }},
+      {"plain", [&] { words.plain = bool_from(name, value); }},
       {"cut", [&] { words.cut = text_from(name, value); }},
       {"smooth", [&] { words.smooth = bool_from(name, value); }},
       {"quality", [&] { look.quality = text_from(name, value); }}};
@@ -141,18 +147,18 @@ Simulation resting(const SharedRobots& robots, const Environment& environment) {
 }
 
 render::Image picture(nb::handle what, nb::handle environment, const PictureOptions& options) {
-  DrawingThread& thread = drawing();
+  const std::shared_ptr<DrawingThread> thread = drawing();
   return with_errors([&] {
     if (nb::isinstance<Batch>(what)) {
       if (!environment.is_none()) throw ParameterError("environment", "a batch has one already");
       return nb::cast<const Batch&>(what).use(
-          [&](const Simulation& simulation) { return picture_of(thread, simulation, options); });
+          [&](const Simulation& simulation) { return picture_of(*thread, simulation, options); });
     }
     const SharedRobots robots = robots_of(what);
     if (robots.empty()) throw InputError("there is no robot to show");
     const Environment surroundings = environment_of(environment);
     const ReleasedGil released;
-    return picture_of(thread, resting(robots, surroundings), options);
+    return picture_of(*thread, resting(robots, surroundings), options);
   });
 }
 
@@ -163,16 +169,28 @@ nb::object array_of(render::Image image) {
       bytes->data(), {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), 3}, owner));
 }
 
-// A small picture for notebooks; None where nothing can be drawn, so that they show the text instead.
-nb::object thumbnail(nb::handle what) {
-  PictureOptions options{.size = {480, 270}};
-  options.view.shown.clock = false;
+// A PNG for notebooks; None where there is no OpenGL, so that they show the text instead.
+nb::object png_of(nb::handle what, const PictureOptions& options) {
   try {
     const std::vector<std::uint8_t> png = render::png_bytes(picture(what, nb::none(), options));
     return nb::bytes(png.data(), png.size());
-  } catch (const std::exception&) {
+  } catch (const DeviceError&) {
     return nb::none();
   }
+}
+
+nb::object png_of_robot(nb::handle_t<SharedRobot> robot) {
+  PictureOptions options{.size = {400, 300}, .view = {.theme = render::Theme::light, .plain = true}};
+  options.view.shown.clock = false;
+  options.view.camera.zoom = 1.15f;  // it needs no room to move
+  return png_of(robot, options);
+}
+
+nb::object png_of_batch(nb::handle_t<Batch> batch) {
+  constexpr std::size_t most_robots = 256;  // more take seconds without a GPU
+  const std::size_t robots = nb::cast<const Batch&>(batch).robots().size();
+  if (robots == 0 || robots > most_robots) return nb::none();
+  return png_of(batch, {.size = robots <= 6 ? PictureSize{640, 360} : PictureSize{960, 540}});
 }
 
 // Asks Python for Ctrl-C while the interpreter's lock is released.
@@ -194,13 +212,13 @@ class InterruptWatch {
 // Returns the number of frames.
 std::int64_t render_simulation(Simulation simulation, const std::string& output, double seconds,
                                const FilmOptions& options) {
-  DrawingThread& thread = drawing();
+  const std::shared_ptr<DrawingThread> thread = drawing();
   InterruptWatch watch;
   VideoResult result;
   {
     const ReleasedGil released;
     result = with_errors([&] {
-      return film_of(thread, std::move(simulation), output, options, seconds, [&] { return watch.go_on(); });
+      return film_of(*thread, std::move(simulation), output, options, seconds, [&] { return watch.go_on(); });
     });
   }
   watch.rethrow();
@@ -208,16 +226,11 @@ std::int64_t render_simulation(Simulation simulation, const std::string& output,
 }
 
 std::int64_t render_robots(nb::handle robots, const std::string& output, double seconds, nb::handle environment,
-                           const std::string& solver, double dt, double damping, const std::string& device, int threads,
+                           const std::string& solver, double dt, double damping, nb::handle device, int threads,
                            nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
                            const nb::dict& look) {
   const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
-  Configuration configuration{.dt = dt,
-                              .damping = damping,
-                              .solver = solver_named(solver),
-                              .environment = environment_of(environment),
-                              .device = device_named(device)};
-  configuration.device.threads = threads;
+  const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   const SharedRobots shared = robots_of(robots);
   if (shared.empty()) throw InputError("there is no robot to film");
   std::optional<Simulation> simulation;
@@ -243,11 +256,11 @@ class BatchFilm {
  public:
   BatchFilm(const std::string& output, const Batch& batch, nb::handle size, double fps, int crf,
             const std::string& ffmpeg, const nb::dict& look)
-      : batch_(batch) {
+      : thread_(drawing()), batch_(batch) {
     const FilmOptions options = film_options(size, fps, 1, crf, ffmpeg, look);
-    DrawingThread& thread = drawing();
-    with_errors(
-        [&] { batch.use([&](const Simulation& simulation) { film_.emplace(thread, simulation, output, options); }); });
+    with_errors([&] {
+      batch.use([&](const Simulation& simulation) { film_.emplace(*thread_, simulation, output, options); });
+    });
   }
   ~BatchFilm() {
     const ReleasedGil released;
@@ -268,16 +281,15 @@ class BatchFilm {
   std::pair<int, int> size() const { return {film_->size().width, film_->size().height}; }
 
  private:
+  const std::shared_ptr<DrawingThread> thread_;
   const Batch& batch_;  // kept by Python
   std::optional<Film> film_;
 };
 
-template <class Shown>
-void add_thumbnail() {
-  const nb::handle type = nb::type<Shown>();
+template <class Draw>
+void add_png(nb::handle type, Draw draw, const char* doc) {
   nb::setattr(type, "_repr_png_",
-              nb::cpp_function([](nb::handle_t<Shown> self) { return thumbnail(self); }, nb::name("_repr_png_"),
-                               nb::scope(type), nb::is_method(), "A small picture for notebooks, as PNG."));
+              nb::cpp_function(draw, nb::name("_repr_png_"), nb::scope(type), nb::is_method(), doc));
 }
 
 }  // namespace
@@ -290,9 +302,9 @@ void bind_pictures(nb::module_& module) {
       },
       nb::arg("what"), nb::arg("size"), nb::arg("environment").none(), nb::arg("look"));
   module.def("_render_robots", &render_robots, nb::arg("robots"), nb::arg("output"), nb::arg("seconds"),
-             nb::arg("environment").none(), nb::arg("solver"), nb::arg("dt"), nb::arg("damping"), nb::arg("device"),
-             nb::arg("threads"), nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"),
-             nb::arg("look"));
+             nb::arg("environment").none(), nb::arg("solver"), nb::arg("dt"), nb::arg("damping"),
+             nb::arg("device").none(), nb::arg("threads"), nb::arg("size"), nb::arg("fps"), nb::arg("speed"),
+             nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
   module.def("_render_recording", &render_recording, nb::arg("path"), nb::arg("output"), nb::arg("seconds").none(),
              nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
   module.def("_end_drawing", &end_drawing);
@@ -306,8 +318,9 @@ void bind_pictures(nb::module_& module) {
       .def_prop_ro("frames", &BatchFilm::frames)
       .def_prop_ro("fps", &BatchFilm::frames_per_second)
       .def_prop_ro("size", &BatchFilm::size);
-  add_thumbnail<SharedRobot>();
-  add_thumbnail<Batch>();
+  add_png(nb::type<SharedRobot>(), &png_of_robot, "A picture for notebooks, as PNG; None without OpenGL.");
+  add_png(nb::type<Batch>(), &png_of_batch,
+          "A picture for notebooks, as PNG; None without OpenGL, and for more than 256 robots.");
 }
 
 }  // namespace mercury::python

@@ -121,6 +121,7 @@ def test_words_change_the_picture(batch):
         {"grid": (1, 2)},
         {"cut": "y:0"},
         {"smooth": True},
+        {"plain": True},
         {"quality": "medium"},
     ]
     pictures = {mercurysim.picture(batch, SMALL, **look).tobytes() for look in looks}
@@ -179,7 +180,10 @@ def test_notebooks_show_robots_and_batches(robots, batch, tmp_path):
     for what in (robots[0], batch):
         png = what._repr_png_()
         assert png[:8] == b"\x89PNG\r\n\x1a\n"
-        assert int.from_bytes(png[16:20], "big") >= 2 * int.from_bytes(png[20:24], "big") / 3
+        width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
+        assert 300 <= width <= 1000 and 200 <= height <= 600
+    assert mercurysim.Batch([], device="cpu")._repr_png_() is None
+    assert mercurysim.Batch(300 * [robots[0]], device="cpu")._repr_png_() is None, "drawing it would take long"
 
 
 def test_without_opengl_notebooks_show_text_and_picture_says_why(tmp_path):
@@ -291,8 +295,15 @@ def test_render_plays_a_recording(robots, tmp_path, encoder, mercury):
     # The recording has a frame every 10 steps, and the video's frames are among them.
     for frame in sorted(os.listdir(tmp_path / "played")):
         assert (tmp_path / "played" / frame).read_bytes() == (tmp_path / "simulated" / frame).read_bytes()
-    with pytest.raises(mercurysim.InputError):
-        mercurysim.render(tmp_path / "missing.h5", tmp_path / "a.mp4")
+    for arguments in ({"what": tmp_path / "missing.h5"}, {"what": recording, "environment": "land"}):
+        with pytest.raises(mercurysim.InputError):
+            mercurysim.render(output=tmp_path / "a.mp4", **arguments)
+    assert mercurysim.render(str(tmp_path / "0.json"), tmp_path / "file", 0.1, size=SMALL, device="cpu").frames == 3
+
+
+def test_render_does_not_take_a_batch(batch, tmp_path):
+    with pytest.raises(TypeError, match="a batch is filmed by Film"):
+        mercurysim.render(batch, tmp_path / "a")
 
 
 @pytest.mark.parametrize(

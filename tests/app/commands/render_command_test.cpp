@@ -129,6 +129,7 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
                                                        {"--show", "skin,drag,lift,velocity"},
                                                        {"--show", "skin,path,labels,legend,clock,scale"},
                                                        {"--theme", "light"},
+                                                       {"--plain"},
                                                        {"--cut", "y:0"},
                                                        {"--layout", "race"},
                                                        {"--camera", "top"},

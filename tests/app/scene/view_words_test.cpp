@@ -28,6 +28,7 @@ TEST(ViewWords, WordsBecomeSettings) {
                                                .scale = std::pair(-1.0f, 2.0f),
                                                .caption = "eels",
                                                .theme = "light",
+                                               .plain = true,
                                                .cut = "-y:0.25",
                                                .grid = Grid{3, 2},
                                                .camera = "turntable",
@@ -37,6 +38,7 @@ TEST(ViewWords, WordsBecomeSettings) {
   EXPECT_EQ(settings.scale, std::pair(-1.0f, 2.0f));
   EXPECT_EQ(settings.caption, "eels");
   EXPECT_EQ(settings.theme, render::Theme::light);
+  EXPECT_TRUE(settings.plain);
   // What has y < 0.25 is cut away: -y > -0.25.
   EXPECT_EQ(settings.cut->normal, Eigen::Vector3f(0, -1, 0));
   EXPECT_EQ(settings.cut->offset, -0.25f);
