@@ -13,4 +13,5 @@ NB_MODULE(_mercury, module) {
   bind_batch(module);
   bind_evaluate(module);
   bind_pictures(module);
+  bind_recording(module);
 }

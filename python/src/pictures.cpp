@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures and films. mercurysim/pictures.py wraps what is here.
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -15,6 +14,7 @@
 #include "mercury/error.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
+#include "python/src/owned_array.h"
 #include "python/src/values.h"
 #include "render/png.h"
 
@@ -163,10 +163,8 @@ render::Image picture(nb::handle what, nb::handle environment, const PictureOpti
 }
 
 nb::object array_of(render::Image image) {
-  auto* bytes = new std::vector<std::uint8_t>(std::move(image.bytes));
-  const nb::capsule owner(bytes, [](void* memory) noexcept { delete static_cast<std::vector<std::uint8_t>*>(memory); });
-  return nb::cast(nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<3>>(
-      bytes->data(), {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), 3}, owner));
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  return owned_array(std::move(image.bytes), {height, width, 3});
 }
 
 // A PNG for notebooks; None where there is no OpenGL, so that they show the text instead.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands for pictures in a build without OpenGL (MERCURY_APP=OFF).
+// What stands for pictures and recordings in a build without the program (MERCURY_APP=OFF).
 #include "mercury/error.h"
 #include "python/src/bindings.h"
 
@@ -10,11 +10,17 @@ namespace {
   throw DeviceError("this build cannot draw: it was made with MERCURY_APP=OFF");
 }
 
+[[noreturn]] void refuse_recording(const nb::args&, const nb::kwargs&) {
+  throw DeviceError("this build cannot read recordings: it was made with MERCURY_APP=OFF");
+}
+
 }  // namespace
 
 void bind_pictures(nb::module_& module) {
   for (const char* name : {"_picture", "_render_robots", "_render_recording", "_Film"}) module.def(name, &refuse);
   module.def("_end_drawing", [] {});
 }
+
+void bind_recording(nb::module_& module) { module.def("Recording", &refuse_recording); }
 
 }  // namespace mercury::python

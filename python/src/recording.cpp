@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recording: what `mercury run --record` wrote, frame by frame.
+#include "app/recording/trajectory_reader.h"
+
+#include <nanobind/stl/string.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/src/bindings.h"
+#include "python/src/owned_array.h"
+#include "python/src/values.h"
+
+namespace mercury::python {
+namespace {
+
+constexpr const char* description =
+    "What `mercury run --record FILE.h5` wrote: robots, and the positions and velocities of their masses.\n\n"
+    "    recording = mercurysim.Recording(\"run.h5\")\n"
+    "    start, end = recording.positions(0), recording.positions(-1)\n"
+    "    first = end[recording.offsets[0] : recording.offsets[1]]  # of the first robot\n\n"
+    "len() is the number of frames. Raises InputError if the file is not a recording or is damaged.";
+
+// An array of its own, since the reader uses its memory again.
+nb::object masses_of(std::span<const Vec3> masses) {
+  std::vector<float> values;
+  values.reserve(3 * masses.size());
+  for (const Vec3 mass : masses) values.insert(values.end(), {mass.x, mass.y, mass.z});
+  return owned_array(std::move(values), {masses.size(), 3});
+}
+
+// Frames count from the end if negative, as in Python. Throws IndexError.
+std::size_t frame_of(const TrajectoryReader& recording, nb::handle frame) {
+  const std::int64_t given = whole_from("frame", frame), frames = static_cast<std::int64_t>(recording.frames());
+  const std::int64_t index = given < 0 ? given + frames : given;
+  if (index < 0 || index >= frames)
+    throw std::out_of_range("frame " + std::to_string(given) + " is out of range, the recording has " +
+                            std::to_string(frames));
+  return static_cast<std::size_t>(index);
+}
+
+nb::list robots(const TrajectoryReader& recording) {
+  nb::list robots;
+  for (const RecordedRobot& recorded : recording.robots())
+    robots.append(SharedRobot{std::make_shared<const Robot>(recorded.robot)});
+  return robots;
+}
+
+template <class T, class Of>
+nb::object per_frame(const TrajectoryReader& recording, Of of) {
+  std::vector<T> values;
+  for (std::size_t frame = 0; frame < recording.frames(); ++frame) values.push_back((recording.*of)(frame));
+  const std::size_t count = values.size();
+  return owned_array(std::move(values), {count});
+}
+
+}  // namespace
+
+void bind_recording(nb::module_& module) {
+  nb::class_<TrajectoryReader>(module, "Recording", description)
+      .def(
+          "__init__",
+          [](TrajectoryReader* self, nb::handle path) { new (self) TrajectoryReader(path_from("path", path)); },
+          nb::arg("path"))
+      .def("__len__", &TrajectoryReader::frames)
+      .def("__repr__",
+           [](const TrajectoryReader& self) {
+             return "<Recording of " + std::to_string(self.robots().size()) + " robots, " +
+                    std::to_string(self.frames()) + " frames>";
+           })
+      .def_prop_ro("robots", &robots, "The robots, at rest.")
+      .def_prop_ro(
+          "times", [](const TrajectoryReader& self) { return per_frame<double>(self, &TrajectoryReader::time); },
+          "The time of each frame, (frames,) [s].")
+      .def_prop_ro(
+          "steps", [](const TrajectoryReader& self) { return per_frame<std::int64_t>(self, &TrajectoryReader::step); },
+          "The time step of each frame, (frames,).")
+      .def_prop_ro(
+          "offsets",
+          [](const TrajectoryReader& self) {
+            const auto offsets = self.mass_offsets();
+            return owned_array(std::vector<std::int64_t>(offsets.begin(), offsets.end()), {offsets.size()});
+          },
+          "Robot i has the masses offsets[i] to offsets[i + 1] of a frame; robots + 1 elements.")
+      .def(
+          "positions",
+          [](TrajectoryReader& self, nb::handle frame) { return masses_of(self.positions(frame_of(self, frame))); },
+          nb::arg("frame"),
+          "Positions of all masses in a frame, (masses, 3) [m]; -1 = the last frame. Raises IndexError.")
+      .def(
+          "velocities",
+          [](TrajectoryReader& self, nb::handle frame) { return masses_of(self.velocities(frame_of(self, frame))); },
+          nb::arg("frame"),
+          "Velocities of all masses in a frame, (masses, 3) [m/s]; -1 = the last frame. Raises IndexError.")
+      .def_prop_ro(
+          "program", [](const TrajectoryReader& self) { return self.program(); }, "What wrote it: \"mercury 0.2.0\".")
+      .def_prop_ro(
+          "device_name", [](const TrajectoryReader& self) { return self.device_name(); }, "What stepped the robots.");
+}
+
+}  // namespace mercury::python
