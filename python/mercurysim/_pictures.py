@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     Environment = Any
 
+_cpp: Any = _mercury  # has functions for this file alone, which its stubs leave out
+
 
 class Look(TypedDict, total=False):
     """How a picture shows robots: the options of `mercury render`, all of them optional."""
@@ -65,7 +67,7 @@ def picture(
     Raises InputError for what cannot be used, and DeviceError where there is no OpenGL, or in a process that was forked
     from one that has drawn: start processes with the method "spawn".
     """
-    return _mercury._picture(what, size, environment, _words(look))
+    return _cpp._picture(what, size, environment, _words(look))
 
 
 def _ffmpeg() -> str:
@@ -175,13 +177,13 @@ def render(
     if isinstance(what, (str, os.PathLike)) and os.fspath(what).endswith(".h5"):
         if environment is not None:
             raise InputError("environment: a recording has its own")
-        frames = _mercury._render_recording(os.fspath(what), path, seconds, **filming)
+        frames = _cpp._render_recording(os.fspath(what), path, seconds, **filming)
     else:
         robots = load(what) if isinstance(what, (str, os.PathLike)) else what
         simulating = dict(
             environment=environment, solver=solver, dt=dt, damping=damping, device=device, threads=threads
         )
-        frames = _mercury._render_robots(robots, path, 10.0 if seconds is None else seconds, **simulating, **filming)
+        frames = _cpp._render_robots(robots, path, 10.0 if seconds is None else seconds, **simulating, **filming)
     return Video(path, frames, _encoded(path, size), rate)
 
 
@@ -217,7 +219,7 @@ class Film:
     ):
         self.path, ffmpeg = _output(output)
         self.video: Video | None = None  # once the film is closed
-        self._film = _mercury._Film(
+        self._film = _cpp._Film(
             self.path, batch, size, _rate(self.path, fps), -1 if crf is None else crf, ffmpeg, _words(look)
         )
         _films.add(self)
@@ -265,7 +267,7 @@ def _end() -> None:
     """Films that are not closed keep nothing, and the drawing thread ends while the interpreter still works."""
     for film in list(_films):
         film.discard()
-    _mercury._end_drawing()
+    _cpp._end_drawing()
 
 
 atexit.register(_end)
