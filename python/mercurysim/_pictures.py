@@ -16,7 +16,7 @@ from . import _mercury
 from ._mercury import Batch, DeviceError, InputError, Robot, load
 
 if TYPE_CHECKING:
-    import numpy
+    import numpy.typing
     from typing_extensions import Unpack
 
     Environment = Any
@@ -45,7 +45,7 @@ class Look(TypedDict, total=False):
 
 
 def _words(look: Look) -> dict[str, Any]:
-    words = dict(look)
+    words: dict[str, Any] = {**look}
     if isinstance(words.get("show"), (list, tuple)):
         words["show"] = ",".join(words["show"])
     return words
@@ -57,7 +57,7 @@ def picture(
     *,
     environment: Environment = None,
     **look: Unpack[Look],
-) -> numpy.ndarray:
+) -> numpy.typing.NDArray[numpy.uint8]:
     """A picture of a batch as it is now, or of robots at rest: an array (height, width, 3) of uint8.
 
     `size` is (width, height) in pixels. `environment` is what robots at rest are shown in; a batch has its own. `look`
@@ -67,7 +67,8 @@ def picture(
     Raises InputError for what cannot be used, and DeviceError where there is no OpenGL, or in a process that was forked
     from one that has drawn: start processes with the method "spawn".
     """
-    return _cpp._picture(what, size, environment, _words(look))
+    image: numpy.typing.NDArray[numpy.uint8] = _cpp._picture(what, size, environment, _words(look))
+    return image
 
 
 def _ffmpeg() -> str:
@@ -77,9 +78,9 @@ def _ffmpeg() -> str:
     if found := shutil.which("ffmpeg"):
         return found
     try:
-        from imageio_ffmpeg import get_ffmpeg_exe
+        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped, unused-ignore]
 
-        return get_ffmpeg_exe()
+        return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):
         raise DeviceError(
             "ffmpeg was not found: install it (apt install ffmpeg, or pip install imageio-ffmpeg), name the program in "
@@ -231,7 +232,7 @@ class Film:
     @property
     def frames(self) -> int:
         """Number of frames so far."""
-        return self._film.frames
+        return int(self._film.frames)
 
     def close(self) -> Video:
         """Completes the film, and returns the video. Raises DeviceError if the encoder fails or there is no frame."""

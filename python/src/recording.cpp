@@ -63,36 +63,37 @@ void bind_recording(nb::module_& module) {
       .def(
           "__init__",
           [](TrajectoryReader* self, nb::handle path) { new (self) TrajectoryReader(path_from("path", path)); },
-          nb::arg("path"))
+          nb::arg("path"), nb::sig("def __init__(self, path: str | os.PathLike[str]) -> None"))
       .def("__len__", &TrajectoryReader::frames)
       .def("__repr__",
            [](const TrajectoryReader& self) {
              return "<Recording of " + std::to_string(self.robots().size()) + " robots, " +
                     std::to_string(self.frames()) + " frames>";
            })
-      .def_prop_ro("robots", &robots, "The robots, at rest.")
+      .def_prop_ro("robots", &robots, nb::sig("def robots(self) -> list[Robot]"), "The robots, at rest.")
       .def_prop_ro(
           "times", [](const TrajectoryReader& self) { return per_frame<double>(self, &TrajectoryReader::time); },
-          "The time of each frame, (frames,) [s].")
+          nb::sig("def times(self) -> numpy.typing.NDArray[numpy.float64]"), "The time of each frame, (frames,) [s].")
       .def_prop_ro(
           "steps", [](const TrajectoryReader& self) { return per_frame<std::int64_t>(self, &TrajectoryReader::step); },
-          "The time step of each frame, (frames,).")
+          nb::sig("def steps(self) -> numpy.typing.NDArray[numpy.int64]"), "The time step of each frame, (frames,).")
       .def_prop_ro(
           "offsets",
           [](const TrajectoryReader& self) {
             const auto offsets = self.mass_offsets();
             return owned_array(std::vector<std::int64_t>(offsets.begin(), offsets.end()), {offsets.size()});
           },
+          nb::sig("def offsets(self) -> numpy.typing.NDArray[numpy.int64]"),
           "Robot i has the masses offsets[i] to offsets[i + 1] of a frame; robots + 1 elements.")
       .def(
           "positions",
           [](TrajectoryReader& self, nb::handle frame) { return masses_of(self.positions(frame_of(self, frame))); },
-          nb::arg("frame"),
+          nb::arg("frame"), nb::sig("def positions(self, frame: int) -> numpy.typing.NDArray[numpy.float32]"),
           "Positions of all masses in a frame, (masses, 3) [m]; -1 = the last frame. Raises IndexError.")
       .def(
           "velocities",
           [](TrajectoryReader& self, nb::handle frame) { return masses_of(self.velocities(frame_of(self, frame))); },
-          nb::arg("frame"),
+          nb::arg("frame"), nb::sig("def velocities(self, frame: int) -> numpy.typing.NDArray[numpy.float32]"),
           "Velocities of all masses in a frame, (masses, 3) [m/s]; -1 = the last frame. Raises IndexError.")
       .def_prop_ro(
           "program", [](const TrajectoryReader& self) { return self.program(); }, "What wrote it: \"mercury 0.2.0\".")
