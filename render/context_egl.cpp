@@ -20,10 +20,15 @@ struct DeviceChoice {
   int cuda_device = -1;
 };
 
-// libepoxy ends the process when it cannot open libEGL, so check first.
+// libepoxy ends the process when it cannot open the libraries that find the drivers, so check first.
 void require_egl() {
-  static const bool there = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) != nullptr;
-  if (!there) throw ContextError("libEGL.so.1 is not installed");
+  static const char* const missing = []() -> const char* {
+    const auto is_there = [](const char* library) { return dlopen(library, RTLD_LAZY | RTLD_GLOBAL) != nullptr; };
+    if (!is_there("libEGL.so.1")) return "libEGL.so.1 is not installed";
+    if (!is_there("libOpenGL.so.0") && !is_there("libGL.so.1")) return "libOpenGL.so.0 is not installed";
+    return nullptr;
+  }();
+  if (missing) throw ContextError(missing);
 }
 
 // Whether a list of names separated by blanks contains this one.
