@@ -27,11 +27,15 @@ def actions(env, steps, seed=0):
     return np.random.default_rng(seed).uniform(-1, 1, (steps, *env.action_space.shape)).astype(np.float32)
 
 
+def on_host(array):
+    return np.asarray(array.cpu() if hasattr(array, "cpu") else array)
+
+
 def play(env, steps, seed=5):
     """Observations, rewards and flags of an episode with random actions, as NumPy arrays."""
-    frames = [[np.asarray(env.reset(seed=seed)[0])]]
+    frames = [[on_host(env.reset(seed=seed)[0])]]
     for action in actions(env, steps):
-        frames.append([np.asarray(part) for part in env.step(action)[:4]])
+        frames.append([on_host(part) for part in env.step(action)[:4]])
     return frames
 
 
@@ -105,8 +109,8 @@ def test_torch_writes_the_drive_into_the_memory_of_the_batch():
     env = SwimEnv(EEL, 4, torch=True)
     env.reset(seed=1)
     observations = env.step(torch.ones(4, 5))[0]
-    assert observations.device.type == "cpu"
-    drive = np.asarray(env.batch.actuation.drive)
+    assert observations.device.type == ("cpu" if env.batch.device == "cpu" else "cuda")
+    drive = env.batch.actuation.drive.numpy()
     np.testing.assert_allclose(drive, 1 - math.exp(-0.04 / 0.1), rtol=1e-6)
 
 
