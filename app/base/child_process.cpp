@@ -106,10 +106,13 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   argv.push_back(const_cast<char*>(program.c_str()));
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const int error = posix_spawnp(&pid_, program.c_str(), &settings.actions, &settings.attributes, argv.data(), environ);
+  pid_t pid = -1;
+  const int error = posix_spawnp(&pid, program.c_str(), &settings.actions, &settings.attributes, argv.data(), environ);
   ::close(pipe_ends[0]);
-  if (error == 0) return;
-  pid_ = -1;
+  if (error == 0) {
+    pid_ = pid;
+    return;
+  }
   for (const int descriptor : {input_, output_, messages_}) ::close(descriptor);
   throw CannotStart(std::strerror(error));
 }

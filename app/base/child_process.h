@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,7 +41,7 @@ class ChildProcess {
   void kill();
   // Leaves the child to itself: the destructor no longer kills it.
   void release();
-  // Sends a signal if the child still runs.
+  // Sends a signal if the child still runs. Another thread may call it during write().
   void signal(int number);
 
   std::string output() const;    // the last 64 KiB of its standard output so far
@@ -49,7 +50,7 @@ class ChildProcess {
  private:
   void close_input();
 
-  pid_t pid_ = -1;
+  std::atomic<pid_t> pid_ = -1;
   int input_ = -1;
   int output_ = -1;
   int messages_ = -1;

@@ -132,6 +132,8 @@ void FfmpegWriter::finish() {
   }
 }
 
+void FfmpegWriter::abandon() { encoder_->signal(SIGKILL); }
+
 void FfmpegWriter::fail(int status) {
   const std::string messages = encoder_->messages();
   if (messages.find("No space left on device") != std::string::npos)

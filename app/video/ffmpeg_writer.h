@@ -17,6 +17,7 @@ class FfmpegWriter final : public FrameWriter {
   FfmpegWriter(const std::string& output, VideoKind kind, const VideoSettings& settings);
   void write(const render::Image& frame) override;
   void finish() override;
+  void abandon() override;
   std::string description() const override;
 
  private:

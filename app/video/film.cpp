@@ -149,6 +149,7 @@ struct Film::Parts {
   // Gives back what belongs to the drawing thread, and removes the file unless it is finished.
   void end() {
     ended = true;
+    writer->abandon();
     encoder->abandon();
     for (std::future<void>& task : waiting) task.wait();
     waiting.clear();
@@ -225,8 +226,16 @@ VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::str
     result = pipeline.run(*writer, pixel_format_of(video_kind_of(output)), timing, true, &control);
   });
   while (go_on && made.wait_for(between_questions) != std::future_status::ready)
-    if (!go_on()) control.stop = true;
-  wait_for(made);
+    if (!control.stop && !go_on()) {
+      control.stop = true;
+      writer->abandon();
+    }
+  try {
+    wait_for(made);
+  } catch (const VideoError&) {
+    if (!control.stop) throw;
+    result.interrupted = true;
+  }
   if (!result.interrupted) writer->finish();
   return result;
 }

@@ -56,6 +56,8 @@ class FrameWriter {
   virtual void write(const render::Image& frame) = 0;
   // Completes the video and renames it to its final name. Throws VideoError.
   virtual void finish() = 0;
+  // Nothing will be kept: a write() that waits for the encoder ends soon, with VideoError. Any thread may call it.
+  virtual void abandon() {}
   // For people: "H.264 by ffmpeg".
   virtual std::string description() const = 0;
 };

@@ -184,6 +184,24 @@ TEST_F(FilmTest, DyingEncoderIsReported) {
   EXPECT_EQ(picture_of(thread_, simulation_, {.size = small}).width, small.width) << "the thread goes on";
 }
 
+// An encoder that reads nothing and never ends: a few of these frames fill its pipe.
+TEST_F(FilmTest, StuckEncoderDoesNotKeepAFilmFromEnding) {
+  write("stuck", "#!/bin/sh\nexec sleep 1000\n", true);
+  FilmOptions stuck = options();
+  stuck.size = {640, 360};
+  stuck.ffmpeg = path("stuck");
+  {
+    Film film(thread_, simulation_, path("a.mp4"), stuck);
+    for (int frame = 0; frame < 6; ++frame) film.add_frame();
+  }
+  const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
+  int questions = 0;
+  const auto go_on = [&] { return ++questions < 20; };
+  EXPECT_TRUE(
+      film_of(thread_, Simulation(cpu, random_voxel_robots({}, 1, 1)), path("b.mp4"), stuck, 1e4, go_on).interrupted);
+  EXPECT_EQ(listing(), std::vector<std::string>{"stuck"});
+}
+
 TEST_F(FilmTest, WholeFilmsHaveTheirFramesAndCanBeStopped) {
   const auto robots = random_voxel_robots({}, 1, 2);
   const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
