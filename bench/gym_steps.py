@@ -6,7 +6,7 @@ The robots are solids of 5 x 5 x 5 voxels of muscle, with 216 masses, or the eel
 turns, so that a change of the clock rate affects all; figures are medians. Every row steps the same robots.
 
     stepping only        Batch.step(frame_skip)
-    driven and observed  the same, with actions written to the drive before and centers of mass read after it, in PyTorch
+    driven and observed  the same, with actions written before it and centers of mass read after it, in PyTorch
     SwimEnv.step         the whole environment: observations, rewards, targets and resets
 """
 import argparse
