@@ -20,9 +20,9 @@ env = SwimEnv(eel(), options.robots, torch=True, frame_skip=50)  # an action las
 seen, _ = env.reset(seed=1)
 
 
-def network(outputs, width=64):
+def network(outputs, gain, width=64):
     last = nn.Linear(width, outputs)
-    nn.init.orthogonal_(last.weight, 0.01)  # the first actions are around 0
+    nn.init.orthogonal_(last.weight, gain)
     return nn.Sequential(nn.Linear(seen.shape[1], width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), last)
 
 
@@ -38,23 +38,22 @@ def advantages(value, reward, terminated, over, discount=0.99, decay=0.95):
     return error
 
 
-def improve(seen, action, before, target, advantage, weight, epochs=4, parts=4, clip=0.2):
+def improve(seen, action, before, target, advantage, weight, epochs=8, parts=8, clip=0.2):
     for _ in range(epochs):
         for part in torch.randperm(len(seen), device=seen.device).chunk(parts):
             ratio = (policy(seen[part]).log_prob(action[part]).sum(1) - before[part]).exp()
             gain = torch.min(ratio * advantage[part], ratio.clip(1 - clip, 1 + clip) * advantage[part])
-            error = 0.5 * (value(seen[part])[:, 0] - target[part]) ** 2
             optimizer.zero_grad()
-            ((error - gain) * weight[part]).mean().backward()
-            nn.utils.clip_grad_norm_(parameters, 0.5)
+            ((0.5 * (value(seen[part])[:, 0] - target[part]) ** 2 - gain) * weight[part]).mean().backward()
+            nn.utils.clip_grad_norm_(optimizer.param_groups[0]["params"], 0.5)
             optimizer.step()
 
 
-mean, value = network(env.single_action_space.shape[0]).to(seen.device), network(1).to(seen.device)
+mean, value = network(env.single_action_space.shape[0], 0.01).to(seen.device), network(1, 1).to(seen.device)
 log_std = nn.Parameter(torch.full_like(mean[-1].bias.detach(), -0.5))
-parameters = [*mean.parameters(), *value.parameters(), log_std]
-optimizer, steps = torch.optim.Adam(parameters, 1e-3), 32  # steps of each robot per iteration
-earned, idle, start = torch.zeros(len(seen), device=seen.device), torch.zeros_like(seen[:, 0], dtype=bool), time.time()
+optimizer = torch.optim.Adam([*mean.parameters(), *value.parameters(), log_std], 1e-3)
+earned, idle = torch.zeros(len(seen), device=seen.device), torch.zeros(len(seen), dtype=bool, device=seen.device)
+center, scale, steps, start = 0, 1, 32, time.time()  # of observations (2); of each robot per iteration
 print("seconds,steps,episodes,reached,return")
 for iteration in range(1, options.iterations + 1):
     rows, sums = [], torch.zeros(3, device=seen.device)
@@ -66,12 +65,14 @@ for iteration in range(1, options.iterations + 1):
             over, earned = terminated | truncated, earned + reward
             sums += torch.stack([over.sum(), infos["reached"].sum(), (earned * over).sum()])
             rows.append((seen, action, choice.log_prob(action).sum(1), reward, terminated, over, ~idle))
-            seen, idle, earned = after, over, earned * ~over  # an idle step begins an episode, whatever the action
+            seen, idle, earned = (after - center) / scale, over, earned * ~over  # an idle step begins an episode
         all_seen, action, before, reward, terminated, over, weight = (torch.stack(column) for column in zip(*rows))
         values = value(torch.cat([all_seen, seen[None]]))[..., 0]
         advantage = advantages(values, reward, terminated, over)
         scaled = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
     improve(*(part.flatten(0, 1) for part in (all_seen, action, before, values[:-1] + advantage, scaled, weight)))
+    if iteration == 1:
+        center, scale = all_seen.mean((0, 1)), all_seen.std((0, 1)) + 0.01
     episodes, reached, total = sums.tolist()  # the only wait for the device
     if episodes:
         seconds, count = time.time() - start, iteration * steps * options.robots

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of an environment per second: bench/gym_steps.py [--robots N] [--size VOXELS] [--frame-skip N] [--eel]
+"""Steps of an environment per second: bench/bench_gym.py [--robots N] [--size VOXELS] [--frame-skip N] [--eel]
 
 The robots are solids of 5 x 5 x 5 voxels of muscle, with 216 masses, or the eel of examples/python/ppo.py. Rows take
 turns, so that a change of the clock rate affects all; figures are medians. Every row steps the same robots.

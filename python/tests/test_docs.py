@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs every block of docs/python.md, one after the other, as a reader would."""
+import importlib.util
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import mercurysim
+
+PAGE = Path(__file__).resolve().parents[2] / "docs/python.md"
+BLOCK = re.compile(r"(?:<!-- needs: (\w+) -->\n)?```python\n(.*?)```", re.DOTALL)
+
+
+def gpu():
+    try:
+        mercurysim.Batch([], device="cuda")
+    except mercurysim.DeviceError:
+        return False
+    return importlib.util.find_spec("torch") is not None
+
+
+def pictures():
+    try:
+        mercurysim.picture(mercurysim.random_voxel(1), size=(16, 16))
+    except mercurysim.DeviceError:
+        return False
+    return True
+
+
+NEEDS = {
+    "gpu": gpu,
+    "gymnasium": lambda: importlib.util.find_spec("gymnasium") is not None,
+    "pictures": pictures,
+    "film": lambda: pictures() and shutil.which("ffmpeg") is not None,
+}
+
+
+def test_every_block_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text, names, skipped = PAGE.read_text(), {}, []
+    blocks = list(BLOCK.finditer(text))
+    assert len(blocks) == text.count("```python") > 8
+    for block in blocks:
+        needs, program = block.groups()
+        if needs and not NEEDS[needs]():
+            skipped.append(needs)
+            continue
+        line = text.count("\n", 0, block.start(2)) + 1
+        exec(compile("\n" * (line - 1) + program, str(PAGE), "exec"), names)  # errors name the line of the page
+    assert set(skipped) <= {"gpu", "gymnasium", "pictures", "film"}
+    capsys.readouterr()
+    if len(skipped) == len(blocks):
+        pytest.skip("no block can run here")
+
+
+def test_the_examples_are_listed():
+    folder = PAGE.parents[1] / "examples/python"
+    found = {path.name for path in folder.iterdir() if path.suffix in (".py", ".ipynb")}
+    assert found == set(re.findall(r"\(\.\./examples/python/([\w.]+)\)", PAGE.read_text()))
