@@ -53,7 +53,7 @@ def quadruped(
     materials = np.full(len(middle), PASSIVE)
     actuators = {}
     for end, x in (("hind", -2.5), ("fore", 2.5)):
-        for side, y in (("right", -1), ("left", 1)):
+        for side, y in (("right", -1.0), ("left", 1.0)):
             leg = upright & (np.abs(middle[:, 0] - x * edge) < edge) & (np.abs(middle[:, 1] - y * edge) < edge)
             front = leg & (middle[:, 0] > x * edge)
             lower = middle[:, 2] < -0.5 * edge

@@ -206,6 +206,25 @@ def test_walking_upside_down_costs_what_the_formula_says():
     np.testing.assert_allclose(rewards, [0, -3 * 1e-3 * 2], atol=1e-4)
 
 
+def trot(direction, seconds=10):
+    """How far the quadruped walks along x [m], and its return: opposite legs swing together, and are short meanwhile."""
+    env = WalkEnv(quadruped(), 1, energy_cost=0, tilt_cost=0)
+    env.reset(seed=1)
+    start, total = env.batch.centers[0, 0], 0
+    for step in range(round(seconds / env.action_seconds)):
+        swing = np.sin(2 * np.pi * step * env.action_seconds + np.array([0, np.pi, np.pi, 0]))
+        total += env.step(np.stack([swing, direction * swing], axis=1).reshape(1, 8))[1][0]
+    return env.batch.centers[0, 0] - start, total
+
+
+def test_a_trot_walks_ahead_and_its_mirror_image_back():
+    (ahead, earned), (back, lost) = trot(1), trot(-1)
+    assert ahead > 0.3 and back < -0.3
+    assert ahead + back == pytest.approx(0, abs=0.1 * ahead)  # the robot is the same from the front and from behind
+    length = 0.6  # of the robot [m]
+    assert [earned, lost] == pytest.approx([ahead / length, back / length], rel=1e-4)
+
+
 def test_targets_are_where_the_settings_say():
     env = SwimEnv(EEL, 200, target_distance=(0.8, 1.5), target_angle=0.5)
     env.reset(seed=1)

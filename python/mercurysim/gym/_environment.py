@@ -203,7 +203,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
             observations = self._observe(self._bodies.motion())
         return observations, rewards, terminated, truncated, infos
 
-    def render(self) -> tuple[np.ndarray] | None:
+    def render(self) -> Any:
         """One picture of all robots, (h, w, 3) uint8. None without a render_mode."""
         return (mercurysim.picture(self.batch),) if self.render_mode else None
 

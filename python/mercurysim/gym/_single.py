@@ -27,7 +27,7 @@ class SingleEnv(gymnasium.Env):
         first = {key: value[0] for key, value in infos.items()}
         return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), first
 
-    def render(self) -> np.ndarray | None:
+    def render(self) -> Any:
         frames = self.vector.render()
         return frames[0] if frames else None
 
