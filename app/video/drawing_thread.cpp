@@ -77,6 +77,11 @@ DrawingThread::~DrawingThread() {
     (void)parts_.release();  // its mutex and thread are those of another process
     return;
   }
+  end();
+}
+
+void DrawingThread::end() {
+  if (parts_->forked()) return;
   {
     const std::lock_guard lock(parts_->mutex);
     parts_->ending = true;
@@ -92,6 +97,7 @@ std::future<void> DrawingThread::post(Task task) {
         "this process was forked from one that had drawn, and OpenGL does not work after that; start processes before "
         "the first picture, or with the method \"spawn\"");
   const std::lock_guard lock(parts.mutex);
+  if (parts.ending) throw DeviceError("nothing is drawn any more; the program ends");
   if (!parts.thread.joinable()) {
     parts.process = getpid();
     parts.thread = std::thread([&parts] { parts.work(); });

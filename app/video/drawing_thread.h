@@ -38,6 +38,9 @@ class DrawingThread {
   DrawingThread(const DrawingThread&) = delete;
   DrawingThread& operator=(const DrawingThread&) = delete;
 
+  // Waits for the tasks that are queued, and gives the context back. post() throws DeviceError afterwards.
+  void end();
+
   // Queues a task. The future passes on what it throws, and render::ContextError if there is no OpenGL here. Throws
   // DeviceError in a process that was forked from one that has drawn. Every thread may call it, except in a task.
   std::future<void> post(Task task);

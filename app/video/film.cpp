@@ -153,13 +153,18 @@ struct Film::Parts {
     encoder->abandon();
     for (std::future<void>& task : waiting) task.wait();
     waiting.clear();
-    thread
-        .post([this](DrawingThread::Canvas& canvas) {
-          if (canvas.owner == drawing) canvas.owner = nullptr;
-          readback.reset();
-          drawing.reset();
-        })
-        .wait();
+    try {
+      thread
+          .post([this](DrawingThread::Canvas& canvas) {
+            if (canvas.owner == drawing) canvas.owner = nullptr;
+            readback.reset();
+            drawing.reset();
+          })
+          .wait();
+    } catch (const DeviceError&) {
+      if (readback) (void)new render::Readback(std::move(*readback));  // its context is gone
+      readback.reset();
+    }
     encoder.reset();
     writer.reset();
   }

@@ -269,6 +269,8 @@ def _end() -> None:
     for film in list(_films):
         film.discard()
     _cpp._end_drawing()
+    for film in list(_films):  # that other threads began meanwhile
+        film.discard()
 
 
 atexit.register(_end)

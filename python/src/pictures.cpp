@@ -4,6 +4,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -34,10 +35,31 @@ std::shared_ptr<DrawingThread> drawing() {
   return drawing_thread();
 }
 
+// Videos that threads make. They end before the interpreter does, since they ask it for Ctrl-C.
+class RunningVideos {
+ public:
+  void begin() { ++running_; }
+  void end() {
+    --running_;
+    running_.notify_all();
+  }
+  bool stopping() const { return stopping_; }
+  void stop() {
+    stopping_ = true;
+    for (int running = running_; running > 0; running = running_) running_.wait(running);
+  }
+
+ private:
+  std::atomic<bool> stopping_ = false;
+  std::atomic<int> running_ = 0;
+};
+RunningVideos running_videos;
+
 void end_drawing() {
   std::shared_ptr<DrawingThread> thread = std::move(drawing_thread());
   const ReleasedGil released;
-  thread.reset();
+  running_videos.stop();
+  if (thread) thread->end();
 }
 
 // Errors of the encoder and of OpenGL are those of the machine.
@@ -191,35 +213,42 @@ nb::object png_of_batch(nb::handle_t<Batch> batch) {
   return png_of(batch, {.size = robots <= 6 ? PictureSize{640, 360} : PictureSize{960, 540}});
 }
 
-// Asks Python for Ctrl-C while the interpreter's lock is released.
+// Asks Python for Ctrl-C, on a thread without the interpreter's lock.
 class InterruptWatch {
  public:
+  explicit InterruptWatch(std::optional<nb::python_error>& interrupted) : interrupted_(interrupted) {
+    running_videos.begin();
+  }
+  ~InterruptWatch() { running_videos.end(); }
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
   bool go_on() {
+    if (running_videos.stopping()) return false;
     const nb::gil_scoped_acquire acquired;
     if (PyErr_CheckSignals() != 0) interrupted_.emplace();
     return !interrupted_;
   }
-  void rethrow() {
-    if (interrupted_) throw nb::python_error(std::move(*interrupted_));
-  }
 
  private:
-  std::optional<nb::python_error> interrupted_;
+  std::optional<nb::python_error>& interrupted_;
 };
 
 // Returns the number of frames.
 std::int64_t render_simulation(Simulation simulation, const std::string& output, double seconds,
                                const FilmOptions& options) {
   const std::shared_ptr<DrawingThread> thread = drawing();
-  InterruptWatch watch;
   VideoResult result;
+  std::optional<nb::python_error> interrupted;
   {
     const ReleasedGil released;
+    InterruptWatch watch(interrupted);
     result = with_errors([&] {
       return film_of(*thread, std::move(simulation), output, options, seconds, [&] { return watch.go_on(); });
     });
   }
-  watch.rethrow();
+  if (interrupted) throw nb::python_error(std::move(*interrupted));
+  if (result.interrupted) throw DeviceError("the interpreter exits; nothing is drawn any more");
   return result.frames;
 }
 

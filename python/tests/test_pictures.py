@@ -409,3 +409,38 @@ print(film.close().frames, (mercurysim.picture(robot, (90, 90)) == first).all())
     assert lines[0].startswith("this process was forked from one that had drawn, ")
     assert lines[1:] == ["a film goes on only in the process that began it", "None", "3", "2 True"]
     assert frames_of(tmp_path / "a.mp4", encoder) == 2
+
+
+def test_threads_that_draw_do_not_disturb_the_end_of_python(tmp_path, encoder):
+    code = """
+import threading
+robots = mercurysim.random_voxel(1, seed=1)
+batch = mercurysim.Batch(robots, device="cpu")
+mercurysim.picture(batch, (90, 90))
+started = threading.Barrier(4)
+
+def draw():
+    started.wait()
+    while True:
+        mercurysim.picture(batch, (90, 90))
+
+def film():
+    film = mercurysim.Film("film.mp4", batch, size=(160, 90))
+    film.frame()
+    started.wait()
+    while True:
+        film.frame()
+
+def render():
+    started.wait()
+    mercurysim.render(robots, "render.mp4", 1e5, size=(160, 90), device="cpu")
+
+for work in (draw, film, render):
+    threading.Thread(target=work, daemon=True).start()
+started.wait()
+while not any(name.startswith("render") for name in os.listdir()):
+    pass
+"""
+    done = run(code, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert os.listdir(tmp_path) == []

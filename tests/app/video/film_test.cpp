@@ -269,6 +269,16 @@ TEST_F(FilmTest, ForkedProcessGetsAnErrorAndLeavesTheFilmAlone) {
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "2");
 }
 
+TEST_F(FilmTest, NothingIsDrawnAfterTheEnd) {
+  Film film(thread_, simulation_, path("a.mp4"), options());
+  film.add_frame();
+  thread_.end();
+  EXPECT_THROW(picture_of(thread_, simulation_, {.size = small}), DeviceError);
+  EXPECT_THROW(film.add_frame(), DeviceError);
+  film.discard();
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
 TEST(DrawingThread, EndsWithoutHavingBegun) { const DrawingThread thread; }
 
 }  // namespace
