@@ -18,6 +18,9 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples/python"
 
 
+slow = pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="takes too long under the sanitizer")
+
+
 def needs(*modules):
     for module in modules:
         if importlib.util.find_spec(module) is None:
@@ -41,6 +44,7 @@ def test_an_example_has_under_80_lines(path):
     assert len(path.read_text().splitlines()) < 80
 
 
+@slow
 def test_cma_finds_phases_that_swim_several_times_as_far(tmp_path):
     needs("cmaes")
     lines = run("cma.py", 20, folder=tmp_path).splitlines()
@@ -56,6 +60,7 @@ def test_the_controller_reaches_targets_that_lie_aside(tmp_path):
     assert adrift[[0, 1, 3, 4]].min() > 0.9  # straight ahead is one of the five
 
 
+@slow
 def test_map_elites_fills_cells_and_saves_the_best(tmp_path):
     needs("ribs")
     rows = run("map_elites.py", 4, 32, folder=tmp_path).splitlines()
@@ -79,6 +84,7 @@ def test_a_recording_is_plotted(tmp_path, mercury):
     assert len(colors) > 20  # axes, texts and two paths of different colors
 
 
+@slow
 def test_ppo_learns_to_swim_nearer(tmp_path):
     needs("gymnasium", "torch")
     table = run("ppo.py", "--robots", 64, "--iterations", 52, folder=tmp_path).splitlines()
@@ -89,6 +95,7 @@ def test_ppo_learns_to_swim_nearer(tmp_path):
     assert np.mean([row["return"] for row in rows[-2:]]) > rows[0]["return"] + 0.1
 
 
+@slow
 def test_the_notebook_runs_and_is_stored_without_outputs(tmp_path, monkeypatch):
     notebook = json.loads((EXAMPLES / "first_steps.ipynb").read_text())
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

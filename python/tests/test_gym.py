@@ -83,6 +83,7 @@ def test_a_seed_gives_the_same_episodes_bit_for_bit(torch):
     assert same(first, play(env, 60))
     assert same(first, play(SwimEnv(EEL, 3, episode_seconds=1, torch=torch), 60))
     assert not same(first, play(env, 60, seed=6))
+    assert not np.array_equal(on_host(env.reset()[0]), on_host(env.reset()[0]))  # without a seed, episodes go on
 
 
 def test_a_robot_does_the_same_alone_and_among_others():
@@ -312,6 +313,7 @@ def test_without_autoreset_a_mask_resets_some_robots():
     "make, message",
     [
         (lambda: SwimEnv([EEL] * 3, 2), "num_envs: 2"),
+        (lambda: SwimEnv([]), "at least one"),
         (lambda: SwimEnv(EEL, 2, max_actuators=4), "max_actuators: 4"),
         (lambda: SwimEnv(EEL, 2, device="cuda"), "torch=True"),
         (lambda: SwimEnv(EEL, 2, render_mode="human"), "render_mode"),

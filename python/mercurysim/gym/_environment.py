@@ -57,8 +57,8 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     their middle (3 each), their velocities per second (3 each), u, and sine and cosine of a clock of one period per
     second (2).
 
-    An episode terminates when the robot reaches its target or explodes. Infos: "distance" still to go [m], "reached",
-    "exploded". With AutoresetMode.DISABLED, reset(options={"reset_mask": mask}) resets some robots.
+    An episode terminates when the robot reaches its target or explodes. Infos: "distance" still to go [m] (without
+    targets, the way along x with a minus), "reached", "exploded". With AutoresetMode.DISABLED, reset(options={"reset_mask": mask}) resets some robots.
     """
 
     def __init__(
@@ -89,7 +89,11 @@ class RobotEnv(gymnasium.vector.VectorEnv):
             raise InputError(f'render_mode: "{render_mode}" is not accepted; give None or "rgb_array"')
         if frame_skip < 1 or markers < 1 or not smoothing >= 0 or not episode_seconds > 0:
             raise InputError("frame_skip and markers are at least 1, smoothing at least 0, episode_seconds above 0")
-        given = [robots] if isinstance(robots, Robot) else list(robots or [self.default_robot()])
+        if robots is None:
+            robots = self.default_robot()
+        given = [robots] if isinstance(robots, Robot) else list(robots)
+        if not given:
+            raise InputError("robots: there is none; give at least one")
         self.num_envs = len(given) if num_envs is None else num_envs
         if self.num_envs < len(given):
             raise InputError(f"num_envs: {num_envs} is less than {len(given)}, the number of robots")
