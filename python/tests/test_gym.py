@@ -115,6 +115,15 @@ def test_torch_writes_the_drive_into_the_memory_of_the_batch():
     np.testing.assert_allclose(drive, 1 - math.exp(-0.04 / 0.1), rtol=1e-6)
 
 
+def test_actions_may_come_straight_from_a_network():
+    torch = torch_or_skip()
+    env = SwimEnv(EEL, 2, torch=True)
+    observations, _ = env.reset(seed=1)
+    network = torch.nn.Linear(observations.shape[1], 5).to(observations.device)
+    observations, rewards, *_ = env.step(network(observations))
+    assert not observations.requires_grad and not rewards.requires_grad
+
+
 def test_the_drive_follows_the_action_with_its_time_constant():
     env = SwimEnv(EEL, 2, smoothing=0.2, frame_skip=25, dt=2e-3)
     env.reset(seed=1)
@@ -208,7 +217,7 @@ def test_walking_upside_down_costs_what_the_formula_says():
 
 
 def trot(direction, seconds=10):
-    """How far the quadruped walks along x [m], and its return: opposite legs swing together, and are short meanwhile."""
+    """How far the quadruped walks along x [m], and its return. Opposite legs swing and lift together."""
     env = WalkEnv(quadruped(), 1, energy_cost=0, tilt_cost=0)
     env.reset(seed=1)
     start, total = env.batch.centers[0, 0], 0

@@ -39,7 +39,7 @@ class Arrays:
     def given(self, values: Any, dtype: Any) -> Any:
         """What a caller gave, which may be an array, a tensor or a sequence."""
         if self.is_torch:
-            return self.xp.as_tensor(values, dtype=dtype, device=self.device)
+            return self.xp.as_tensor(values, dtype=dtype, device=self.device).detach()
         return np.asarray(values, dtype=dtype)
 
     def zeros(self, shape: tuple[int, ...], dtype: Any) -> Any:

@@ -52,13 +52,15 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     of 1 kg about. NaN counts as 0.
 
     An observation is, in the body frame, lengths in body lengths, float32, cut off at 10:
+
     direction to the target (3), distance (1; 0 without targets), velocity of the center of mass per second (3), angular
     momentum of the markers over their moment of inertia [rad/s] (3), up of the world (3), positions of the markers from
     their middle (3 each), their velocities per second (3 each), u, and sine and cosine of a clock of one period per
     second (2).
 
     An episode terminates when the robot reaches its target or explodes. Infos: "distance" still to go [m] (without
-    targets, the way along x with a minus), "reached", "exploded". With AutoresetMode.DISABLED, reset(options={"reset_mask": mask}) resets some robots.
+    targets, the way along x with a minus), "reached" and "exploded". With AutoresetMode.DISABLED,
+    reset(options={"reset_mask": mask}) resets some robots.
     """
 
     def __init__(
