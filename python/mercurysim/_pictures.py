@@ -266,6 +266,7 @@ _films: weakref.WeakSet[Film] = weakref.WeakSet()
 
 def _end() -> None:
     """Films that are not closed keep nothing, and the drawing thread ends while the interpreter still works."""
+    _cpp._stop_videos()  # films wait for them
     for film in list(_films):
         film.discard()
     _cpp._end_drawing()

@@ -55,6 +55,11 @@ class RunningVideos {
 };
 RunningVideos running_videos;
 
+void stop_videos() {
+  const ReleasedGil released;
+  running_videos.stop();
+}
+
 void end_drawing() {
   std::shared_ptr<DrawingThread> thread = std::move(drawing_thread());
   const ReleasedGil released;
@@ -334,6 +339,7 @@ void bind_pictures(nb::module_& module) {
              nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
   module.def("_render_recording", &render_recording, nb::arg("path"), nb::arg("output"), nb::arg("seconds").none(),
              nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
+  module.def("_stop_videos", &stop_videos);
   module.def("_end_drawing", &end_drawing);
   nb::class_<BatchFilm>(module, "_Film")
       .def(nb::init<const std::string&, const Batch&, nb::handle, double, int, const std::string&, const nb::dict&>(),
