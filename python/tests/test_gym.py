@@ -99,7 +99,7 @@ def test_a_robot_does_the_same_alone_and_among_others():
 
 def test_numpy_and_torch_agree():
     torch_or_skip()
-    left, right = (play(SwimEnv(EEL, 4, torch=torch), 20) for torch in (False, True))
+    left, right = (play(SwimEnv(EEL, 4, torch=torch, device="cpu"), 20) for torch in (False, True))
     for a, b in zip(left, right):
         for x, y in zip(a, b):
             np.testing.assert_allclose(x, y, atol=2e-5)

@@ -39,7 +39,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     max_actuators    size of an action; default: the most that one of the robots has
     autoreset_mode   an AutoresetMode of gymnasium.vector, or its value
     torch            True: observations, rewards and flags are tensors on the device, and actions may be. No call waits
-                     for the device.
+                     for the device, but for the first step(), which records CUDA graphs.
     seed             of the targets, as if given to the first reset()
     render_mode      None or "rgb_array"
     batch            further arguments of Batch, such as environment, solver, damping, threads
@@ -126,6 +126,9 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         self._remaining = self._arrays.zeros((n,), float32)  # Targets.remaining() after the last step
         self._episode = self._arrays.zeros((n,), self._xp.int64)
         self._done = self._elapsed < 0  # the episode is over
+        self._drive_actuators = self._arrays.recorded(self._follow_actions, carried=1)
+        self._find_outcome = self._arrays.recorded(self._outcome, carried=len(self._state()))
+        self._begin_over = self._arrays.recorded(self._begin_done, carried=len(self._state()))
 
     def _find_actuators(self, given: list[Robot], most: int | None) -> None:
         counts = np.array([len(robot.actuators) for robot in given])
@@ -183,14 +186,44 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         if not self._started:
             raise gymnasium.error.ResetNeeded("call reset() before step()")
-        self._u = self._u + (self._usable(actions) - self._u) * self._follow
-        self._drive[:] = self._u[:, : self._drive.shape[1]]
+        (self._u,) = self._drive_actuators(self._u, self._usable(actions))
         self.batch.step(self.frame_skip, stream=self._arrays.stream())
+        if self.autoreset_mode is AutoresetMode.NEXT_STEP:
+            self.batch.reset(self._done, stream=self._arrays.stream())
+        size = len(self._state())
+        results = self._find_outcome(*self._state())
+        self._set_state(results[:size])
+        observations, rewards, terminated, truncated, *report = results[size:]
+        infos = self._infos(*report)
+        if self.autoreset_mode is AutoresetMode.SAME_STEP:
+            infos |= {"final_obs": observations, "_final_obs": terminated | truncated}
+            self.batch.reset(self._done, stream=self._arrays.stream())
+            results = self._begin_over(*self._state())
+            self._set_state(results[:size])
+            observations = results[size]
+        return observations, rewards, terminated, truncated, infos
+
+    def _state(self) -> tuple[Any, ...]:
+        """What a step changes, besides the batch."""
+        return self._u, self._elapsed, self._remaining, self._episode, self._done, self._targets.points
+
+    def _set_state(self, state: Any) -> None:
+        self._u, self._elapsed, self._remaining, self._episode, self._done, self._targets.points = state
+
+    def _follow_actions(self, u: Any, actions: Any) -> tuple[Any, ...]:
+        """Writes the new drive signal for the batch."""
+        actions = self._xp.nan_to_num(self._xp.clip(actions, -1, 1)) * self._has_actuator
+        u = u + (actions - u) * self._follow
+        self._drive[:] = u[:, : self._drive.shape[1]]
+        return (u,)
+
+    def _outcome(self, *state: Any) -> tuple[Any, ...]:
+        """The state after a step, observations, rewards, two flags, and what _infos() takes."""
+        self._set_state(state)
         self._elapsed = self._elapsed + 1
         over = self._done
         if self.autoreset_mode is AutoresetMode.NEXT_STEP:
-            self._restart(over)
-
+            self._begin(over)
         motion = self._bodies.motion()
         remaining = self._targets.remaining(motion.center)
         exploded = self._exploded != 0
@@ -202,19 +235,21 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         terminated = reached | exploded
         truncated = (self._elapsed >= self.episode_steps) & ~terminated
         self._remaining, self._done = remaining, terminated | truncated
-        observations, infos = self._observe(motion), self._infos(remaining, reached, exploded)
-        if self.autoreset_mode is AutoresetMode.SAME_STEP:
-            infos |= {"final_obs": observations, "_final_obs": self._done}
-            self._restart(self._done)
-            observations = self._observe(self._bodies.motion())
-        return observations, rewards, terminated, truncated, infos
+        observations = self._observe(motion)
+        return *self._state(), observations, rewards, terminated, truncated, remaining + 0, reached, exploded
+
+    def _begin_done(self, *state: Any) -> tuple[Any, ...]:
+        """The state after the next episodes have begun, and observations."""
+        self._set_state(state)
+        self._begin(self._done)
+        return *self._state(), self._observe(self._bodies.motion())
 
     def render(self) -> Any:
         """One picture of all robots, (h, w, 3) uint8. None without a render_mode."""
         return (mercurysim.picture(self.batch),) if self.render_mode else None
 
     def _restart(self, mask: Any) -> None:
-        """Ends the episodes of the robots of a mask and begins their next ones."""
+        """Ends the episodes of some robots and begins their next ones."""
         self.batch.reset(mask, stream=self._arrays.stream())
         self._begin(mask)
 
@@ -228,7 +263,8 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         self._done = self._done & ~mask
 
     def _now(self) -> tuple[Any, dict[str, Any]]:
-        return self._observe(self._bodies.motion()), self._infos(self._remaining, self._done, self._exploded != 0)
+        infos = self._infos(self._remaining + 0, self._done & True, self._exploded != 0)
+        return self._observe(self._bodies.motion()), infos
 
     def _effort(self) -> Any:
         """Mean of u^2 over the actuators of each robot, times the seconds that an action lasts."""
@@ -239,7 +275,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         actions = self._arrays.given(actions, self._xp.float32)
         if tuple(actions.shape) != self.action_space.shape:
             raise InputError(f"actions: shape {tuple(actions.shape)} is not accepted; give {self.action_space.shape}")
-        return self._xp.nan_to_num(self._xp.clip(actions, -1, 1)) * self._has_actuator
+        return actions
 
     def _mask(self, mask: Any) -> Any:
         mask = self._arrays.given(mask, bool if self._xp is np else self._xp.bool)
@@ -268,6 +304,6 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         return xp.clip(self._arrays.joined(parts), -LIMIT, LIMIT)
 
     def _infos(self, remaining: Any, reached: Any, exploded: Any) -> dict[str, Any]:
-        infos = {"distance": remaining + 0, "reached": reached & True, "exploded": exploded & True}
+        infos = {"distance": remaining, "reached": reached, "exploded": exploded}
         everyone = self._elapsed >= 0
         return infos | {f"_{name}": everyone for name in infos}  # who has this info, as Gymnasium wants it

@@ -23,6 +23,7 @@ class Targets:
         self.points = self.starts
         self.ahead = arrays.own(np.array([[1, 0, 0]], np.float32))
         self.robot = arrays.own(np.arange(bodies.robots))
+        self.offsets = arrays.zeros((POOL, 3), arrays.xp.float32)  # of the points from a start [body lengths]
 
     def draw(self, random: np.random.Generator) -> None:
         """New points. They have the height of the start, and depend on the generator alone."""
@@ -31,7 +32,7 @@ class Targets:
         angle = random.uniform(-self.angle, self.angle, POOL)
         distance = random.uniform(*self.distance, POOL)
         offsets = np.stack([distance * np.cos(angle), distance * np.sin(angle), np.zeros(POOL)], axis=1)
-        self.offsets = self.arrays.own(offsets.astype(np.float32))
+        self.offsets[:] = self.arrays.own(offsets.astype(np.float32))  # in place, since a graph may read it
 
     def assign(self, which: Any, episode: Any) -> None:
         """The targets of those episodes, (n,), for the robots of the mask `which`."""
