@@ -386,6 +386,8 @@ for _ in range(5):
 
 def test_a_forked_process_gets_an_error_and_ends_cleanly(tmp_path, encoder):
     code = """
+import warnings
+warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of fork() in programs with threads
 robot = mercurysim.random_voxel(1, seed=1)[0]
 batch = mercurysim.Batch([robot], device="cpu")
 first = mercurysim.picture(robot, (90, 90))
