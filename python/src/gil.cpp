@@ -36,11 +36,8 @@ ReleasedGil::~ReleasedGil() {
 }
 
 void watch_exit() {
-  nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
-    exiting_thread = std::this_thread::get_id();
-    // Objects of the threads that sleep from now on are no leaks.
-    if (nb::cast<int>(nb::module_::import_("threading").attr("active_count")()) > 1) nb::set_leak_warnings(false);
-  }));
+  nb::module_::import_("atexit").attr("register")(
+      nb::cpp_function([] { exiting_thread = std::this_thread::get_id(); }));
 }
 
 }  // namespace mercury::python

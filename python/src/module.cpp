@@ -3,6 +3,7 @@
 
 NB_MODULE(_mercury, module) {
   using namespace mercury::python;
+  nanobind::set_leak_warnings(false);  // what a program still holds when it exits is no leak
   module.attr("__version__") = MERCURY_VERSION;
   bind_errors(module);
   bind_robot(module);

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CUDA backend.
 //
-// Work is queued in two kinds of streams:
+// Work is queued in three kinds of streams:
 //
 //   urgent()   of each class: copies from and to the host, done when a function returns
-//   stream()   of each class: steps. That of the largest robots, main(), begins before the others and ends after them:
+//   stream()   of each class: steps. That of the largest robots, main(), begins before the others and ends after them
+//   a caller's stream, which then takes the part of main():
 //
-//   caller's stream   ...--+                                                       +--...
-//                          v                                                       ^
-//   main()                 actuators --+-- steps ---------------------+-- publish --
-//   other classes                      +-- phases, steps -- done --->-+
+//   caller's stream   ... actuators --+-- steps ---------------------+-- publish -- ...
+//   other classes                     +-- phases, steps -- done --->-+
 //
-// 1. Functions that take a caller's stream return at once. The steps wait for what the caller has queued, and what the
-//    caller queues later waits for the steps; the host waits for neither.
-// 2. What such functions queue ends in main(), so work that begins in main() follows it. Functions that use other
-//    streams, or read what a kernel writes to the host, call settle() first.
+// 1. Functions that take a caller's stream return at once. The steps follow what the caller has queued, and what the
+//    caller queues later follows the steps; the host waits for neither.
+// 2. What such functions queue ends with an event. Further work in callers' streams and in main() follows it. Functions
+//    that use other streams, or read what a kernel writes to the host, call settle() first.
 // 3. Functions that use arrays of the program and take no stream behave as if in the legacy default stream.
 #pragma once
 
@@ -80,7 +79,7 @@ class CudaBackend final : public Backend {
   struct Owned {
     SizeClasses classes;
     Event start{Event::timed}, end{Event::timed}, sleepy_end{Event::sleepy}, forked;
-    Event called, queued;                  // of functions that take a caller's stream: where they begin and end
+    Event queued;                          // the end of what was last queued in a caller's stream
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][3], positions at rest, if rest_valid_
     Actuators actuators;                   // none are driven if it is empty
@@ -95,8 +94,8 @@ class CudaBackend final : public Backend {
   static RobotStatus status_of(const DeviceStatus& status) { return {status.exploded_step, status.bad_mass}; }
 
   void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
-  // Waits for what is queued in the name of a caller's stream. To be called before everything that does not begin in
-  // main().
+  // Waits for what is queued in a caller's stream. To be called before everything that does not begin with enter() or
+  // begin_launches().
   void settle() const;
   // settle() before a change by the caller: it invalidates the last report.
   void begin_change();
@@ -108,18 +107,18 @@ class CudaBackend final : public Backend {
   const RobotView* views() const;
   const float* rest_positions(std::span<const Robot* const> robots, std::span<const float> lifts);
 
-  // main() begins after what the caller has queued, and the caller goes on after main(). Null = the legacy default
-  // stream.
-  void enter(void* cuda_stream) const;
-  void leave(void* cuda_stream) const;
+  // Everything between the two follows what was queued in other callers' streams. Null = the legacy default stream.
+  cudaStream_t enter(void* cuda_stream) const;
+  void leave(cudaStream_t stream) const;
   // For steps without a stream: sets the materials that actuators drive, after what is in the legacy default stream.
   void actuate_after_caller(const Clock& clock) const;
-  // Lets the streams of the other classes begin after main(), and join it.
-  void fork_launches(const Clock& clock) const;
-  void join_launches() const;
+  // The launches of a call: the largest robots in `stream`, the others in streams that begin after it and that it
+  // joins.
+  void fork_launches(const Clock& clock, cudaStream_t stream) const;
+  void join_launches(cudaStream_t stream) const;
   // Queues launches of all classes. `report` = null or one element per robot, for after the last step.
-  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report) const;
-  // fork_launches() and join_launches() with the time in between.
+  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const;
+  // fork_launches() and join_launches() in main(), with the time in between.
   void begin_launches(const Clock& clock) const;
   void end_launches(Event& end);
 
@@ -134,7 +133,7 @@ class CudaBackend final : public Backend {
   std::vector<std::size_t> first_report_;    // [class]
   std::vector<std::uint32_t> launch_order_;  // classes that have robots, the largest robots first
   mutable bool report_valid_ = false, report_expected_ = false;
-  mutable bool queued_ = false;  // something, in the name of a caller's stream, that may not be done
+  mutable bool queued_ = false;  // something in a caller's stream that may not be done
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;
   Configuration configuration_;

@@ -45,10 +45,10 @@ void CudaBackend::put_at_rest_in_stream(std::span<const Robot* const> robots, st
   use_device();
   report_valid_ = report_expected_ = false;
   const float* const rest = rest_positions(robots, lifts);
-  enter(cuda_stream);
-  put_masked_at_rest(views(), places_.size(), rest, mask, main().get());
-  publish_states(views(), places_.size(), arrays, main().get());
-  leave(cuda_stream);
+  const cudaStream_t stream = enter(cuda_stream);
+  put_masked_at_rest(views(), places_.size(), rest, mask, stream);
+  publish_states(views(), places_.size(), arrays, stream);
+  leave(stream);
 }
 
 void CudaBackend::read_positions(std::span<Vec3> out) const {
@@ -64,9 +64,9 @@ void CudaBackend::read_velocities(std::span<Vec3> out) const {
 void CudaBackend::copy_positions(float* device_out) const {
   if (places_.empty()) return;
   use_device();
-  enter(nullptr);
-  publish_states(views(), places_.size(), {.positions = device_out}, main().get());
-  leave(nullptr);
+  const cudaStream_t stream = enter(nullptr);
+  publish_states(views(), places_.size(), {.positions = device_out}, stream);
+  leave(stream);
 }
 
 std::shared_ptr<void> CudaBackend::allocate_shared(std::size_t bytes) const {
@@ -85,9 +85,10 @@ void CudaBackend::copy_shared(void* to, const void* from, std::size_t bytes) con
 void CudaBackend::publish(std::span<const std::size_t>, const PublishedArrays& arrays) const {
   if (places_.empty()) return;
   use_device();
-  enter(nullptr);
-  publish_states(views(), places_.size(), arrays, main().get());
-  main().synchronize();
+  const cudaStream_t stream = enter(nullptr);
+  publish_states(views(), places_.size(), arrays, stream);
+  leave(stream);
+  settle();
 }
 
 RobotStatus CudaBackend::status(std::size_t robot) const {

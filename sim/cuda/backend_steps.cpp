@@ -26,7 +26,7 @@ void CudaBackend::step(const Clock& clock, std::int64_t steps) {
   report_valid_ = false;
   actuate_after_caller(clock);
   begin_launches(clock);
-  launch(clock, steps, report);
+  launch(clock, steps, report, main().get());
   end_launches(owned_->end);
   report_valid_ = report != nullptr && steps > 0;
 }
@@ -67,7 +67,8 @@ void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::i
   for (std::size_t first = 0; first < all; first += most) {
     const std::size_t count = std::min(most, all - first);
     begin_launches(now);
-    for (std::size_t k = 0; k < count; ++k, now.step += every) launch(now, every, on_device.data() + k * robots);
+    for (std::size_t k = 0; k < count; ++k, now.step += every)
+      launch(now, every, on_device.data() + k * robots, main().get());
     end_launches(owned_->sleepy_end);
     on_device.read(0, std::span(reports.get(), count * robots), main().get());
     oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
@@ -84,8 +85,8 @@ void CudaBackend::report(const Clock& clock, std::span<Telemetry> telemetry, std
   report_expected_ = true;
   if (!report_valid_) {
     begin_launches(clock);
-    launch(clock, 0, reports_on_device());
-    join_launches();
+    launch(clock, 0, reports_on_device(), main().get());
+    join_launches(main().get());
     main().synchronize();
     report_valid_ = true;
   }
@@ -99,47 +100,50 @@ void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const P
   if (places_.empty()) return;
   use_device();
   report_valid_ = report_expected_ = false;
-  enter(cuda_stream);
-  owned_->actuators.apply(clock, main().get());
-  fork_launches(clock);
-  launch(clock, steps, nullptr);
-  join_launches();
-  publish_states(views(), places_.size(), arrays, main().get());
-  leave(cuda_stream);
+  const cudaStream_t stream = enter(cuda_stream);
+  owned_->actuators.apply(clock, stream);
+  fork_launches(clock, stream);
+  launch(clock, steps, nullptr, stream);
+  join_launches(stream);
+  publish_states(views(), places_.size(), arrays, stream);
+  leave(stream);
 }
 
-void CudaBackend::enter(void* cuda_stream) const {
-  owned_->called.record(cuda_stream ? static_cast<cudaStream_t>(cuda_stream) : cudaStreamLegacy);
-  main().wait_for(owned_->called);
+cudaStream_t CudaBackend::enter(void* cuda_stream) const {
+  const cudaStream_t stream = cuda_stream ? static_cast<cudaStream_t>(cuda_stream) : cudaStreamLegacy;
+  if (queued_) owned_->queued.hold(stream);
+  return stream;
 }
 
-void CudaBackend::leave(void* cuda_stream) const {
-  owned_->queued.record(main().get());
+void CudaBackend::leave(cudaStream_t stream) const {
+  owned_->queued.record(stream);
   queued_ = true;
-  owned_->queued.hold(cuda_stream ? static_cast<cudaStream_t>(cuda_stream) : cudaStreamLegacy);
 }
 
 void CudaBackend::actuate_after_caller(const Clock& clock) const {
   if (owned_->actuators.empty()) return;
-  enter(nullptr);
-  owned_->actuators.apply(clock, main().get());
+  const cudaStream_t stream = enter(nullptr);
+  owned_->actuators.apply(clock, stream);
+  leave(stream);
 }
 
-void CudaBackend::fork_launches(const Clock& clock) const {
-  if (launch_order_.size() > 1) owned_->forked.record(main().get());
+void CudaBackend::fork_launches(const Clock& clock, cudaStream_t stream) const {
+  if (launch_order_.size() > 1) owned_->forked.record(stream);
   for (const std::uint32_t c : launch_order_) {
     SizeClass& robots = owned_->classes[c];
-    if (c != launch_order_.front()) robots.stream().wait_for(owned_->forked);
-    robots.update_phases(clock);
+    const bool first = c == launch_order_.front();
+    if (!first) robots.stream().wait_for(owned_->forked);
+    robots.update_phases(clock, first ? stream : robots.stream().get());
   }
 }
 
 void CudaBackend::begin_launches(const Clock& clock) const {
+  if (queued_) main().wait_for(owned_->queued);
   owned_->start.record(main().get());
-  fork_launches(clock);
+  fork_launches(clock, main().get());
 }
 
-void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report) const {
+void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const {
   for (const std::uint32_t c : launch_order_) {
     const SizeClass& robots = owned_->classes[c];
     StepArguments arguments{robots.view(),  clock, constants_, stiffness_scale_of(configuration_.environment), 0, 0,
@@ -152,21 +156,22 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
       done += arguments.steps;
       arguments.report = done == steps && report ? report + first_report_[c] : nullptr;
-      launch_steps(configuration_.solver, model_, arguments, robots.stream().get());
+      launch_steps(configuration_.solver, model_, arguments,
+                   c == launch_order_.front() ? stream : robots.stream().get());
     } while (done < steps);
   }
 }
 
-void CudaBackend::join_launches() const {
+void CudaBackend::join_launches(cudaStream_t stream) const {
   for (const std::uint32_t c : std::span(launch_order_).subspan(1)) {
     const SizeClass& robots = owned_->classes[c];
     robots.done().record(robots.stream().get());
-    main().wait_for(robots.done());
+    robots.done().hold(stream);
   }
 }
 
 void CudaBackend::end_launches(Event& end) {
-  join_launches();
+  join_launches(main().get());
   end.record(main().get());
   busy_seconds_ += end.seconds_since(owned_->start);
 }

@@ -74,8 +74,8 @@ class SizeClass {
   }
   void publish_materials(std::uint32_t place, const Configuration& configuration);
   void publish_all_materials(const Configuration& configuration);
-  // Queues a kernel in stream() that computes the phases, if materials or the clock's base or dt changed.
-  void update_phases(const Clock& clock);
+  // Queues a kernel that computes the phases, if materials or the clock's base or dt changed.
+  void update_phases(const Clock& clock, cudaStream_t stream);
   // From here on the steps read copies of the materials, some of which actuators drive (actuation.h), and robots have
   // tables of their own. So that these are small, the springs name only materials that springs of the robot have:
   //

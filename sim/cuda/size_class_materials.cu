@@ -59,11 +59,11 @@ void SizeClass::publish_all_materials(const Configuration& configuration) {
   find_same_materials(0);
 }
 
-void SizeClass::update_phases(const Clock& clock) {
+void SizeClass::update_phases(const Clock& clock, cudaStream_t stream) {
   const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
   if (size() == 0 || (!phases_stale_ && same_base)) return;
   const std::size_t count = std::size_t{size()} * max_materials;
-  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream_->get()>>>(
+  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(
       view().materials, phases_.data(), count, clock);
   check(cudaGetLastError(), "computing muscle phases");
   phase_clock_ = clock;
