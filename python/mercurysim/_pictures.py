@@ -78,7 +78,7 @@ def _ffmpeg() -> str:
     if found := shutil.which("ffmpeg"):
         return found
     try:
-        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped, unused-ignore]
+        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
         return str(get_ffmpeg_exe())
     except (ImportError, RuntimeError):

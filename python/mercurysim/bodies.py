@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from . import Robot, voxel
@@ -44,9 +46,8 @@ def quadruped(
     """
     grid = np.zeros((6, 3, 3), np.uint8)
     grid[:, :, 2] = 1
-    for x in (0, 5):
-        for y in (0, 2):
-            grid[x, y, :2] = 1
+    for column, row in ((0, 0), (0, 2), (5, 0), (5, 2)):
+        grid[column, row, :2] = 1
     body = voxel(grid, edge=edge)
     middle, along = _springs(body, edge)
     upright = along[:, 2] & ~along[:, 0] & ~along[:, 1] & (middle[:, 2] < 0.5 * edge)
@@ -63,13 +64,13 @@ def quadruped(
     return _robot(body, materials, actuators, stiffness, amplitude, name)
 
 
-def _springs(body: Robot, edge: float) -> tuple[np.ndarray, np.ndarray]:
+def _springs(body: Robot, edge: float) -> tuple[Any, Any]:
     """The middle of each spring, and along which axes it extends."""
     a, b = body.masses[body.springs["a"]], body.masses[body.springs["b"]]
     return (a + b) / 2, np.abs(a - b) > edge / 2
 
 
-def _robot(body: Robot, materials: np.ndarray, actuators: dict, stiffness: float, amplitude: float, name: str) -> Robot:
+def _robot(body: Robot, materials: Any, actuators: dict[str, Any], stiffness: float, amplitude: float, name: str) -> Robot:
     table = [[0, 0, 0, 0]] + [[stiffness, sign * amplitude, 0, 0] for sign in (0, 1, -1)]
     springs = np.stack([body.springs["a"], body.springs["b"], materials], axis=1)
     return Robot(body.masses, springs, body.faces, np.array(table, np.float32), actuators=actuators, name=name)

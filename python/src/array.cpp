@@ -192,7 +192,7 @@ void* stream_from(nb::handle stream) {
 
 void bind_array(nb::module_& module) {
   nb::class_<Array>(module, "Array", description)
-      .def_prop_ro("shape", &shape_of, "Length of each axis.")
+      .def_prop_ro("shape", &shape_of, nb::sig("def shape(self) -> tuple[int, ...]"), "Length of each axis.")
       .def_prop_ro(
           "ndim", [](const Array& self) { return self.shape.size(); }, "Number of axes.")
       .def_prop_ro("size", &Array::size, "Number of elements.")
@@ -215,18 +215,23 @@ void bind_array(nb::module_& module) {
           "torch", [](nb::handle_t<Array> self) { return nb::module_::import_("torch").attr("from_dlpack")(self); },
           "The same memory as a PyTorch tensor.")
       .def("__array__", &to_numpy, nb::arg("dtype") = nb::none(), nb::arg("copy") = nb::none())
-      .def_prop_ro("__array_interface__", &host_interface, "NumPy's array interface, on the CPU only.")
-      .def_prop_ro("__cuda_array_interface__", &cuda_interface, "Numba's array interface, version 3, on CUDA only.")
+      .def_prop_ro("__array_interface__", &host_interface,
+                   nb::sig("def __array_interface__(self) -> dict[str, typing.Any]"),
+                   "NumPy's array interface, on the CPU only.")
+      .def_prop_ro("__cuda_array_interface__", &cuda_interface,
+                   nb::sig("def __cuda_array_interface__(self) -> dict[str, typing.Any]"),
+                   "Numba's array interface, version 3, on CUDA only.")
       .def("__dlpack__", &to_dlpack, nb::kw_only(), nb::arg("stream") = nb::none(), nb::arg("max_version") = nb::none(),
            nb::arg("dl_device") = nb::none(), nb::arg("copy") = nb::none(),
            "A DLPack capsule of this memory. `stream` is the consumer's, -1 = do not wait for the batch.")
-      .def("__dlpack_device__",
-           [](const Array& self) {
-             return self.on_host() ? nb::make_tuple(dlpack_cpu, 0) : nb::make_tuple(dlpack_cuda, self.cuda_device);
-           })
-      .def("__reduce_ex__", [](const Array&, nb::handle) -> nb::object {
-        throw nb::type_error("an Array cannot be pickled; pickle a copy: array.numpy()");
-      });
+      .def(
+          "__dlpack_device__",
+          [](const Array& self) {
+            return self.on_host() ? nb::make_tuple(dlpack_cpu, 0) : nb::make_tuple(dlpack_cuda, self.cuda_device);
+          },
+          nb::sig("def __dlpack_device__(self) -> tuple[int, int]"))
+      .def("__reduce_ex__", refused_pickle("an Array cannot be pickled; pickle a copy: array.numpy()"),
+           refused_pickle_signature);
 }
 
 }  // namespace mercury::python

@@ -162,7 +162,8 @@ void bind_actuation(nb::module_& module) {
           [](const ActuationArrays& self, std::int64_t robot) {
             return actuator_names(*self.robots[checked_index(robot, self.robots.size())]);
           },
-          nb::arg("robot"), "Names of the actuators of a robot, in the order of the columns.");
+          nb::sig("def names(self, robot: int) -> list[str]"), nb::arg("robot"),
+          "Names of the actuators of a robot, in the order of the columns.");
 }
 
 void bind_properties(nb::class_<Batch>& batch) {
@@ -191,7 +192,7 @@ void bind_properties(nb::class_<Batch>& batch) {
                    "The same for people, as 'CPU, 2 threads, AVX2'.")
       .def_prop_ro("notes", known([](Sim simulation) { return simulation.notes(); }),
                    "Lines worth reading, as that a robot is too large for the chip; usually none.")
-      .def_prop_ro("robots", &robots, "The robots, as they were added.")
+      .def_prop_ro("robots", &robots, nb::sig("def robots(self) -> list[Robot]"), "The robots, as they were added.")
       .def_prop_ro("offsets", &offsets,
                    "Robot i has the masses offsets[i] to offsets[i + 1] of positions; robots + 1 elements.");
 }
@@ -208,14 +209,16 @@ void bind_arrays(nb::class_<Batch>& batch) {
                    "Velocities of the centers of mass, (robots, 3) float32 [m/s]. An Array, read-only.")
       .def_prop_ro("exploded", &Batch::exploded,
                    "Which robots have exploded and are frozen, (robots,) bool. An Array, read-only.")
-      .def_prop_ro("actuation", &Batch::actuation, "What drives the actuators, an Actuation.")
+      .def_prop_ro("actuation", &Batch::actuation, nb::sig("def actuation(self) -> Actuation"),
+                   "What drives the actuators, an Actuation.")
       .def(
           "actuators",
           [](const Batch& self, std::int64_t robot) {
             const SharedRobots all = self.robots();
             return actuator_names(*all[checked_index(robot, all.size())]);
           },
-          nb::arg("robot"), "Names of the actuators of a robot, in the order of the columns of `actuation`.");
+          nb::sig("def actuators(self, robot: int) -> list[str]"), nb::arg("robot"),
+          "Names of the actuators of a robot, in the order of the columns of `actuation`.");
 }
 
 void bind_reports(nb::class_<Batch>& batch) {
@@ -243,9 +246,8 @@ void bind_reports(nb::class_<Batch>& batch) {
           },
           "The hashes of all robots, (robots,) uint64.")
       .def("__repr__", &represent)
-      .def("__reduce_ex__", [](const Batch&, nb::handle) -> nb::object {
-        throw nb::type_error("a Batch cannot be pickled or copied: make another one of batch.robots");
-      });
+      .def("__reduce_ex__", refused_pickle("a Batch cannot be pickled or copied: make another one of batch.robots"),
+           refused_pickle_signature);
 }
 
 }  // namespace

@@ -32,6 +32,13 @@ Environment environment_of(nb::handle environment);
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
                                nb::handle device, int threads);
 
+// __reduce_ex__ of objects that cannot be pickled or copied: raises TypeError.
+inline const nb::sig refused_pickle_signature(
+    "def __reduce_ex__(self, protocol: object, /) -> str | tuple[typing.Any, ...]");
+inline auto refused_pickle(const char* reason) {
+  return [reason](nb::handle, nb::handle) -> nb::object { throw nb::type_error(reason); };
+}
+
 void bind_errors(nb::module_& module);
 void bind_robot(nb::module_& module);
 void bind_generators(nb::module_& module);

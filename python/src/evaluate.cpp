@@ -255,13 +255,14 @@ void bind_evaluate(nb::module_& module) {
       .def("__next__", &Results::next)
       .def("__enter__", [](nb::handle_t<Results> self) { return nb::borrow(self); })
       .def(
-          "__exit__", [](Results& self, const nb::args&) { self.close(); }, nb::arg("error"))
+          "__exit__", [](Results& self, const nb::args&) { self.close(); }, nb::arg("error"),
+          nb::sig("def __exit__(self, *error: object) -> None"))
       .def("close", &Results::close, "Ends the evaluation: robots that are being stepped are given up.")
       .def_prop_ro("notes", &Results::notes,
                    "Lines worth reading so far, as that a robot is too large for the chip; usually none.")
-      .def("__reduce_ex__", [](const Results&, nb::handle) -> nb::object {
-        throw nb::type_error("the results of evaluate() cannot be pickled or copied: collect them in a list");
-      });
+      .def("__reduce_ex__",
+           refused_pickle("the results of evaluate() cannot be pickled or copied: collect them in a list"),
+           refused_pickle_signature);
   module.def("evaluate", &evaluate, nb::arg("source").none(), nb::arg("seconds"), nb::kw_only(),
              nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,

@@ -84,7 +84,7 @@ void bind_result(nb::module_& module) {
       .def_prop_ro(
           "exploded", [](const Result& self) { return self.evaluation.end.exploded; },
           "Whether the robot left the finite and was frozen.")
-      .def_prop_ro("quantities", &all_quantities,
+      .def_prop_ro("quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),
                    "All quantities that `mercury evolve` knows, by name: speed, efficiency, body_lengths, ... Empty if "
                    "the robot\ncould not be stepped.")
       .def_prop_ro(

@@ -103,6 +103,16 @@ def test_the_type_checker_knows_the_package(tmp_path, program, errors):
     assert result.returncode < 2 and len(found) == errors, result.stdout + result.stderr
 
 
+def test_the_package_itself_has_no_errors_of_types(tmp_path):
+    if not importlib.util.find_spec("mypy"):
+        pytest.skip("there is no mypy")
+    if not (FOLDER / "_mercury.pyi").exists():
+        pytest.skip("this build has no stubs")
+    result = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, FOLDER],
+                            capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 def test_the_example_of_the_readme_runs(tmp_path, monkeypatch, capsys):
     readme = (Path(__file__).resolve().parents[2] / "README.md").read_text()
     monkeypatch.chdir(tmp_path)

@@ -33,7 +33,7 @@ class Bodies:
         self.velocities = arrays.view(batch.velocities)
         self.centers = arrays.view(batch.centers)
         self.center_velocities = arrays.view(batch.center_velocities)
-        known: dict[int, tuple[np.ndarray, np.ndarray, float]] = {}  # copies of one robot are looked at once
+        known: dict[int, tuple[Any, Any, float]] = {}  # copies of one robot are looked at once
         offsets = np.asarray(batch.offsets)[:-1]
         for robot in robots:
             if id(robot) not in known:

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from .. import Robot
 
 
-def marker_masses(robot: Robot, count: int) -> np.ndarray:
+def marker_masses(robot: Robot, count: int) -> Any:
     """Indices of `count` masses, from the least x at rest to the greatest.
 
     The first is the mass farthest from the center at rest, each further one the mass farthest from those that are
@@ -24,7 +26,7 @@ def marker_masses(robot: Robot, count: int) -> np.ndarray:
     return np.array(sorted(chosen, key=lambda mass: (places[mass][0], mass)))
 
 
-def body_axes(rest: np.ndarray) -> np.ndarray:
+def body_axes(rest: Any) -> Any:
     """Weights w (markers, 3) so that w.T @ positions are the axes of the body, as rows.
 
     They are the columns of the affine map that fits the markers best: the axes x, y, z while the robot is at rest. They

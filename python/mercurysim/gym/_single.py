@@ -17,12 +17,12 @@ class SingleEnv(gymnasium.Env):
         self.render_mode = vector.render_mode
         self.metadata = {key: value for key, value in vector.metadata.items() if key != "autoreset_mode"}
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         super().reset(seed=seed)
         observations, infos = self.vector.reset(seed=seed)
         return observations[0], {key: value[0] for key, value in infos.items()}
 
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict]:
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         observations, rewards, terminations, truncations, infos = self.vector.step(np.asarray(action)[None])
         first = {key: value[0] for key, value in infos.items()}
         return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), first
