@@ -12,7 +12,8 @@
 // 2. Tasks run one after the other, in the order of their calls. A task finds the renderer with the size, the quality
 //    and the bodies of the task before, and sets its own.
 // 3. A fork() copies the memory but not the thread. In the child, every call throws DeviceError, and nothing waits for
-//    a thread that is not there. A child that begins to draw before its parent has is fine.
+//    a thread that is not there. A child that begins to draw before its parent has is fine. The child has to end by
+//    _exit(): handlers of NVIDIA's driver that run at a normal exit take the GPU away from the parent's context.
 #pragma once
 
 #include <functional>

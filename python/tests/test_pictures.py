@@ -400,7 +400,7 @@ if os.fork() == 0:
         except mercurysim.DeviceError as error:
             print(error, flush=True)
     print(robot._repr_png_(), flush=True)
-    sys.exit(3)
+    os._exit(3)  # as multiprocessing does: exit handlers of a GPU's driver in the child would stop the parent's drawing
 print(os.waitstatus_to_exitcode(os.wait()[1]))
 film.frame()
 print(film.close().frames, (mercurysim.picture(robot, (90, 90)) == first).all())
