@@ -26,6 +26,25 @@
 
 namespace mercury::cuda {
 
+// Over the lanes of a warp. Turing has no instruction for it.
+__device__ inline std::uint32_t maximum_of_warp(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(0xffffffffu, value);
+#else
+  for (int distance = lanes / 2; distance > 0; distance /= 2)
+    value = max(value, __shfl_xor_sync(0xffffffffu, value, distance));
+  return value;
+#endif
+}
+__device__ inline std::uint32_t sum_of_warp(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(0xffffffffu, value);
+#else
+  for (int distance = lanes / 2; distance > 0; distance /= 2) value += __shfl_xor_sync(0xffffffffu, value, distance);
+  return value;
+#endif
+}
+
 template <class Robot>
 class RobotReporter {
  public:
@@ -50,8 +69,8 @@ class RobotReporter {
           mass.set_value(field_power, owner.power);
         });
     // Strains are not negative, and such floats have the order of their bits.
-    const std::uint32_t largest = __reduce_max_sync(0xffffffffu, __float_as_uint(deformation.largest_strain));
-    const std::uint32_t strained = __reduce_add_sync(0xffffffffu, deformation.strained);
+    const std::uint32_t largest = maximum_of_warp(__float_as_uint(deformation.largest_strain));
+    const std::uint32_t strained = sum_of_warp(deformation.strained);
     if (robot_.context().lane != 0) return;
     Memory::raise(staged(offsetof(DeviceTelemetry, largest_strain)).at, field_staged * field_bytes, largest);
     Memory::add(staged(offsetof(DeviceTelemetry, strained_share)).at, field_staged * field_bytes,
