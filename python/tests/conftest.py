@@ -28,3 +28,13 @@ def device(request):
     except mercurysim.DeviceError as error:
         pytest.skip(str(error))
     return request.param
+
+
+@pytest.fixture
+def robots():
+    return mercurysim.random_voxel(4, seed=1)
+
+
+@pytest.fixture
+def batch(robots, device):
+    return mercurysim.Batch(robots, device=device)

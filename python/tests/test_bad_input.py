@@ -10,16 +10,6 @@ import pytest
 import mercurysim
 
 
-@pytest.fixture
-def robots():
-    return mercurysim.random_voxel(4, seed=1)
-
-
-@pytest.fixture
-def batch(robots, device):
-    return mercurysim.Batch(robots, device=device)
-
-
 def test_masks_that_do_not_fit_are_refused(batch):
     before = batch.hashes()
     for mask in [[True] * 3, [], np.zeros(5, dtype=bool)]:

@@ -9,16 +9,6 @@ import pytest
 import mercurysim
 
 
-@pytest.fixture
-def robots():
-    return mercurysim.random_voxel(4, seed=1)
-
-
-@pytest.fixture
-def batch(robots, device):
-    return mercurysim.Batch(robots, device=device)
-
-
 def test_step_advances_time(batch):
     batch.step()
     assert batch.steps == 1
