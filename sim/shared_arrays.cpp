@@ -2,12 +2,9 @@
 // Arrays that a Simulation shares with programs: parts of the state, and what drives the actuators.
 #include "sim/shared_arrays.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "mercury/simulation.h"
@@ -30,6 +27,11 @@ std::vector<float> read(const Backend& backend, const SharedArray<float>& array)
   std::vector<float> values(array.rows * array.columns);
   if (!values.empty()) backend.copy_shared(values.data(), array.data.get(), values.size() * sizeof(float));
   return values;
+}
+
+// A robot's materials as they are now; `table` = null: its own.
+std::span<const Material> present_materials(const Robot& robot, const std::unique_ptr<MaterialTable>& table) {
+  return table ? std::span<const Material>(*table) : materials_of(robot);
 }
 
 // What the materials of an actuator have in common, NaN where they differ.
@@ -114,8 +116,7 @@ void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<con
   const std::size_t size = robots.size() * columns;
   std::vector<float> values(4 * size, none);
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    const std::span<const Material> materials =
-        tables[i] ? std::span<const Material>(*tables[i]) : materials_of(*robots[i]);
+    const std::span<const Material> materials = present_materials(*robots[i], tables[i]);
     for (std::size_t a = 0; a < actuators[i].size(); ++a) {
       for (const MaterialId id : actuators[i][a].materials)
         actuator_of_[i * max_materials + id] = static_cast<std::uint8_t>(a);
@@ -165,7 +166,7 @@ void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<co
     }
     if (same) continue;
     MaterialTable table{};
-    std::ranges::copy(tables[i] ? std::span<const Material>(*tables[i]) : materials_of(*robots[i]), table.begin());
+    std::ranges::copy(present_materials(*robots[i], tables[i]), table.begin());
     for (std::size_t id = 0; id < max_materials; ++id) {
       const std::size_t a = actuator_of_[i * max_materials + id];
       if (a == ActuationSources::no_actuator) continue;
