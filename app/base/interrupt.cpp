@@ -13,15 +13,15 @@ namespace {
 
 constexpr int slots = 64;  // unfinished files that a second signal removes, at most
 
-std::atomic<bool> stop_requested = false;
+std::atomic<int> first_signal = 0;
 // The signal handler reads these. It may use only lock-free atomics and async-signal-safe functions such as unlink().
 std::array<std::atomic<const char*>, slots> unfinished{};
 std::atomic<unsigned> file_count = 0;  // for unique names
 
-static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void on_signal(int number) {
-  if (!stop_requested.exchange(true)) return;
+  if (int none = 0; first_signal.compare_exchange_strong(none, number)) return;
   for (auto& slot : unfinished)
     if (const char* path = slot.load()) unlink(path);
   _exit(128 + number);
@@ -41,7 +41,13 @@ void catch_interrupts() {
   }
 }
 
-bool interrupted() { return stop_requested.load(std::memory_order_relaxed); }
+bool interrupted() { return stop_signal() != 0; }
+
+int stop_signal() { return first_signal.load(std::memory_order_relaxed); }
+
+void throw_if_interrupted() {
+  if (interrupted()) throw Interrupted();
+}
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(target), path_(target) {
   path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));

@@ -5,6 +5,7 @@
 //   second signal   removes unfinished files and ends the program at once
 #pragma once
 
+#include <exception>
 #include <filesystem>
 
 namespace mercury {
@@ -15,6 +16,15 @@ void catch_interrupts();
 
 // True once a signal has arrived.
 bool interrupted();
+// The number of the first signal; 0 = none has arrived.
+int stop_signal();
+
+// The user stopped the work.
+struct Interrupted : std::exception {
+  const char* what() const noexcept override { return "stopped"; }
+};
+// Throws Interrupted once a signal has arrived: for work that leaves nothing to finish.
+void throw_if_interrupted();
 
 // A file under a temporary name until it is complete. It is removed if the program ends earlier, by an exception or by
 // a second signal.

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "app/base/messages.h"
+
 namespace mercury {
 namespace {
 
@@ -82,7 +84,7 @@ Progress::Progress(std::string what, std::string unit, std::int64_t total, bool 
       start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+  if (shown_ && terminal_) write_to_standard_error("\r\033[K");
 }
 
 void Progress::update_with_fraction(double done) {
@@ -95,9 +97,10 @@ void Progress::update_with_fraction(double done) {
   shown_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   if (terminal_)
-    fmt::print(stderr, "\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, terminal_columns()));
+    write_to_standard_error(
+        fmt::format("\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, terminal_columns())));
   else
-    fmt::print(stderr, "{}\n", progress_line(what_, unit_, done, total_, elapsed));
+    write_to_standard_error(progress_line(what_, unit_, done, total_, elapsed) + "\n");
 }
 
 }  // namespace mercury

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/base/messages.h"
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
@@ -169,10 +170,10 @@ std::vector<Measurement> sweep(const BenchOptions& options, const Configuration&
       all.push_back(measure(options, configuration, count));
     } catch (const DeviceError& error) {
       if (all.empty()) throw;
-      fmt::print(stderr, "mercury: the sweep stops before {} robots: {}\n", count, error.what());
+      warn(fmt::format("the sweep stops before {} robots: {}", count, error.what()));
       break;
     }
-    fmt::print(stderr, "{:>8} robots  {:.3e} springs/s\n", count, all.back().springs_per_second());
+    say(fmt::format("{:>8} robots  {:.3e} springs/s", count, all.back().springs_per_second()));
   }
   return all;
 }

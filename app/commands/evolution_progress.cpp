@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 
 namespace mercury {
@@ -21,7 +22,7 @@ EvolutionProgress::EvolutionProgress(int first_generation, int last_generation, 
       generation_(first_generation), start_(Clock::now()), last_drawn_(start_) {}
 
 EvolutionProgress::~EvolutionProgress() {
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+  if (shown_ && terminal_) write_to_standard_error("\r\033[K");
 }
 
 std::string EvolutionProgress::line() const {
@@ -46,9 +47,9 @@ void EvolutionProgress::draw() {
   // A line as wide as the terminal would wrap.
   const auto room = static_cast<std::size_t>(std::max(1, terminal_columns() - 1));
   if (terminal_)
-    fmt::print(stderr, "\r{}\033[K", line().substr(0, room));
+    write_to_standard_error(fmt::format("\r{}\033[K", line().substr(0, room)));
   else
-    fmt::print(stderr, "{}\n", line());
+    write_to_standard_error(line() + "\n");
 }
 
 void EvolutionProgress::update(std::size_t done, std::size_t all) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/evolution_progress.h"
@@ -32,8 +33,6 @@ struct EvolveOptions {
   bool resume = false, prepare = false, merge = false, force = false, quiet = false;
   EvolutionOptions run;
 };
-
-void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", message); }
 
 double median_score(const Evolution& evolution) {
   std::vector<double> scores;

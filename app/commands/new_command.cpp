@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/commands/best_of.h"
 #include "app/commands/commands.h"
 #include "app/options/generator_options.h"
@@ -47,15 +48,15 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
   output.prepare();
   const std::vector<Winner> winners = best_of(contest, make, output.seed(), output.count());
   if (interrupted()) {
-    fmt::print(stderr, "mercury: stopped; nothing was written\n");
+    say("stopped; nothing was written");
     return 1;
   }
   for (const Winner& winner : winners) {
     output.write(*winner.robot);
-    fmt::print(stderr, "mercury: {} got {:.3g} m far\n", winner.robot->name, winner.distance);
+    say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.distance));
   }
   if (winners.size() < output.count())
-    fmt::print(stderr, "mercury: only {} robots could be made and did not explode\n", winners.size());
+    warn(fmt::format("only {} robots could be made and did not explode", winners.size()));
   return winners.size() < output.count() ? 1 : 0;
 }
 

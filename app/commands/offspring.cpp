@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
@@ -74,15 +75,15 @@ int write_children(const RobotOutput& output, std::uint64_t count, const std::ve
         found = is_new();
       }
       if (interrupted()) {
-        fmt::print(stderr, "mercury: stopped; the files so far are whole\n");
+        say("stopped; the files so far are whole");
         return 1;
       }
       if (found) {
         output.write(*child.robot);
       } else {
         all = false;
-        fmt::print(stderr, "mercury: child {} was left out: {}\n", first + i,
-                   child.robot ? fmt::format("the bodies of {} draws are there already", draws) : child.failure);
+        warn(fmt::format("child {} was left out: {}", first + i,
+                         child.robot ? fmt::format("the bodies of {} draws are there already", draws) : child.failure));
       }
     }
     progress.update(static_cast<std::int64_t>(first + portion));

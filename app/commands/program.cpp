@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/base/suggestion.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
@@ -32,18 +33,15 @@ constexpr const char* examples =
     "  mercury info                                              what this machine can do\n"
     "Help on a command: mercury render --help";
 
-// Every message of the program is one line.
+// The parser writes some messages in several lines.
 std::string one_line(std::string text) {
   for (char& letter : text)
     if (letter == '\n' || letter == '\r') letter = ' ';
   return text;
 }
 
-// Shortens a message that quotes a long text. Its ends stay: they say where the error is and what would be accepted.
-std::string shortened(const std::string& text) {
-  constexpr std::size_t longest = 800, end = 300;
-  return text.size() <= longest ? text : text.substr(0, end) + " ... " + text.substr(text.size() - end);
-}
+// As shells number the end of a program by a signal: 130 for Ctrl-C.
+int stopped_status() { return 128 + stop_signal(); }
 
 // Whether the launcher ends this process because another one has failed, which takes a moment.
 bool launcher_ends_all() {
@@ -56,7 +54,7 @@ void print_message(const std::string& message) {
   const int rank = rank_by_launcher();
   if (rank > 0 && launcher_ends_all()) return;
   const std::string place = rank > 0 ? fmt::format("rank {}: ", rank) : "";
-  fmt::print(stderr, "mercury: {}{}\n", place, shortened(one_line(message)));
+  warn(place + message);
 }
 
 class Program {
@@ -83,7 +81,8 @@ class Program {
     try {
       parse(std::move(arguments));
       if (!body_) return help_ ? status_done : status_failed;
-      const int status = body_();
+      int status = body_();
+      if (status == status_failed && interrupted()) status = stopped_status();
       if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw std::runtime_error("standard output cannot be written");
       return status;
@@ -96,7 +95,7 @@ class Program {
       return status_failed;
     } catch (const std::exception& error) {
       print_message(error.what());
-      return status_failed;
+      return interrupted() ? stopped_status() : status_failed;
     }
   }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 
+#include "app/base/messages.h"
 #include "app/commands/commands.h"
 #include "app/commands/render_subject.h"
 #include "app/options/option_values.h"
@@ -12,8 +13,6 @@
 
 namespace mercury {
 namespace {
-
-void say(const std::string& message) { fmt::print(stderr, "mercury: {}\n", message); }
 
 // One file or folder that is written.
 struct Output {

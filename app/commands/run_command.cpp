@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/commands/commands.h"
@@ -136,12 +137,12 @@ int report_results(const RunOptions& options, const RunReport& report) {
 
   const auto exploded = std::count_if(report.robots.begin(), report.robots.end(), [](auto& r) { return r.exploded; });
   if (exploded > 0)
-    fmt::print(stderr, "mercury: {} of {} robots exploded; a smaller --dt or --solver xpbd helps\n", exploded,
-               report.robots.size());
+    warn(
+        fmt::format("{} of {} robots exploded; a smaller --dt or --solver xpbd helps", exploded, report.robots.size()));
   if (report.interrupted) {
-    fmt::print(stderr, "mercury: stopped at {:.6g} s\n", report.seconds);
+    say(fmt::format("stopped at {:.6g} s", report.seconds));
     if (report.missing > 0)
-      fmt::print(stderr, "mercury: {} robots did not come so far and are not in the report\n", report.missing);
+      warn(fmt::format("{} robots did not come so far and are not in the report", report.missing));
     return 1;
   }
   return options.strict && exploded > 0 ? 1 : 0;
@@ -156,8 +157,8 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Repro repro = load_repro(file);
   Simulation simulation = start_of(repro, device);
   if (simulation.device_name() != repro.device_name)
-    fmt::print(stderr, "mercury: the explosion of {} was seen on {}; this device, {}, may give another result\n",
-               file.string(), repro.device_name, simulation.device_name());
+    warn(fmt::format("the explosion of {} was seen on {}; this device, {}, may give another result", file.string(),
+                     repro.device_name, simulation.device_name()));
   ReproChanges changes(repro);
   const double seconds = options.simulation.seconds(0);
   const std::int64_t last =
@@ -166,7 +167,7 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
 }
 
 void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "mercury: {}\n", note);
+  for (const std::string& note : notes) warn(note);
 }
 
 // A recording needs all robots in one simulation.

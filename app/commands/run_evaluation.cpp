@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/commands/evaluation_results.h"
 #include "mercury/clock.h"
@@ -53,8 +54,7 @@ class Failures {
       if (failed_[i].size() == request.count)
         throw InputError("--random", "none could be grown: " + failed_[i].front().reason);
       for (const FailedRobot& robot : failed_[i])
-        fmt::print(stderr, "mercury: {}-{}-{} was left out: {}\n", request.kind, request.seed, robot.index,
-                   robot.reason);
+        warn(fmt::format("{}-{}-{} was left out: {}", request.kind, request.seed, robot.index, robot.reason));
     }
   }
 

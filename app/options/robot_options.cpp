@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "app/base/messages.h"
 #include "app/options/option_values.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
@@ -23,7 +24,7 @@ std::vector<Robot> random_robots(const RandomRobots& request) {
   std::vector<Robot> robots = make_random_robots(request, &failed);
   if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
   for (const FailedRobot& robot : failed)
-    fmt::print(stderr, "mercury: {}-{}-{} was left out: {}\n", request.kind, request.seed, robot.index, robot.reason);
+    warn(fmt::format("{}-{}-{} was left out: {}", request.kind, request.seed, robot.index, robot.reason));
   return robots;
 }
 

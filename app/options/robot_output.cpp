@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/options/option_values.h"
 #include "mercury/error.h"
@@ -89,14 +90,14 @@ int write_robots(const RobotOutput& output, const MakeRobot& make) {
     const auto count = static_cast<std::size_t>(std::min(at_once, output.count() - first));
     for (const auto& [robot, failure] : make_robots(make, output.seed(), first, count)) {
       if (interrupted()) {
-        fmt::print(stderr, "mercury: stopped; the files so far are whole\n");
+        say("stopped; the files so far are whole");
         return 1;
       }
       if (robot) {
         output.write(*robot);
       } else {
         all = false;
-        fmt::print(stderr, "mercury: a robot was left out: {}\n", failure);
+        warn(fmt::format("a robot was left out: {}", failure));
       }
     }
     progress.update(static_cast<std::int64_t>(first + count));

@@ -7,32 +7,17 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "app/base/messages.h"
+
 namespace mercury {
 namespace {
 
 constexpr std::size_t longest_name = 200;  // bytes of a group's name
 
-// Length of the well-formed UTF-8 character at the beginning of `text`; 0 = it is not one.
-std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80                    ? 1
-                             : first >= 0xc2 && first < 0xe0 ? 2
-                             : first >= 0xe0 && first < 0xf0 ? 3
-                             : first >= 0xf0 && first < 0xf5 ? 4
-                                                             : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
-  const bool beyond = (first == 0xed && byte(1) >= 0xa0) || (first == 0xf4 && byte(1) >= 0x90);
-  return overlong || beyond ? 0 : length;
-}
-
 std::string legal(std::string_view name) {
   std::string result;
   while (!name.empty() && result.size() < longest_name) {
-    const std::size_t length = character_length(name);
+    const std::size_t length = utf8_length(name);
     const bool plain =
         length > 1 || (length == 1 && static_cast<unsigned char>(name[0]) >= 0x20 && name[0] != '/' && name[0] != 0x7f);
     result += plain ? std::string(name.substr(0, length)) : "_";

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "app/base/messages.h"
+
 namespace mercury::window {
 namespace {
 
@@ -32,7 +34,7 @@ std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& p
 void FrameReport::write_gl_messages(PanelContext& context) {
   for (const std::string& message : context.window.gl_context().take_messages()) {
     context.log.write("gl", {{"text", message}});
-    fmt::print(stderr, "mercury: OpenGL: {}\n", message);
+    warn(fmt::format("OpenGL: {}", message));
   }
 }
 

@@ -108,7 +108,7 @@ TEST_F(EvolveCommand, InterruptedRunsStopCleanlyAndGoOn) {
   wait_for_generations("run", 2);
   child.signal(SIGINT);
   const Outcome outcome = outcome_of(child);
-  ASSERT_EQ(outcome.status, 1) << outcome.messages;
+  ASSERT_EQ(outcome.status, 128 + SIGINT) << outcome.messages;
   EXPECT_THAT(outcome.messages, testing::EndsWith("mercury evolve " + path("run") + " --resume goes on\n"));
   EXPECT_THAT(listing("run"), testing::Contains("lineage.csv"));
   ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);

@@ -215,7 +215,7 @@ TEST_F(RunCommand, InterruptedRunReportsItsResults) {
   while (child.messages().empty()) std::this_thread::yield();
   child.signal(SIGINT);
   const Outcome outcome = outcome_of(child);
-  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.status, 128 + SIGINT);
   const json report = json::parse(outcome.output, nullptr, false);
   EXPECT_EQ(report["interrupted"], true);
   EXPECT_EQ(report["robots"].size(), 2u);

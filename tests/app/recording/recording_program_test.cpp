@@ -55,7 +55,7 @@ TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
   while (child.messages().empty()) std::this_thread::yield();  // progress shows that it simulates
   child.signal(SIGINT);
   const Outcome outcome = outcome_of(child);
-  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.status, 128 + SIGINT);
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
   TrajectoryReader reader(file());
   ASSERT_GT(reader.frames(), 1u);
