@@ -2,6 +2,7 @@
 #include "mercury/robot_file.h"
 
 #include <algorithm>
+#include <optional>
 #include <system_error>
 
 #include "mercury/error.h"
@@ -11,25 +12,46 @@
 namespace mercury {
 namespace {
 
-std::vector<std::filesystem::path> robot_files_in(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
+std::string lower_case(std::string text) {
+  for (char& letter : text)
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  return text;
+}
+
+// .json and .cbor, in capitals too; none for another extension.
+std::optional<RobotFormat> format_of(const std::filesystem::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".json") return RobotFormat::json;
+  if (extension == ".cbor") return RobotFormat::cbor;
+  return std::nullopt;
+}
+
+// Adds the robot files of a folder, sorted, each folder's own files before those of the folders inside it. Links to
+// folders are not followed, since they may lead in circles.
+void add_files_of(const std::filesystem::path& folder, bool recursive, std::vector<std::filesystem::path>& files) {
+  std::vector<std::filesystem::path> own, folders;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const auto extension = entry->path().extension();
-    if ((extension == ".json" || extension == ".cbor") && !entry->is_directory()) files.push_back(entry->path());
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) {
+      if (!entry->is_symlink(ignored)) folders.push_back(entry->path());
+    } else if (format_of(entry->path())) {
+      own.push_back(entry->path());
+    }
   }
   if (error) throw InputError(folder.string(), error.message());
-  if (files.empty()) throw InputError(folder.string(), "the folder holds no robot, neither *.json nor *.cbor");
-  std::sort(files.begin(), files.end());
-  return files;
+  std::ranges::sort(own);
+  files.insert(files.end(), own.begin(), own.end());
+  if (!recursive) return;
+  std::ranges::sort(folders);
+  for (const auto& inner : folders) add_files_of(inner, recursive, files);
 }
 
 }  // namespace
 
 RobotFormat robot_format_of(const std::filesystem::path& path) {
+  if (const auto format = format_of(path)) return *format;
   const auto extension = path.extension();
-  if (extension == ".json") return RobotFormat::json;
-  if (extension == ".cbor") return RobotFormat::cbor;
   throw InputError(path.string(), extension.empty()
                                       ? "a robot file needs an extension; give .json or .cbor"
                                       : "extension " + extension.string() + " is not a robot's; give .json or .cbor");
@@ -80,16 +102,26 @@ void save_robot(const std::filesystem::path& path, const Robot& robot) {
   write_whole_file(path, document);
 }
 
-std::vector<Robot> load_robots(std::span<const std::filesystem::path> paths) {
-  std::vector<Robot> robots;
+std::vector<std::filesystem::path> robot_files(std::span<const std::filesystem::path> paths, bool recursive) {
+  std::vector<std::filesystem::path> files;
   std::error_code ignored;
   for (const auto& path : paths) {
     if (!std::filesystem::is_directory(path, ignored)) {
-      robots.push_back(load_robot(path));
+      files.push_back(path);
       continue;
     }
-    for (const auto& file : robot_files_in(path)) robots.push_back(load_robot(file));
+    const std::size_t before = files.size();
+    add_files_of(path, recursive, files);
+    if (files.size() == before)
+      throw InputError(path.string(), recursive ? "the folder and those in it hold no robot, neither *.json nor *.cbor"
+                                                : "the folder holds no robot, neither *.json nor *.cbor");
   }
+  return files;
+}
+
+std::vector<Robot> load_robots(std::span<const std::filesystem::path> paths) {
+  std::vector<Robot> robots;
+  for (const auto& file : robot_files(paths)) robots.push_back(load_robot(file));
   return robots;
 }
 

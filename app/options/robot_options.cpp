@@ -77,8 +77,11 @@ std::vector<Robot> RobotOptions::load() const {
 RobotSequence RobotOptions::sequence() const {
   require_robots();
   RobotSequence sequence{.random = random()};
+  require_robot_files();
   std::vector<std::shared_ptr<const Robot>> files;
-  for (Robot& robot : load_files()) {
+  sequence.files = robot_files(this->files());
+  for (const auto& file : sequence.files) {
+    Robot robot = load_robot(file);
     sequence.environments.push_back(environment_of(robot));
     files.push_back(std::make_shared<const Robot>(std::move(robot)));
   }
@@ -101,12 +104,15 @@ RobotSequence RobotOptions::sequence() const {
   return sequence;
 }
 
-std::vector<Robot> RobotOptions::load_files() const {
+void RobotOptions::require_robot_files() const {
   if (const auto file = recording())
     throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
   if (const auto file = repro())
     throw InputError(file->string(), "is a repro; mercury run and mercury view show it, here give robots");
-  if (paths_.empty()) return {};
+}
+
+std::vector<Robot> RobotOptions::load_files() const {
+  require_robot_files();
   return load_robots(files());
 }
 

@@ -20,7 +20,8 @@ namespace mercury {
 struct RobotSequence {
   RobotSource source;  // throws InputError for a random robot that cannot be made
   std::size_t count = 0;
-  std::vector<RandomRobots> random;  // the last robots of the sequence, one request after the other
+  std::vector<std::filesystem::path> files;  // of the first robots of the sequence, one each
+  std::vector<RandomRobots> random;          // the last robots of the sequence, one request after the other
   // The environments that the robots are made for, see environment_of().
   std::vector<std::string> environments;
 };
@@ -59,6 +60,7 @@ class RobotOptions {
 
  private:
   void require_robots() const;
+  void require_robot_files() const;
   RandomRobots random_from(const std::string& request) const;
 
   std::vector<std::string> paths_;   // files and folders

@@ -137,6 +137,27 @@ TEST_F(RobotFiles, FoldersAreReadByName) {
   EXPECT_THAT(names, testing::ElementsAre("z.cbor", "b/1.json", "b/10.cbor", "b/2.json"));
 }
 
+TEST_F(RobotFiles, ExtensionsMayBeInCapitals) {
+  const Robot robot{.name = "a", .masses = {{0, 0, 0}}};
+  for (const char* name : {"a.JSON", "b.Cbor", "c.json"}) save_robot(folder / name, robot);
+  EXPECT_EQ(robot_format_of("b.Cbor"), RobotFormat::cbor);
+  EXPECT_THAT(robot_files(std::vector{folder}),
+              testing::ElementsAre(folder / "a.JSON", folder / "b.Cbor", folder / "c.json"));
+  for (const fs::path& file : robot_files(std::vector{folder})) EXPECT_EQ(load_robot(file), robot) << file;
+}
+
+TEST_F(RobotFiles, FoldersInsideFoldersAreReadOnRequest) {
+  for (const char* name : {"a", "a/b", "a/empty", "c"}) fs::create_directory(folder / name);
+  for (const char* name : {"z.json", "a/2.json", "a/b/1.cbor", "c/0.json"}) put(name, "");
+  fs::create_directory_symlink(folder, folder / "c" / "circle");
+  const std::vector<fs::path> all{folder};
+  EXPECT_THAT(robot_files(all), testing::ElementsAre(folder / "z.json"));
+  EXPECT_THAT(robot_files(all, true),
+              testing::ElementsAre(folder / "z.json", folder / "a/2.json", folder / "a/b/1.cbor", folder / "c/0.json"));
+  const auto refusal = message_of([&] { robot_files(std::vector{folder / "a" / "empty"}, true); });
+  EXPECT_EQ(refusal, "a/empty: the folder and those in it hold no robot, neither *.json nor *.cbor");
+}
+
 TEST_F(RobotFiles, WhatCannotBeReadIsNamed) {
   const auto load = [&](const char* name) { return message_of([&] { load_robots(std::vector{folder / name}); }); };
   fs::create_directory(folder / "empty");

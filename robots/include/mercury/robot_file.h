@@ -14,7 +14,8 @@ namespace mercury {
 
 enum class RobotFormat { json, cbor };
 
-// The format by the file's extension. Throws InputError for an extension other than .json and .cbor.
+// The format by the file's extension, in small letters or capitals. Throws InputError for an extension other than .json
+// and .cbor.
 RobotFormat robot_format_of(const std::filesystem::path& path);
 
 // The robot in a document, validated. A document without a name gives a robot without a name.
@@ -34,6 +35,11 @@ Robot load_robot(const std::filesystem::path& path);
 // Writes a file, whole or not at all. Throws InputError as serialize_robot, and for a file that cannot be written, with
 // the system's reason.
 void save_robot(const std::filesystem::path& path, const Robot& robot);
+
+// The robot files that these files and folders stand for, in the given order. A folder stands for its *.json and *.cbor
+// files, sorted by name. If `recursive`, those of the folders inside it follow; links to folders are not followed.
+// Throws InputError for a folder without such files. Files need not exist.
+std::vector<std::filesystem::path> robot_files(std::span<const std::filesystem::path> paths, bool recursive = false);
 
 // The robots of files and folders, in the given order. A folder stands for its *.json and *.cbor files, sorted by name;
 // folders inside it are ignored. Throws InputError as load_robot, and for a folder without such files.

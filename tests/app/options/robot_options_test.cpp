@@ -39,6 +39,7 @@ TEST_F(RobotOptionsTest, SequenceMakesTheRobotsThatLoadReturns) {
   ASSERT_EQ(sequence.count, expected.size());
   for (std::size_t i = expected.size(); i-- > 0;) EXPECT_EQ(*sequence.source(i), expected[i]);
   EXPECT_EQ(sequence.source(6), nullptr);
+  EXPECT_EQ(sequence.files, std::vector<std::filesystem::path>{path("pair.json")});
   EXPECT_EQ(sequence.environments, (std::vector<std::string>{"land", "", "ocean"}));
 }
 
