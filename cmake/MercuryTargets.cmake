@@ -23,6 +23,9 @@ if(MERCURY_SANITIZE)
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${MERCURY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
   target_link_options(mercury_build_flags INTERFACE -fsanitize=${MERCURY_SANITIZE})
+  # The compiler loses track of initialisation in code that it has instrumented.
+  target_compile_options(mercury_build_flags INTERFACE
+    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>)
 endif()
 
 # mercury_add_library(NAME source...): the static library mercury_NAME, also known as mercury::NAME.
@@ -43,5 +46,7 @@ function(mercury_add_executable name)
   target_link_libraries(${name} PRIVATE mercury_build_flags)
   if(MERCURY_SANITIZE MATCHES "address|leak")
     target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/foreign_leaks.cpp)
+  elseif(MERCURY_SANITIZE MATCHES "thread")
+    target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/foreign_races.cpp)
   endif()
 endfunction()
