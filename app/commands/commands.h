@@ -26,5 +26,6 @@ void add_cross_command(CLI::App& program, const Choose& choose);
 void add_grow_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);
 void add_info_command(CLI::App& program, const Choose& choose);
+void add_describe_command(CLI::App& program, const Choose& choose);
 
 }  // namespace mercury

@@ -75,6 +75,7 @@ class Program {
     add_grow_command(app_, choose);
     add_bench_command(app_, choose);
     add_info_command(app_, choose);
+    add_describe_command(app_, choose);
   }
 
   int run(std::vector<std::string> arguments) {

@@ -65,11 +65,11 @@ void EvolutionOptions::add_to(CLI::App& command) {
                             const char* form) {
     return command.add_option(name, values, help)->allow_extra_args(false)->type_name(form)->group(search_group);
   };
-  command
-      .add_option("--from", from_,
-                  fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders to start "
-                              "from (default voxel)",
-                              generator_kinds()))
+  offer(command.add_option("--from", from_,
+                           fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders "
+                                       "to start from (default voxel)",
+                                       generator_kinds())),
+        names_of_kinds())
       ->type_name("KIND[:SIZE]|PATH...")
       ->group(search_group);
   add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
@@ -79,11 +79,14 @@ void EvolutionOptions::add_to(CLI::App& command) {
             fmt::format("{}", fmt::join(names_of_algorithms(), "|")),
             [](const std::string&, const std::string& text) { return text; })
       ->group(search_group);
-  repeated("--objective", objectives_,
-           fmt::format("Formula to maximise (default distance); several give a front. Quantities: {}",
-                       fmt::join(names_of_quantities(), ", ")),
-           "FORMULA");
-  repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]");
+  offer(repeated("--objective", objectives_,
+                 fmt::format("Formula to maximise (default distance); several give a front. Quantities: {}",
+                             fmt::join(names_of_quantities(), ", ")),
+                 "FORMULA"),
+        names_of_quantities());
+  offer(
+      repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]"),
+      names_of_quantities());
   const auto search = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
     add_number(command, name, value, help, form)->group(search_group);
   };

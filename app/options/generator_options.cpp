@@ -80,21 +80,31 @@ struct Writer {
 void GeneratorOptions::add_to(CLI::App& command, const Generator& generator) {
   for (const GeneratorParameter& parameter : generator.parameters) {
     const std::string option = option_of(parameter.name);
-    command
-        .add_option_function<std::string>(
-            option,
-            [this, &parameter, option](const std::string& text) {
-              values_[parameter.name] = parameter_value_from(parameter, option, text);
-            },
-            description_of(parameter))
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-        ->type_name(std::visit(Form{parameter}, parameter.initial))
-        ->group(generator.title);
+    CLI::Option* added = command
+                             .add_option_function<std::string>(
+                                 option,
+                                 [this, &parameter, option](const std::string& text) {
+                                   values_[parameter.name] = parameter_value_from(parameter, option, text);
+                                 },
+                                 description_of(parameter))
+                             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+                             ->type_name(std::visit(Form{parameter}, parameter.initial))
+                             ->group(generator.title);
+    const bool whole = std::holds_alternative<std::int64_t>(parameter.initial);
+    const bool number =
+        std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);
+    if (whole || number) note_number(added, whole);
   }
 }
 
 void GeneratorOptions::add_to(CLI::App& command) {
   for (const Generator& generator : generators()) add_to(command, generator);
+}
+
+std::vector<std::string> names_of_kinds() {
+  std::vector<std::string> names;
+  for (const Generator& generator : generators()) names.push_back(generator.kind);
+  return names;
 }
 
 std::string option_text(const ParameterValue& value) { return std::visit(Writer{}, value); }

@@ -26,6 +26,9 @@ class GeneratorOptions {
   ParameterValues values_;
 };
 
+// "voxel", "nn", ...
+std::vector<std::string> names_of_kinds();
+
 // The value as it is written on the command line: "0.3", "y", "64,64", "4x3x3..7x5x4".
 std::string option_text(const ParameterValue& value);
 

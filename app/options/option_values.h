@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "mercury/error.h"
@@ -49,16 +50,25 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, Value& value, con
       ->type_name(form);
 }
 
+// Notes on an option, for completion and for the list of options (app/commands/command_list.h): what kind of number it
+// takes, if any ("number", "whole number"), and words that its value may begin with beside those that its form names.
+CLI::Option* note_number(CLI::Option* option, bool whole);
+CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values);
+std::string number_kind(const CLI::Option& option);
+std::vector<std::string> offered_values(const CLI::Option& option);
+
 // An option with a number as value.
 template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, const std::string& description,
                         const std::string& form) {
-  return add_value(app, name, value, description, form, number_from<Number>);
+  return note_number(add_value(app, name, value, description, form, number_from<Number>),
+                     !std::is_floating_point_v<Number>);
 }
 template <class Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<Number>& value,
                         const std::string& description, const std::string& form) {
-  return add_value(app, name, value, description, form, number_from<Number>);
+  return note_number(add_value(app, name, value, description, form, number_from<Number>),
+                     !std::is_floating_point_v<Number>);
 }
 
 // An option with text as value.

@@ -32,14 +32,12 @@ std::vector<Robot> random_robots(const RandomRobots& request) {
 
 void RobotOptions::add_to(CLI::App& command) {
   command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
-  command
-      .add_option("--random", random_,
-                  fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
-                              "given several times",
-                              generator_kinds()))
-      ->allow_extra_args(false)
-      ->type_name("KIND:N[:SEED[:FIRST]]")
-      ->group("Robots");
+  CLI::Option* random = command.add_option(
+      "--random", random_,
+      fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
+                  "given several times",
+                  generator_kinds()));
+  offer(random, names_of_kinds())->allow_extra_args(false)->type_name("KIND:N[:SEED[:FIRST]]")->group("Robots");
   add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
   generators_.add_to(command);
 }

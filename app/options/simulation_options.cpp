@@ -68,9 +68,9 @@ std::string where_and_default(std::string_view name) {
   return fmt::format("(default {})", fmt::join(defaults, ", "));
 }
 
-// How the help shows a value: "KG/M3", or "X" for a number without unit.
-std::string form_of(std::string_view unit) {
-  std::string form(unit.empty() ? "X" : unit);
+// How the help shows a value: "KG/M3", or "X" for a number without unit, "N" for a whole one.
+std::string form_of(std::string_view unit, bool whole = false) {
+  std::string form(!unit.empty() ? unit : whole ? "N" : "X");
   for (char& letter : form) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
   return form;
 }
@@ -86,7 +86,8 @@ template <class Struct>
 void add_parameters(CLI::App& command, Struct& values) {
   for_each_parameter(values, [&](const auto& parameter, auto& value) {
     const std::string help = fmt::format("{} (default {})", parameter.help, text_of(parameter.default_value()));
-    add_number(command, option_of(parameter.name), value, help, form_of(parameter.unit))->group(simulation_group);
+    const std::string form = form_of(parameter.unit, std::is_integral_v<std::remove_reference_t<decltype(value)>>);
+    add_number(command, option_of(parameter.name), value, help, form)->group(simulation_group);
   });
 }
 
@@ -136,7 +137,8 @@ void SimulationOptions::add_environment_parameters(CLI::App& command) {
           fmt::format("{}{} {}", parameter.help, parameter.takes_downward_magnitude ? ", downwards or as a vector" : "",
                       where_and_default(name));
       if constexpr (!std::is_same_v<Value, Vec3>)
-        option = add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>);
+        option = note_number(
+            add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>), false);
       else if (parameter.takes_downward_magnitude)
         option = add_value(command, target.option, target.value, help, "G|X,Y,Z", gravity_from);
       else

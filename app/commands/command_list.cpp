@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/command_list.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "app/base/version.h"
+#include "app/options/option_values.h"
+
+namespace mercury {
+namespace {
+
+bool is_word(std::string_view text) {
+  const auto of_word = [](unsigned char letter) {
+    return std::islower(letter) || std::isdigit(letter) || letter == '-' || letter == '_';
+  };
+  return !text.empty() && std::ranges::all_of(text, of_word) && std::isalnum(static_cast<unsigned char>(text.front()));
+}
+
+// The words that a form names, as in "auto|cpu|cuda[:N]", and whether it allows nothing else.
+std::pair<std::vector<std::string>, bool> words_of(const std::string& form) {
+  std::vector<std::string> words;
+  bool closed = true;
+  const std::vector<std::string_view> parts = split(form, '|');
+  for (const std::string_view part : parts) {
+    const std::string_view word = part.substr(0, part.find('['));
+    if (is_word(word)) words.emplace_back(word);
+    closed = closed && is_word(part);
+  }
+  return {words, closed && parts.size() > 1};
+}
+
+// ".json" and ".cbor" of "FILE.json" and "Robot files (.json, .cbor)".
+std::vector<std::string> extensions_in(const std::string& text) {
+  std::vector<std::string> extensions;
+  for (std::size_t dot = text.find('.'); dot != std::string::npos; dot = text.find('.', dot + 1)) {
+    std::size_t end = dot + 1;
+    while (end < text.size() && std::isalnum(static_cast<unsigned char>(text[end]))) ++end;
+    const bool begins = dot == 0 || std::string_view(" (,E").find(text[dot - 1]) != std::string_view::npos;
+    const std::string extension = text.substr(dot, end - dot);
+    if (begins && end > dot + 1 && std::ranges::find(extensions, extension) == extensions.end())
+      extensions.push_back(extension);
+  }
+  return extensions;
+}
+
+std::string kind_from_form(const std::string& form) {
+  bool file = false, folder = false;
+  for (const std::string_view part : split(form, '|')) {
+    file = file || part.starts_with("FILE") || part.starts_with("PATH");
+    folder = folder || part.starts_with("FOLDER") || part.starts_with("PATH");
+  }
+  if (file || folder) return file && folder ? "path" : file ? "file" : "folder";
+  return form == "PROGRAM" ? "program" : "text";
+}
+
+OptionDescription description_of(const CLI::Option& option) {
+  OptionDescription found;
+  found.positional = option.get_positional();
+  if (found.positional) {
+    found.names = {option.get_single_name()};
+  } else {
+    for (const std::string& name : option.get_snames()) found.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) found.names.push_back("--" + name);
+  }
+  found.help = option.get_description();
+  found.group = option.get_group();
+  found.required = option.get_required();
+  if (option.get_items_expected_max() == 0) {
+    found.kind = "switch";
+    return found;
+  }
+  found.form = option.get_type_name();
+  found.repeatable = option.get_multi_option_policy() != CLI::MultiOptionPolicy::TakeLast;
+  found.many = option.get_expected_max() >= CLI::detail::expected_max_vector_size && option.get_allow_extra_args();
+  const auto [words, closed] = words_of(found.form);
+  const std::vector<std::string> offered = offered_values(option);
+  found.choices = offered.empty() ? words : offered;
+  found.kind = number_kind(option);
+  if (found.kind.empty()) found.kind = closed ? "choice" : kind_from_form(found.form);
+  if (found.kind == "file" || found.kind == "path") {
+    found.extensions = extensions_in(found.form);
+    if (found.extensions.empty()) found.extensions = extensions_in(found.help);
+  }
+  return found;
+}
+
+void add_commands(const CLI::App& command, std::vector<std::string> words, std::vector<CommandDescription>& list) {
+  const std::vector<const CLI::App*> children =
+      command.get_subcommands([](const CLI::App* child) { return !child->get_group().empty(); });
+  list.push_back({.words = words,
+                  .help = command.get_description(),
+                  .footer = command.get_footer(),
+                  .options = options_of(command),
+                  .family = !children.empty()});
+  for (const CLI::App* child : children) {
+    std::vector<std::string> below = words;
+    below.push_back(child->get_name());
+    add_commands(*child, std::move(below), list);
+  }
+}
+
+}  // namespace
+
+std::string CommandDescription::name() const {
+  return words.empty() ? "mercury" : fmt::format("mercury {}", fmt::join(words, " "));
+}
+
+std::vector<OptionDescription> options_of(const CLI::App& command) {
+  std::vector<OptionDescription> options;
+  for (const CLI::Option* option : command.get_options())
+    if (!option->get_group().empty()) options.push_back(description_of(*option));
+  std::ranges::stable_partition(options, [](const OptionDescription& option) { return option.positional; });
+  return options;
+}
+
+std::vector<CommandDescription> command_list(const CLI::App& program) {
+  std::vector<CommandDescription> list;
+  add_commands(program, {}, list);
+  return list;
+}
+
+std::string json_of(const std::vector<CommandDescription>& commands) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const CommandDescription& command : commands) {
+    nlohmann::ordered_json options = nlohmann::ordered_json::array();
+    for (const OptionDescription& option : command.options)
+      options.push_back({{"names", option.names},
+                         {"kind", option.kind},
+                         {"form", option.form},
+                         {"choices", option.choices},
+                         {"extensions", option.extensions},
+                         {"help", option.help},
+                         {"group", option.group},
+                         {"positional", option.positional},
+                         {"required", option.required},
+                         {"repeatable", option.repeatable},
+                         {"many", option.many}});
+    list.push_back(
+        {{"words", command.words}, {"family", command.family}, {"help", command.help}, {"options", options}});
+  }
+  const nlohmann::ordered_json document{
+      {"format", "mercury-options"}, {"version", 1}, {"program", program_version}, {"commands", list}};
+  return document.dump(1) + "\n";
+}
+
+}  // namespace mercury

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// All commands and options of the program as plain data. Help pages, man pages, completion and the list for other
+// programs (`mercury describe-options json`) are made from it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace mercury {
+
+struct OptionDescription {
+  std::vector<std::string> names;  // "-o", "--output"; "ROBOTS" of a positional argument
+  std::string form;                // of the value: "FILE.h5", "force|xpbd"; empty for a switch
+  // "switch" (no value), "number", "whole number", "choice" (one of `choices`, nothing else), "file", "folder", "path"
+  // (a file or a folder), "program", "text".
+  std::string kind;
+  std::vector<std::string> choices;  // words that are accepted or, unless kind is "choice", that a value may begin with
+  std::vector<std::string> extensions;  // ".json"; of files that are read or written. Empty = any
+  std::string help, group;
+  bool positional = false, required = false;
+  bool repeatable = false;  // each occurrence counts; otherwise the last one
+  bool many = false;        // takes several values: ROBOTS ...
+};
+
+struct CommandDescription {
+  std::vector<std::string> words;  // {"new", "voxel"}; empty for the program itself
+  std::string help, footer;
+  std::vector<OptionDescription> options;  // positional arguments first, then in the order of the help
+  bool family = false;                     // needs another word, as "new" does
+
+  std::string name() const;  // "mercury new voxel"
+};
+
+// The program, its commands and the kinds of each, parents first. Leaves out hidden commands.
+std::vector<CommandDescription> command_list(const CLI::App& program);
+
+// The options of one command, in the same form.
+std::vector<OptionDescription> options_of(const CLI::App& command);
+
+// The list as JSON:
+//
+//   {"format": "mercury-options", "version": 1, "program": "mercury 0.2.0",
+//    "commands": [{"words": ["new", "voxel"], "family": false, "help": "Random voxel robots",
+//                  "options": [{"names": ["-o", "--output"], "kind": "path", "form": "FILE|FOLDER", "choices": [],
+//                               "extensions": [".json", ".cbor"], "help": "...", "group": "Options",
+//                               "positional": false, "required": true, "repeatable": false, "many": false}, ...]},
+//                 ...]}
+//
+// Members are those of the structs above. The first command has no words: it is the program with its global options,
+// which every command takes too.
+std::string json_of(const std::vector<CommandDescription>& commands);
+
+}  // namespace mercury
