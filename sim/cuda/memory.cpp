@@ -5,6 +5,7 @@
 #include <bit>
 #include <map>
 #include <mutex>
+#include <new>
 
 namespace mercury::cuda {
 namespace {
@@ -29,7 +30,12 @@ class PinnedPool {
       }
     }
     void* data = nullptr;
-    check(cudaHostAlloc(&data, bytes, cudaHostAllocMapped | cudaHostAllocPortable), "allocating pinned memory");
+    const cudaError_t error = cudaHostAlloc(&data, bytes, cudaHostAllocMapped | cudaHostAllocPortable);
+    if (error == cudaErrorMemoryAllocation) {
+      (void)cudaGetLastError();
+      throw std::bad_alloc();  // of the host
+    }
+    check(error, "allocating pinned memory");
     return static_cast<std::byte*>(data);
   }
 
@@ -98,8 +104,7 @@ void* zeros(std::size_t bytes, cudaStream_t stream, const Allocate& allocate) {
   }
   if (error == cudaErrorMemoryAllocation) {
     (void)cudaGetLastError();
-    throw DeviceError("the GPU has not enough memory left for " + std::to_string(bytes >> 20) +
-                      " MiB: give it fewer or smaller robots");
+    throw DeviceError(no_room_text(bytes));
   }
   check(error, "allocating device memory");
   check(cudaMemsetAsync(data, 0, bytes, stream), "clearing device memory");

@@ -7,9 +7,8 @@
 
 #include <cuda_runtime_api.h>
 
-#include <string>
-
 #include "mercury/error.h"
+#include "sim/cuda/failures.h"
 
 namespace mercury::cuda {
 
@@ -17,7 +16,7 @@ namespace mercury::cuda {
 inline void check(cudaError_t error, const char* what) {
   if (error == cudaSuccess) return;
   (void)cudaGetLastError();  // the next launch shall not report it again
-  throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+  throw DeviceError(failure_text(error, what));
 }
 
 // A moment in a stream.
