@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A GPU without room or one that fails: one line says so, and what helps.
+#include "sim/cuda/failures.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "mercury/cuda_devices.h"
+#include "mercury/simulation.h"
+#include "sim/cuda/memory.h"
+#include "tests/sim/bodies.h"
+
+namespace mercury {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+TEST(CudaFailures, SayWhatHappenedAndWhatHelps) {
+  EXPECT_THAT(cuda::failure_text(cudaErrorIllegalAddress, "stepping"),
+              MatchesRegex("the GPU failed while stepping \\(.+\\): start the program again.*"));
+  EXPECT_THAT(cuda::failure_text(cudaErrorECCUncorrectable, "stepping"), HasSubstr("start the program again"));
+  EXPECT_THAT(cuda::failure_text(cudaErrorDevicesUnavailable, "choosing the device"), HasSubstr("another program"));
+  EXPECT_THAT(cuda::failure_text(cudaErrorInvalidValue, "stepping"), MatchesRegex("CUDA: stepping: .+"));
+}
+
+class OnGpu : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  }
+  static Configuration configuration() { return {.device = {.kind = DeviceKind::cuda}}; }
+  static Robot body() { return bodies::voxels({10, 10, 10}, {.stiffness = 50}); }
+};
+
+// As if another program held the rest.
+TEST_F(OnGpu, WithoutRoomSaysWhatIsNeededAndWhatIsFreeAndGoesOnAfterwards) {
+  constexpr std::size_t left = std::size_t{256} << 20;
+  const std::vector<Robot> few(2, body()), many(20000, body());
+  Simulation before(configuration(), few);  // takes what a first use takes
+  std::vector<std::shared_ptr<void>> taken;
+  for (std::size_t piece = std::size_t{8} << 30; piece >= left / 4; piece /= 2)
+    while (free_cuda_memory(0) > left + piece) taken.push_back(cuda::allocate_to_share(piece));
+
+  try {
+    const Simulation batch(configuration(), many);
+    ADD_FAILURE() << "20,000 robots of 1,331 masses fit into " << free_cuda_memory(0) << " bytes";
+  } catch (const DeviceError& error) {
+    EXPECT_THAT(error.what(), MatchesRegex("the GPU has no room for [0-9.]+ [MG]iB more; [0-9.]+ [MG]iB of its "
+                                           "[0-9.]+ GiB are free: give it fewer or smaller robots, or end other "
+                                           "programs that use it"));
+  }
+  // What was there goes on, and once there is room, the batch is accepted.
+  before.step(10);
+  taken.clear();
+  Simulation after(configuration(), few), batch(configuration(), many);
+  after.step(10);
+  batch.step(10);
+  EXPECT_EQ(before.hash(0), after.hash(0));
+  EXPECT_EQ(batch.hash(0), after.hash(0));
+}
+
+// Reads a mask from where no memory is: all that the process still wants from the GPU fails.
+void lose(Simulation& simulation) { simulation.reset_in_stream(reinterpret_cast<const std::uint8_t*>(8), nullptr); }
+
+// In a process of its own, since it can use the GPU no more.
+TEST_F(OnGpu, ThatFailsEndsInADeviceError) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto attempt = [] {
+    Simulation simulation(configuration(), std::vector<Robot>{body()});
+    simulation.step(10);
+    lose(simulation);
+    try {
+      simulation.step(10);
+      simulation.hash(0);
+    } catch (const DeviceError& error) {
+      std::fprintf(stderr, "%s", error.what());
+      std::exit(7);
+    }
+    std::exit(8);
+  };
+  EXPECT_EXIT(attempt(), testing::ExitedWithCode(7), "^the GPU failed while .*: start the program again");
+}
+
+}  // namespace
+}  // namespace mercury
