@@ -125,6 +125,14 @@ void describe(const TrajectoryReader& trajectory) {
   constexpr std::size_t shown = 20;
   const Configuration& configuration = trajectory.configuration();
   fmt::print("{}\n", trajectory.path().string());
+  if (trajectory.unfinished()) {
+    const std::filesystem::path& path = trajectory.path();
+    const bool temporary = path.extension() == ".part";
+    print_line("unfinished", "its program was killed, or is still recording; it holds the frames below");
+    print_line("",
+               fmt::format("mercury render, mercury view and Python's Recording open it as it is{}",
+                           temporary ? "; to keep it, rename it to " + path.stem().stem().filename().string() : ""));
+  }
   print_line("recorded by", trajectory.program() + " on " + trajectory.device_name());
   print_line("frames",
              trajectory.frames() == 0
@@ -150,7 +158,7 @@ void describe(const TrajectoryReader& trajectory) {
 int info(const InfoOptions& options) {
   if (options.paths.empty()) return describe_machine(options.ffmpeg);
   for (const std::filesystem::path path : options.paths) {
-    if (is_trajectory_name(path)) {
+    if (is_readable_trajectory_name(path)) {
       describe(TrajectoryReader(path));
     } else if (is_run_folder(path)) {
       describe(RunHistory(path));

@@ -69,7 +69,7 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
     opened.repro_file = file;
     return;
   }
-  if (is_trajectory_name(file.string())) {
+  if (is_readable_trajectory_name(file.string())) {
     read_recording(file, opened, messages);
     return;
   }

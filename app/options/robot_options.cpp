@@ -51,7 +51,7 @@ std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const s
 }
 
 std::optional<std::filesystem::path> RobotOptions::recording() const {
-  return alone(is_trajectory_name, "a recording is played alone; give it without other robots");
+  return alone(is_readable_trajectory_name, "a recording is played alone; give it without other robots");
 }
 
 std::optional<std::filesystem::path> RobotOptions::repro() const {

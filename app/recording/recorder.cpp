@@ -39,6 +39,7 @@ void Recorder::take() {
   const TrajectoryWriter::Frame frame = writer_.add(simulation_.steps(), simulation_.time());
   simulation_.read_positions(frame.positions);
   simulation_.read_velocities(frame.velocities);
+  writer_.commit();
   next_ = simulation_.steps() + std::min(every_, std::numeric_limits<std::int64_t>::max() - simulation_.steps());
 }
 

@@ -2,6 +2,7 @@
 #include "app/recording/trajectory_hdf5_reading.h"
 
 #include <algorithm>
+#include <fstream>
 
 namespace mercury::hdf5 {
 namespace {
@@ -48,6 +49,14 @@ std::pair<std::string, std::size_t> read_text_bytes(hid_t dataset, const std::st
   std::string bytes(count * size, '\0');
   if (!bytes.empty()) read_dataset(dataset, text_type_like(type, size), bytes.data());
   return {std::move(bytes), size};
+}
+
+// Whether the file says that a program is writing it: the mark stays when that program is killed.
+bool is_marked_as_written(const std::filesystem::path& path) {
+  constexpr std::size_t version = 8, flags = 11;  // bytes of the superblock, from version 3 on
+  std::array<char, 12> start{};
+  return std::ifstream(path, std::ios::binary).read(start.data(), start.size()) && start[version] >= 3 &&
+         (start[flags] & 1) != 0;
 }
 
 }  // namespace
@@ -101,6 +110,28 @@ std::string read_text(hid_t object, const std::string& name) {
   return without_padding(std::move(text));
 }
 
+Handle open_file(const std::filesystem::path& path, bool& unfinished) {
+  prepare();
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  checked(H5Pset_file_locking(access, true, true));
+  unfinished = false;
+  try {
+    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
+  } catch (const Error& error) {
+    if (error.number() == 0 && H5Fis_hdf5(path.c_str()) <= 0) throw Error("is not an HDF5 file");
+    if (!is_marked_as_written(path)) throw;
+  }
+  unfinished = true;
+  // A piece of metadata may be half written. The library reads it again, after 1, 2, 4, ... ns.
+  checked(H5Pset_metadata_read_attempts(access, 20));
+  try {
+    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access));
+  } catch (const Error&) {
+    throw Error(
+        "was not finished and cannot be read: its program is still writing the beginning, or ended while it did");
+  }
+}
+
 void require_content(hid_t dataset, std::uint64_t bytes) {
   constexpr std::uint64_t deflate_limit = 1032;    // no dataset shrinks further
   constexpr std::uint64_t always_accepted = 4096;  // [bytes]
@@ -110,6 +141,27 @@ void require_content(hid_t dataset, std::uint64_t bytes) {
   checked(H5Fget_filesize(file, &file_size));
   if (bytes > always_accepted && bytes / deflate_limit > std::min<std::uint64_t>(stored, file_size))
     throw Error("a dataset announces more than the file holds");
+}
+
+void require_chunk(hid_t dataset, hsize_t row, std::uintmax_t file_size) {
+  Extent start(extent_of(dataset).size(), 0);
+  start.at(0) = row;
+  unsigned mask = 0;
+  haddr_t address = HADDR_UNDEF;
+  hsize_t size = 0;
+  checked(H5Dget_chunk_info_by_coord(dataset, start.data(), &mask, &address, &size));
+  if (address == HADDR_UNDEF || address > file_size || size > file_size - address)
+    throw Error("was not finished, and the end of what was written is missing");
+}
+
+void read_last_rows(hid_t dataset, hid_t memory_type, hid_t memory, hid_t selection, void* content) {
+  try {
+    checked(H5Dread(dataset, memory_type, memory, selection, H5P_DEFAULT, content));
+  } catch (const Error&) {
+    const Handle properties(H5Pcreate(H5P_DATASET_XFER));
+    checked(H5Pset_edc_check(properties, H5Z_DISABLE_EDC));
+    checked(H5Dread(dataset, memory_type, memory, selection, properties, content));
+  }
 }
 
 void read_dataset(hid_t dataset, hid_t memory_type, void* content) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,22 @@ template <class Number, std::size_t count>
 std::array<Number, count> read_attributes(hid_t object, const std::string& name);
 std::string read_text(hid_t object, const std::string& name);
 
+// Opens a file for reading. One that another program is writing, or was writing when it was killed, opens if that
+// program wrote in HDF5's mode for multiple readers; `unfinished` is then true.
+Handle open_file(const std::filesystem::path& path, bool& unfinished);
+
 // Throws Error unless the file is large enough to hold that many bytes of the dataset's content, compressed as far as
 // deflate can. Call it before memory is allocated: a damaged file may announce any size.
 void require_content(hid_t dataset, std::uint64_t bytes);
+// Throws Error unless the first `file_size` bytes of the file have the chunk that holds this row. In an unfinished file
+// that lost its end, the library would read zeros there.
+void require_chunk(hid_t dataset, hsize_t row, std::uintmax_t file_size);
 // Reads the whole content.
 void read_dataset(hid_t dataset, hid_t memory_type, void* content);
+// Reads a selection of a dataset in which a program was writing when it was killed. A chunk that it wrote a second
+// time, with more rows, may have the checksum of neither: its first rows, which did not change, are read without the
+// check.
+void read_last_rows(hid_t dataset, hid_t memory_type, hid_t memory, hid_t selection, void* content);
 std::string read_text_dataset(hid_t parent, const std::string& name);
 std::vector<std::string> read_texts_dataset(hid_t parent, const std::string& name);
 

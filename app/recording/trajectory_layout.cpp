@@ -34,6 +34,11 @@ bool is_trajectory_name(const std::filesystem::path& path) {
   return extension == ".h5" || extension == ".hdf5" || extension == ".h5md";
 }
 
+bool is_readable_trajectory_name(const std::filesystem::path& path) {
+  // UnfinishedFile chooses the temporary names: NAME.PROCESS-NUMBER.part.
+  return is_trajectory_name(path) || (path.extension() == ".part" && is_trajectory_name(path.stem().stem()));
+}
+
 std::vector<std::string> group_names(std::span<const std::string> robot_names) {
   std::vector<std::string> names;
   for (const std::string& name : robot_names) names.push_back(legal(name));

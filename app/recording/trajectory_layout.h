@@ -15,6 +15,9 @@ inline constexpr std::array<int, 2> h5md_version{1, 1};
 
 // Whether the name has the extension of a trajectory: .h5, .hdf5 or .h5md.
 bool is_trajectory_name(const std::filesystem::path& path);
+// Whether a trajectory can be read from a file of this name: is_trajectory_name(), or the temporary name that such a
+// file has while it is written, as swim.h5.1234-0.part.
+bool is_readable_trajectory_name(const std::filesystem::path& path);
 
 // A group's name for each robot, all different: the robot's own name where HDF5 allows it. Slashes and control
 // characters become "_"; "", "." and ".." become "robot"; long names are cut; a name that is already taken gets "-2",

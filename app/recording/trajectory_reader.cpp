@@ -18,18 +18,6 @@ using namespace hdf5;
 
 constexpr std::size_t held_bytes = std::size_t{64} << 20;
 
-Handle open_file(const std::filesystem::path& path) {
-  prepare();
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS));
-  checked(H5Pset_file_locking(access, true, true));
-  try {
-    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
-  } catch (const Error& error) {
-    if (error.number() == 0 && H5Fis_hdf5(path.c_str()) <= 0) throw Error("is not an HDF5 file");
-    throw;
-  }
-}
-
 // All elements of a dataset of any length whose elements have the extent `row`.
 template <class Element>
 std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memory_type, const Extent& row) {
@@ -118,8 +106,8 @@ std::size_t last_not_above(const std::vector<Value>& rising, Value value) {
 std::size_t chunk_length(hid_t dataset) {
   const Handle properties(H5Dget_create_plist(dataset));
   if (H5Pget_layout(properties) != H5D_CHUNKED) return 1;
-  Extent chunk(3, 1);
-  checked(H5Pget_chunk(properties, 3, chunk.data()));
+  Extent chunk(H5S_MAX_RANK, 1);
+  checked(H5Pget_chunk(properties, H5S_MAX_RANK, chunk.data()));
   return std::max<std::size_t>(1, chunk[0]);
 }
 
@@ -140,7 +128,7 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(pa
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw InputError(path.string(), "is a folder, not a trajectory");
   guarded([&] {
-    file_ = open_file(path);
+    file_ = open_file(path, unfinished_);
     if (!has_member(file_, "h5md") || !has_member(file_, "parameters") || !has_member(file_, "particles"))
       throw Error("is not a trajectory that mercury recorded");
     read_parameters();
@@ -162,12 +150,49 @@ void TrajectoryReader::read_parameters() {
   if (has_attribute(parameters, "seed")) seed_ = read_attribute<std::uint64_t>(parameters, "seed");
   every_ = read_attribute<std::int64_t>(parameters, "every");
   configuration_ = read_configuration(parameters);
-  steps_ = read_rows<std::int64_t>(parameters, "step", H5T_NATIVE_INT64, {});
-  times_ = read_rows<double>(parameters, "time", H5T_NATIVE_DOUBLE, {});
+  if (unfinished_) {
+    read_unfinished_times(parameters);
+  } else {
+    steps_ = read_rows<std::int64_t>(parameters, "step", H5T_NATIVE_INT64, {});
+    times_ = read_rows<double>(parameters, "time", H5T_NATIVE_DOUBLE, {});
+  }
   if (steps_.size() != times_.size()) throw Error("step and time differ in length");
   for (std::size_t i = 0; i < times_.size(); ++i)
     if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1] && steps_[i] > steps_[i - 1])))
       throw Error("the times of its frames do not grow");
+}
+
+// The program that writes the file may be ahead with one of the two.
+void TrajectoryReader::read_unfinished_times(hid_t parameters) {
+  const Handle step = open_dataset(parameters, "step"), time = open_dataset(parameters, "time");
+  const Extent steps = extent_of(step), times = extent_of(time);
+  if (steps.size() != 1 || times.size() != 1) throw Error("step or time has another shape");
+  const Extent extent{std::min(steps[0], times[0])};
+  const std::size_t frames = extent[0];
+  if (frames == 0) return;
+  for (const hid_t dataset : {hid_t{step}, hid_t{time}}) {
+    require_content(dataset, frames * sizeof(double));
+    require_chunks(dataset, 0, frames);
+  }
+  const Handle all = space_of(extent);
+  const auto read = [&](hid_t dataset, hid_t type, void* content) {
+    const Handle stored(H5Dget_space(dataset));
+    checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{0}.data(), nullptr, extent.data(), nullptr));
+    read_last_rows(dataset, type, all, stored, content);
+  };
+  steps_.resize(frames);
+  times_.resize(frames);
+  read(step, H5T_NATIVE_INT64, steps_.data());
+  read(time, H5T_NATIVE_DOUBLE, times_.data());
+}
+
+void TrajectoryReader::require_chunks(hid_t dataset, std::size_t first, std::size_t count) const {
+  std::error_code error;
+  const std::uintmax_t file_size = std::filesystem::file_size(path_, error);
+  if (error) throw Error(error.message());
+  const std::size_t length = chunk_length(dataset);
+  for (std::size_t row = first; row < first + count; row = row - row % length + length)
+    require_chunk(dataset, row, file_size);
 }
 
 void TrajectoryReader::read_robots() {
@@ -212,9 +237,12 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
 }
 
 void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
-  for (const char* element : {"position", "velocity"})
-    if (extent_of(open_dataset(open_group(robot, element), "value")) != Extent{steps_.size(), masses, 3})
+  for (const char* element : {"position", "velocity"}) {
+    Extent extent = extent_of(open_dataset(open_group(robot, element), "value"));
+    if (unfinished_ && !extent.empty()) extent[0] = std::min<hsize_t>(extent[0], steps_.size());  // it may be ahead
+    if (extent != Extent{steps_.size(), masses, 3})
       throw Error(std::string(element) + "/value has another shape than its masses and the file's frames");
+  }
 }
 
 std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }
@@ -240,7 +268,11 @@ void TrajectoryReader::read_block(Block& block, std::size_t first) {
     checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{first, 0, 0}.data(), nullptr, extent.data(), nullptr));
     checked(
         H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[i], 0}.data(), nullptr, extent.data(), nullptr));
-    checked(H5Dread(dataset, H5T_NATIVE_FLOAT, held, stored, H5P_DEFAULT, block.values.data()));
+    if (unfinished_) require_chunks(dataset, first, count);
+    if (unfinished_ && first + count == frames())
+      read_last_rows(dataset, H5T_NATIVE_FLOAT, held, stored, block.values.data());
+    else
+      checked(H5Dread(dataset, H5T_NATIVE_FLOAT, held, stored, H5P_DEFAULT, block.values.data()));
   }
   block.first = first;
   block.count = count;

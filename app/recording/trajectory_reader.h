@@ -37,6 +37,10 @@ class TrajectoryReader {
   std::optional<std::uint64_t> seed() const { return seed_; }
   std::int64_t every() const { return every_; }  // steps per frame
 
+  // Whether the program that wrote the file has not finished it: it was killed, or it still runs. The trajectory then
+  // has the frames up to the last that it had flushed when the reader opened the file; explosions are not marked.
+  bool unfinished() const { return unfinished_; }
+
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
   double time(std::size_t frame) const { return times_.at(frame); }  // [s]
@@ -60,6 +64,8 @@ class TrajectoryReader {
   };
 
   void read_parameters();
+  void read_unfinished_times(hid_t parameters);
+  void require_chunks(hid_t dataset, std::size_t first, std::size_t count) const;
   void read_robots();
   RecordedRobot read_robot(const std::string& group, hid_t particles) const;
   void require_frames(hid_t robot, std::size_t masses) const;
@@ -70,6 +76,7 @@ class TrajectoryReader {
 
   std::filesystem::path path_;
   hdf5::Handle file_, particles_;
+  bool unfinished_ = false;
   Configuration configuration_;
   std::string device_name_, program_;
   std::optional<std::uint64_t> seed_;

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "app/base/version.h"
 #include "app/recording/trajectory_hdf5_writing.h"
@@ -62,6 +64,14 @@ std::runtime_error write_failure(const std::filesystem::path& path, const Error&
 
 }  // namespace
 
+double wall_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool flush_is_due(double since_flush, double last_frame_took, double period) {
+  return since_flush >= period || since_flush + last_frame_took >= 2 * period;
+}
+
 // Runs work that writes. If it fails, the file would take space on a full disk until the program ends, so it is
 // truncated.
 template <class Work>
@@ -77,7 +87,8 @@ void TrajectoryWriter::guarded(const Work& work) {
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
                                    std::span<const Robot* const> robots, std::span<const Material> materials,
                                    const char* option)
-    : path_(path), unfinished_(path), deflate_(header.deflate) {
+    : path_(path), unfinished_(path), deflate_(header.deflate), flush_period_(header.flush_period),
+      clock_(header.clock), last_commit_(clock_()), last_flush_(last_commit_) {
   if (!is_trajectory_name(path))
     throw InputError(option, "\"" + path.string() + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
   std::error_code ignored;
@@ -108,6 +119,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     for (std::size_t i = 0; i < robots.size(); ++i)
       write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
   });
+  last_commit_ = last_flush_ = clock_();
 }
 
 TrajectoryWriter::~TrajectoryWriter() = default;
@@ -171,7 +183,6 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   const Handle box = create_group(group, "box");
   write_attribute(box, "dimension", std::int32_t{3});
   write_texts(box, "boundary", {"none", "none", "none"});
-  create_frames(group, robot.masses.size());
   write_unit(write_constant(group, "mass", 1, {robot.masses.size()}), "kg");
   write_unit(write_dataset(group, "rest_position", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {robot.masses.size(), 3},
                            robot.masses.data()),
@@ -243,42 +254,71 @@ void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
   }
 }
 
+// With the first block. From here on, the file can be read at every moment.
+void TrajectoryWriter::start_frames() {
+  const auto count = static_cast<std::size_t>(frames_);
+  if (count > 0 && count < frames_per_block_) {
+    frames_per_block_ = count;
+    for (auto* values : {&positions_, &velocities_}) {
+      values->resize(count * offsets_.back());
+      values->shrink_to_fit();
+    }
+  }
+  for (std::size_t robot = 0; robot < groups_.size(); ++robot)
+    create_frames(open_group(particles_, groups_[robot]), offsets_[robot + 1] - offsets_[robot]);
+  checked(H5Fstart_swmr_write(file_));
+  started_ = true;
+}
+
 TrajectoryWriter::Frame TrajectoryWriter::add(std::int64_t step, double time) {
-  if (steps_.size() == frames_per_block_) flush();
-  const std::size_t masses = offsets_.back(), first = steps_.size() * masses;
+  const std::size_t masses = offsets_.back(), first = static_cast<std::size_t>(frames_ - written_) * masses;
   steps_.push_back(step);
   times_.push_back(time);
   ++frames_;
   return {std::span(positions_).subspan(first, masses), std::span(velocities_).subspan(first, masses)};
 }
 
-void TrajectoryWriter::flush() {
-  if (steps_.empty()) return;
-  guarded([&] {
-    const hsize_t first = static_cast<hsize_t>(frames_) - steps_.size();
-    flush_times(first);
-    for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
-      flush_robot(robot, "position", positions_, first);
-      flush_robot(robot, "velocity", velocities_, first);
-    }
-  });
-  steps_.clear();
-  times_.clear();
+void TrajectoryWriter::commit() {
+  const double now = clock_(), before = std::exchange(last_commit_, now);
+  if (flush_is_due(now - last_flush_, now - before, flush_period_)) return flush();
+  if (frames_ - written_ == static_cast<std::int64_t>(frames_per_block_)) guarded([&] { write_block(); });
 }
 
-void TrajectoryWriter::flush_times(hsize_t first) {
-  append_rows(open_dataset(parameters_, "step"), H5T_NATIVE_INT64, first, steps_.size(), steps_.data());
-  append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, times_.size(), times_.data());
+// Appends the frames in memory, not yet their steps and times.
+void TrajectoryWriter::write_block() {
+  if (!started_) start_frames();
+  if (frames_ == written_) return;
+  for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
+    write_frames(robot, "position", positions_);
+    write_frames(robot, "velocity", velocities_);
+  }
+  written_ = frames_;
 }
 
-void TrajectoryWriter::flush_robot(std::size_t robot, const char* element, const std::vector<Vec3>& values,
-                                   hsize_t first) {
-  const hsize_t count = steps_.size(), masses = offsets_[robot + 1] - offsets_[robot];
+void TrajectoryWriter::write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values) {
+  const auto first = static_cast<hsize_t>(written_), count = static_cast<hsize_t>(frames_ - written_);
+  const hsize_t masses = offsets_[robot + 1] - offsets_[robot];
   const Handle group(H5Gopen2(particles_, groups_[robot].c_str(), H5P_DEFAULT)), series = open_group(group, element);
   const Handle held(H5Screate_simple(3, Extent{count, offsets_.back(), 3}.data(), nullptr));
   checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[robot], 0}.data(), nullptr,
                               Extent{count, masses, 3}.data(), nullptr));
   append_rows(open_dataset(series, "value"), H5T_NATIVE_FLOAT, first, count, values.data(), held);
+}
+
+void TrajectoryWriter::flush() {
+  if (started_ && flushed_ == frames_) return;
+  guarded([&] {
+    write_block();
+    checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    const auto first = static_cast<hsize_t>(flushed_);
+    append_rows(open_dataset(parameters_, "step"), H5T_NATIVE_INT64, first, steps_.size(), steps_.data());
+    append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, times_.size(), times_.data());
+    checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
+  });
+  flushed_ = frames_;
+  last_flush_ = clock_();
+  steps_.clear();
+  times_.clear();
 }
 
 void TrajectoryWriter::finish(std::span<const Telemetry> telemetry) {

@@ -17,6 +17,9 @@
 
 namespace mercury {
 
+// Wall time from any start [s].
+double wall_clock();
+
 // Everything in a trajectory except robots and frames.
 struct TrajectoryHeader {
   Configuration configuration;
@@ -25,10 +28,26 @@ struct TrajectoryHeader {
   std::int64_t every = 1;             // steps per frame
   std::int64_t expected_frames = 0;   // 0 = unknown
   int deflate = 0;                    // compression of the frames: 0 = none, 1 (fast) .. 9
+  double flush_period = 5;            // [s] of wall time from one flush to the next; 0 = flush each frame
+  double (*clock)() = wall_clock;     // [s]; tests set their own
 };
+
+// Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.
+// All in seconds of wall time.
+bool flush_is_due(double since_flush, double last_frame_took, double period);
 
 // Streams: holds a few frames (at most 64 MB, or one frame if that is more) and keeps no HDF5 object open per robot.
 // The file has a temporary name until finish(); without finish() nothing is left behind.
+//
+// A program that is killed leaves a file that opens with the frames of the last flush. This is HDF5's mode for a single
+// writer and multiple readers (SWMR): metadata reaches the file after what it points to. The file announces frames in
+// the order
+//
+//   positions and velocities of all robots  ->  flush  ->  step and time  ->  flush
+//
+// so the length of step is a number of frames that all robots have. In this mode no dataset may be created, so the
+// datasets of the frames are created with the first block, when the speed of the simulation is known: a slow one gets
+// blocks of one period, and is rarely flushed with an incomplete block, which HDF5 would have to write again.
 class TrajectoryWriter {
  public:
   // `materials` has robots.size() * max_materials elements, as Simulation::materials(). Robots may share a name;
@@ -42,12 +61,13 @@ class TrajectoryWriter {
   struct Frame {
     std::span<Vec3> positions, velocities;
   };
-  // The next frame. Fill it before any other call. Steps increase from frame to frame.
-  // Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
+  // The next frame. Fill it, then call commit(). Steps increase from frame to frame.
   Frame add(std::int64_t step, double time);
+  // Writes and flushes what is due. Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
+  void commit();
 
   // Records which robots exploded (`telemetry` has one element per robot), closes the file and gives it its name.
-  // Throws like add().
+  // Throws like commit().
   void finish(std::span<const Telemetry> telemetry);
 
   std::int64_t frames() const { return frames_; }
@@ -59,24 +79,29 @@ class TrajectoryWriter {
   void write_connectivity(const std::string& group, const Robot& robot, hid_t particles);
   void write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials);
   void write_actuators(hid_t particles, const Robot& robot);
+  void start_frames();
   void create_frames(hid_t particles, std::size_t masses);
+  void write_block();
+  void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
   void flush();
-  void flush_times(hsize_t first);
-  void flush_robot(std::size_t robot, const char* element, const std::vector<Vec3>& values, hsize_t first);
   template <class Work>
   void guarded(const Work& work);
 
   std::filesystem::path path_;
   UnfinishedFile unfinished_;
   hdf5::Handle file_, particles_, connectivity_, parameters_;
-  std::vector<std::string> groups_;   // names in /particles
-  std::vector<std::size_t> offsets_;  // of each robot's first mass in a frame, then the number of masses
-  std::vector<std::int64_t> steps_;   // of the frames in memory
-  std::vector<double> times_;
+  std::vector<std::string> groups_;           // names in /particles
+  std::vector<std::size_t> offsets_;          // of each robot's first mass in a frame, then the number of masses
   std::vector<Vec3> positions_, velocities_;  // frames_per_block_ times offsets_.back() elements
+  std::vector<std::int64_t> steps_;           // of the frames since the last flush
+  std::vector<double> times_;
   std::size_t frames_per_block_ = 1;
-  std::int64_t frames_ = 0;
+  std::int64_t frames_ = 0, written_ = 0, flushed_ = 0;  // written_: in the file; flushed_: announced by step
+  bool started_ = false;                                 // the datasets of the frames exist
   int deflate_ = 0;
+  double flush_period_;  // [s]
+  double (*clock_)();
+  double last_commit_, last_flush_;  // [s]
 };
 
 }  // namespace mercury
