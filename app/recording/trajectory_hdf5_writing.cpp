@@ -98,7 +98,10 @@ Handle write_dataset(hid_t parent, const std::string& name, hid_t file_type, hid
     checked(H5Pset_chunk(properties, static_cast<int>(extent.size()), extent.data()));
     checked(H5Pset_fletcher32(properties));
   }
-  Handle dataset(H5Dcreate2(parent, name.c_str(), file_type, space, link_properties(), properties, H5P_DEFAULT));
+  // Without a cache, writing fails when the disk is full, rather than closing, which nobody checks.
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS));
+  checked(H5Pset_chunk_cache(access, 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
+  Handle dataset(H5Dcreate2(parent, name.c_str(), file_type, space, link_properties(), properties, access));
   if (!empty) checked(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, content));
   return dataset;
 }
@@ -129,7 +132,7 @@ void write_text_dataset(hid_t parent, const std::string& name, std::span<const s
   write_dataset(parent, name, type, type, {texts.size()}, content.data());
 }
 
-void append_rows(hid_t dataset, hid_t memory_type, hsize_t first, hsize_t count, const void* content, hid_t memory) {
+void append_rows(Handle dataset, hid_t memory_type, hsize_t first, hsize_t count, const void* content, hid_t memory) {
   Extent extent = extent_of(dataset);
   extent[0] = first + count;
   checked(H5Dset_extent(dataset, extent.data()));
@@ -140,6 +143,7 @@ void append_rows(hid_t dataset, hid_t memory_type, hsize_t first, hsize_t count,
   checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr));
   const Handle all = memory == H5S_ALL ? space_of(extent) : Handle();
   checked(H5Dwrite(dataset, memory_type, memory == H5S_ALL ? hid_t{all} : memory, space, H5P_DEFAULT, content));
+  dataset.close();
 }
 
 void write_reference(hid_t object, const std::string& name, hid_t parent, const std::string& target) {

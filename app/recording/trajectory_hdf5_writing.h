@@ -45,9 +45,10 @@ Handle write_constant(hid_t parent, const std::string& name, float value, const 
 void write_text_dataset(hid_t parent, const std::string& name, std::string_view text);
 void write_text_dataset(hid_t parent, const std::string& name, std::span<const std::string> texts);
 
-// Extends a growing dataset to first + count elements and writes the last `count`. `memory` selects their numbers in
-// `content`; H5S_ALL = all of them.
-void append_rows(hid_t dataset, hid_t memory_type, hsize_t first, hsize_t count, const void* content,
+// Extends a growing dataset to first + count elements, writes the last `count` and closes it, so that all bytes have
+// reached the file or an Error is thrown. `memory` selects their
+// numbers in `content`; H5S_ALL = all of them.
+void append_rows(Handle dataset, hid_t memory_type, hsize_t first, hsize_t count, const void* content,
                  hid_t memory = H5S_ALL);
 
 // An attribute that refers to a member of `parent`.

@@ -89,10 +89,10 @@ TEST_P(FullDisk, IsReportedInOneLine) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.messages, "mercury: " + file() + ": the disk is full; nothing was kept\n");
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
-  EXPECT_EQ(read("a.h5"), "as it was");
+  EXPECT_TRUE(read("a.h5") == "as it was");
 }
 
-INSTANTIATE_TEST_SUITE_P(After, FullDisk, testing::Values(0, 2000, 60'000, 500'000, 2'300'000));
+INSTANTIATE_TEST_SUITE_P(After, FullDisk, testing::Values(0, 2000, 60'000, 500'000, 1'500'000, 2'300'000));
 
 TEST_F(RunRecord, BadOptionsAreReportedInOneLine) {
   const auto messages = [&](const std::vector<std::string>& more) {
