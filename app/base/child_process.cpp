@@ -13,6 +13,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "app/base/standard_streams.h"
+
 extern char** environ;
 
 namespace mercury {
@@ -37,28 +39,6 @@ std::string text_of(int descriptor) {
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
   return text;
 }
-
-// While an object of this class lives, writing to a pipe that nobody reads gives this thread an error (EPIPE) and no
-// signal.
-class NoBrokenPipeSignal {
- public:
-  NoBrokenPipeSignal() {
-    sigemptyset(&broken_pipe_);
-    sigaddset(&broken_pipe_, SIGPIPE);
-    pthread_sigmask(SIG_BLOCK, &broken_pipe_, &before_);
-  }
-  ~NoBrokenPipeSignal() {
-    // A signal that is pending would be delivered as soon as it is unblocked.
-    const timespec at_once{};
-    if (!sigismember(&before_, SIGPIPE)) sigtimedwait(&broken_pipe_, nullptr, &at_once);
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  NoBrokenPipeSignal(const NoBrokenPipeSignal&) = delete;
-  NoBrokenPipeSignal& operator=(const NoBrokenPipeSignal&) = delete;
-
- private:
-  sigset_t broken_pipe_, before_;
-};
 
 // Settings of posix_spawn: standard streams, process group and signals of the child.
 class SpawnSettings {

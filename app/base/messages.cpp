@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstdint>
 
+#include "app/base/standard_streams.h"
+
 namespace mercury {
 namespace {
 
@@ -75,6 +77,7 @@ void say_detail(std::string_view text) {
 }
 
 void write_to_standard_error(std::string_view text) {
+  const NoBrokenPipeSignal reader_may_be_gone;
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;

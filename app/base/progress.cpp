@@ -79,8 +79,8 @@ std::string progress_line(const std::string& what, const std::string& unit, doub
                      100 * fraction_of(done, total), rate_and_time_left(unit, done, total, elapsed));
 }
 
-Progress::Progress(std::string what, std::string unit, std::int64_t total, bool quiet)
-    : what_(std::move(what)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(draws_on_terminal()),
+Progress::Progress(std::string what, std::string unit, std::int64_t total)
+    : what_(std::move(what)), unit_(std::move(unit)), total_(total), terminal_(draws_on_terminal()),
       start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
@@ -88,7 +88,7 @@ Progress::~Progress() {
 }
 
 void Progress::update_with_fraction(double done) {
-  if (quiet_) return;
+  if (verbosity() == Verbosity::quiet) return;
   const Clock::time_point now = Clock::now();
   // Lines in a log stay, so their intervals grow.
   const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);

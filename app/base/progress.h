@@ -9,11 +9,12 @@
 
 namespace mercury {
 
-// Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals.
+// Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals. Writes nothing
+// if the program is quiet (app/base/messages.h).
 class Progress {
  public:
-  // `what` names the task ("rendering"), `unit` what is counted ("frames"). If `quiet`, writes nothing.
-  Progress(std::string what, std::string unit, std::int64_t total, bool quiet = false);
+  // `what` names the task ("rendering"), `unit` what is counted ("frames").
+  Progress(std::string what, std::string unit, std::int64_t total);
   ~Progress();  // clears the bar
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -28,7 +29,7 @@ class Progress {
 
   std::string what_, unit_;
   std::int64_t total_;
-  bool quiet_, terminal_;
+  bool terminal_;
   bool shown_ = false;
   Clock::time_point start_, last_;
 };

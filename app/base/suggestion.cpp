@@ -7,6 +7,8 @@
 namespace mercury {
 namespace {
 
+constexpr std::size_t longest_word = 100;  // nobody means a longer one; the search takes its square
+
 // The number of letters to insert, delete or replace to get from a to b. A swap of neighbours counts as one change
 // (optimal string alignment).
 std::size_t distance(const std::string& a, const std::string& b) {
@@ -28,6 +30,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  if (word.size() > longest_word) return {};
   std::string nearest;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& name : names) {

@@ -27,7 +27,7 @@ struct BenchOptions {
   std::uint64_t seed = 1;
   double least_seconds = 1;  // of device time to measure
   bool json = false, sweep = false;
-  std::string csv, config;
+  std::string csv;
 };
 
 struct Measurement {
@@ -220,8 +220,6 @@ void add_bench_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)",
            "FILE");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
-           "FILE.toml");
   command->footer(
       "Springs per second = robots x springs x steps / time. The time covers whole steps (muscles, springs,\n"
       "environment, contact, integration) on the device. It does not cover the upload.\n\n"

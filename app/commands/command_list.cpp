@@ -58,6 +58,23 @@ std::string kind_from_form(const std::string& form) {
   return form == "PROGRAM" ? "program" : "text";
 }
 
+void add_commands(const CLI::App& command, std::vector<std::string> words, std::vector<CommandDescription>& list) {
+  const std::vector<const CLI::App*> children =
+      command.get_subcommands([](const CLI::App* child) { return !child->get_group().empty(); });
+  list.push_back({.words = words,
+                  .help = command.get_description(),
+                  .footer = footer_of(command),
+                  .options = options_of(command),
+                  .family = !children.empty()});
+  for (const CLI::App* child : children) {
+    std::vector<std::string> below = words;
+    below.push_back(child->get_name());
+    add_commands(*child, std::move(below), list);
+  }
+}
+
+}  // namespace
+
 OptionDescription description_of(const CLI::Option& option) {
   OptionDescription found;
   found.positional = option.get_positional();
@@ -89,22 +106,10 @@ OptionDescription description_of(const CLI::Option& option) {
   return found;
 }
 
-void add_commands(const CLI::App& command, std::vector<std::string> words, std::vector<CommandDescription>& list) {
-  const std::vector<const CLI::App*> children =
-      command.get_subcommands([](const CLI::App* child) { return !child->get_group().empty(); });
-  list.push_back({.words = words,
-                  .help = command.get_description(),
-                  .footer = command.get_footer(),
-                  .options = options_of(command),
-                  .family = !children.empty()});
-  for (const CLI::App* child : children) {
-    std::vector<std::string> below = words;
-    below.push_back(child->get_name());
-    add_commands(*child, std::move(below), list);
-  }
+std::string footer_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent && parent->get_footer() == command.get_footer() ? "" : command.get_footer();
 }
-
-}  // namespace
 
 std::string CommandDescription::name() const {
   return words.empty() ? "mercury" : fmt::format("mercury {}", fmt::join(words, " "));

@@ -33,9 +33,13 @@ struct CommandDescription {
   std::string name() const;  // "mercury new voxel"
 };
 
+// The explanation and examples below the help of a command; CLI11 passes those of the program on to commands without.
+std::string footer_of(const CLI::App& command);
+
 // The program, its commands and the kinds of each, parents first. Leaves out hidden commands.
 std::vector<CommandDescription> command_list(const CLI::App& program);
 
+OptionDescription description_of(const CLI::Option& option);
 // The options of one command, in the same form.
 std::vector<OptionDescription> options_of(const CLI::App& command);
 

@@ -1,22 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury describe-options: what the program accepts, for other programs. The build uses it; the help does not show it.
+// mercury describe-options: what the program accepts, for other programs and for the build, which makes man pages and
+// completion with it. The help does not show it.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "app/commands/command_list.h"
 #include "app/commands/commands.h"
+#include "app/commands/completion.h"
+#include "app/commands/man_page.h"
 #include "app/options/option_values.h"
+#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {
 
 struct DescribeOptions {
-  std::string form;
+  std::string form, folder;
 };
 
-int describe(const DescribeOptions&, const CLI::App& program) {
-  fmt::print("{}", json_of(command_list(program)));
+void write_man_pages(const std::filesystem::path& folder, const std::vector<CommandDescription>& commands) {
+  std::filesystem::create_directories(folder);
+  for (const CommandDescription& command : commands)
+    write_whole_file(folder / (man_page_name(command) + ".1"), man_page(command, commands));
+}
+
+int describe(const DescribeOptions& options, const CLI::App& program) {
+  const std::vector<CommandDescription> commands = command_list(program);
+  if (options.form == "json") fmt::print("{}", json_of(commands));
+  if (options.form == "bash") fmt::print("{}", bash_completion(commands));
+  if (options.form == "zsh") fmt::print("{}", zsh_completion(commands));
+  if (options.form == "fish") fmt::print("{}", fish_completion(commands));
+  if (options.form == "man") {
+    if (options.folder.empty()) throw InputError("FOLDER", "give the folder of the pages");
+    write_man_pages(options.folder, commands);
+  }
   return 0;
 }
 
@@ -24,8 +43,12 @@ int describe(const DescribeOptions&, const CLI::App& program) {
 
 void add_describe_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<DescribeOptions>();
-  CLI::App* command = program.add_subcommand("describe-options", "Print all commands and options (JSON)")->group("");
-  add_choice(*command, "FORM", options->form, {"json"}, "What is printed")->required();
+  CLI::App* command =
+      program.add_subcommand("describe-options", "Print all commands and options, for other programs")->group("");
+  add_choice(*command, "FORM", options->form, {"json", "bash", "zsh", "fish", "man"},
+             "A list, a completion script, or manual pages")
+      ->required();
+  add_text(*command, "FOLDER", options->folder, "Where manual pages go", "FOLDER");
   command->callback(
       [options, choose, &program] { choose([options, &program] { return describe(*options, program); }); });
 }

@@ -17,9 +17,9 @@ constexpr std::chrono::seconds line_period{5};
 
 }  // namespace
 
-EvolutionProgress::EvolutionProgress(int first_generation, int last_generation, bool quiet)
-    : first_(first_generation), last_(last_generation), quiet_(quiet), terminal_(draws_on_terminal()),
-      generation_(first_generation), start_(Clock::now()), last_drawn_(start_) {}
+EvolutionProgress::EvolutionProgress(int first_generation, int last_generation)
+    : first_(first_generation), last_(last_generation), terminal_(draws_on_terminal()), generation_(first_generation),
+      start_(Clock::now()), last_drawn_(start_) {}
 
 EvolutionProgress::~EvolutionProgress() {
   if (shown_ && terminal_) write_to_standard_error("\r\033[K");
@@ -37,7 +37,7 @@ std::string EvolutionProgress::line() const {
 }
 
 void EvolutionProgress::draw() {
-  if (quiet_) return;
+  if (verbosity() == Verbosity::quiet) return;
   const Clock::time_point now = Clock::now();
   // Lines in a log stay, so their intervals grow.
   const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);

@@ -14,7 +14,7 @@ namespace mercury {
 // Elsewhere the same as plain lines, at growing intervals.
 class EvolutionProgress {
  public:
-  EvolutionProgress(int first_generation, int last_generation, bool quiet);
+  EvolutionProgress(int first_generation, int last_generation);
   ~EvolutionProgress();  // clears the line
   EvolutionProgress(const EvolutionProgress&) = delete;
   EvolutionProgress& operator=(const EvolutionProgress&) = delete;
@@ -31,7 +31,7 @@ class EvolutionProgress {
   std::string line() const;
 
   const int first_, last_;
-  const bool quiet_, terminal_;
+  const bool terminal_;
   int generation_;
   double share_ = 0;                     // of the present generation that is done
   std::size_t trials_ = 0, partly_ = 0;  // of all generations that are done, of the present one

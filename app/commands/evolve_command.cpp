@@ -28,9 +28,9 @@ namespace mercury {
 namespace {
 
 struct EvolveOptions {
-  std::string folder, config;
+  std::string folder;
   std::string shard;  // "3/8"
-  bool resume = false, prepare = false, merge = false, force = false, quiet = false;
+  bool resume = false, prepare = false, merge = false, force = false;
   EvolutionOptions run;
 };
 
@@ -63,8 +63,8 @@ RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
 }
 
 // Runs generation after generation. Returns false if the user interrupted.
-bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, bool quiet) {
-  EvolutionProgress progress(evolution.next_generation(), evolution.settings().generations, quiet);
+bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor) {
+  EvolutionProgress progress(evolution.next_generation(), evolution.settings().generations);
   const Watch watch = [&](std::size_t done, std::size_t all) {
     progress.update(done, all);
     return !interrupted();
@@ -104,10 +104,10 @@ EvolutionSettings settings_here(const EvolveOptions& options, const CLI::App& co
 int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSettings& settings, Assessor& assessor) {
   Evolution evolution(settings, run.space());
   restore(run.history(), evolution);
-  if (evolution.is_over() && !options.quiet)
+  if (evolution.is_over())
     say(fmt::format("{} has all its {} generations; --generations raises their number", options.folder,
                     settings.generations));
-  const bool done = evolve(run, evolution, assessor, options.quiet);
+  const bool done = evolve(run, evolution, assessor);
   run.write_all();
   report(options, run, evolution);
   if (!done)
@@ -184,7 +184,7 @@ int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
   restore(history, evolution);
   require_more_generations(options, evolution);
   Progress progress(fmt::format("generation {}, shard {}/{}", evolution.next_generation(), shard, count), "robots",
-                    static_cast<std::int64_t>(evolution.children().size() / count + 1), options.quiet);
+                    static_cast<std::int64_t>(evolution.children().size() / count + 1));
   const std::optional<std::filesystem::path> file = assess_shard(options.folder, evolution, *make_assessor(settings),
                                                                  shard, count, [&](std::size_t done, std::size_t) {
                                                                    progress.update(static_cast<std::int64_t>(done));
@@ -240,10 +240,7 @@ void add_evolve_command(CLI::App& program, const Choose& choose) {
       ->group("Several hosts");
   command->add_flag("--merge", options->merge, "Select from the files of all parts")->group("Several hosts");
   command->add_flag("--force", options->force, "Replace the run in the folder");
-  command->add_flag("--quiet", options->quiet, "Print no progress on standard error");
   options->run.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
-           "FILE.toml");
   command->footer(
       "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"
       "docs/evolution.md explains algorithms, genomes and the files of the folder.\n\n"

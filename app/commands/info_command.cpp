@@ -27,7 +27,7 @@ namespace {
 
 struct InfoOptions {
   std::vector<std::string> paths;
-  std::string ffmpeg, config;
+  std::string ffmpeg;
 };
 
 // "9: muscle 3 (120), bone (14), ..., and 4 more", the most used first.

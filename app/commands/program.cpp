@@ -2,19 +2,26 @@
 #include "app/commands/program.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
+#include "app/base/standard_streams.h"
 #include "app/base/suggestion.h"
 #include "app/base/version.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/error_text.h"
+#include "app/commands/help_page.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
 #include "evolution/distribution/launcher.h"
@@ -23,22 +30,18 @@
 namespace mercury {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* footer =
+    "Options may stand before or behind the name of the command, and in a file for --config.\n\n"
     "Examples:\n"
-    "  mercury view                                              a window with the sample robots\n"
-    "  mercury render --random voxel:12 --seed 1 -o group.mp4    make a video of twelve random robots\n"
-    "  mercury run --random voxel:64 --seconds 2 --json          simulate and print the results\n"
-    "  mercury new voxel --count 10 --seed 7 -o my-robots        make robot files\n"
-    "  mercury run my-robots --environment land --csv land.csv   simulate them on land\n"
-    "  mercury info                                              what this machine can do\n"
-    "Help on a command: mercury render --help";
-
-// The parser writes some messages in several lines.
-std::string one_line(std::string text) {
-  for (char& letter : text)
-    if (letter == '\n' || letter == '\r') letter = ' ';
-  return text;
-}
+    "  mercury view                                       the sample robots in a window\n"
+    "  mercury render --random voxel:12 -o group.mp4      a video of twelve random robots\n"
+    "  mercury run --random voxel:64 --seconds 2          simulate and print the results\n"
+    "  mercury new voxel --count 10 -o my-robots          make robot files\n"
+    "  mercury run my-robots --environment land           simulate them on land\n"
+    "  mercury info                                       what this machine can do\n"
+    "  mercury help render                                all options of a command\n\n"
+    "Exit status: 0 = done; 1 = the work failed, or robots were left out; 2 = the input cannot be used;\n"
+    "128 + N = stopped by signal N (130 for Ctrl-C).";
 
 // As shells number the end of a program by a signal: 130 for Ctrl-C.
 int stopped_status() { return 128 + stop_signal(); }
@@ -57,13 +60,15 @@ void print_message(const std::string& message) {
   warn(place + message);
 }
 
+// Values of text options that may be empty. For all others an empty text is a mistake: a variable that a script did not
+// set.
+bool may_be_empty(const CLI::Option& option) { return option.check_lname("caption"); }
+
 class Program {
  public:
   Program() {
-    app_.set_version_flag("--version", program_version);
-    app_.footer(examples);
-    app_.require_subcommand(1);
-    app_.get_formatter()->column_width(34);
+    app_.footer(footer);
+    app_.set_help_flag("-h,--help", "Print help: -h the most used options, --help all");
     const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
     add_view_command(app_, choose);
     add_render_command(app_, choose);
@@ -75,69 +80,70 @@ class Program {
     add_grow_command(app_, choose);
     add_bench_command(app_, choose);
     add_info_command(app_, choose);
+    add_help_command();
     add_describe_command(app_, choose);
+    add_general_options(app_);
   }
 
   int run(std::vector<std::string> arguments) {
+    const auto start = std::chrono::steady_clock::now();
     try {
       parse(std::move(arguments));
-      if (!body_) return help_ ? status_done : status_failed;
-      int status = body_();
+      if (body_) say_detail(fmt::format("{}: {}", program_version, full_name(*command_)));
+      int status = body_ ? body_() : status_done;
       if (status == status_failed && interrupted()) status = stopped_status();
-      if (std::fflush(stdout) != 0 || std::ferror(stdout))
-        throw std::runtime_error("standard output cannot be written");
+      flush_standard_output();
+      if (body_) say_costs(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       return status;
     } catch (const ParameterError& error) {
       return refuse(option_of(error.parameter()) + ": " + error.problem());
     } catch (const InputError& error) {
       return refuse(error.what());
-    } catch (const std::bad_alloc&) {
-      print_message("not enough memory");
-      return status_failed;
+    } catch (const Interrupted&) {
+      say("stopped");
+      return stopped_status();
+    } catch (const std::system_error& error) {
+      // A result that was longer than the buffer fails while it is printed.
+      print_message(std::ferror(stdout) ? "standard output cannot be written: " + error.code().message()
+                                        : error_text(error));
+      return interrupted() ? stopped_status() : status_failed;
     } catch (const std::exception& error) {
-      print_message(error.what());
+      print_message(error_text(error));
       return interrupted() ? stopped_status() : status_failed;
     }
   }
 
  private:
+  void add_help_command() {
+    // command_line() puts --help behind the words instead.
+    CLI::App* command = app_.add_subcommand("help", "Explain a command, as in mercury help new voxel");
+    offer(command->add_option("COMMAND", words_of_help_, "A command, and the kind of robots of new"),
+          names_of_commands(app_));
+  }
+
+  // The options that every command has, and --config.
+  void add_general_options(CLI::App& command) {
+    const auto add = [](CLI::Option* option) { option->group("General"); };
+    add(command.get_help_ptr());
+    add(command.set_version_flag("-V,--version", program_version, "Print the version"));
+    add(command.add_flag("-q,--quiet", quiet_, "Print only errors and warnings on standard error"));
+    add(command.add_flag("-v,--verbose", verbose_, "Say in detail what is done, with times"));
+    const auto children = command.get_subcommands([](CLI::App*) { return true; });
+    if (children.empty())
+      add(add_text(command, "--config", config_path_,
+                   "Read options from a TOML file; the command line overrides them (docs/options.md)", "FILE.toml"));
+    for (CLI::App* child : children) add_general_options(*child);
+  }
+
   int refuse(const std::string& message) const {
-    print_message(config_ ? config_->located(message) : message);
+    const std::string helpful = command_ ? with_suggestion(message, *command_) : message;
+    print_message(config_ ? config_->located(helpful) : helpful);
     return status_bad_input;
   }
 
-  // The command that the first words name, and the number of those words.
-  std::pair<CLI::App*, std::size_t> command_in(const std::vector<std::string>& arguments) {
-    CLI::App* command = &app_;
-    std::size_t words = 0;
-    while (words < arguments.size() && !arguments[words].starts_with("-")) {
-      const std::string& word = arguments[words];
-      const auto found = command->get_subcommands([&](const CLI::App* child) { return child->check_name(word); });
-      if (found.empty()) break;
-      command = found.front();
-      ++words;
-    }
-    return {command, words};
-  }
-
-  // Reports a missing or unknown command more clearly than the parser does.
-  void require_command(CLI::App& command, std::size_t words, const std::vector<std::string>& arguments) const {
-    const auto children = command.get_subcommands([](const CLI::App*) { return true; });
-    if (children.empty()) return;
-    for (std::size_t i = words; i < arguments.size(); ++i)
-      if (arguments[i] == "-h" || arguments[i] == "--help" || (&command == &app_ && arguments[i] == "--version"))
-        return;
-    std::vector<std::string> names;
-    for (const CLI::App* child : children) names.push_back(child->get_name());
-    const std::string called = &command == &app_ ? "mercury" : "mercury " + command.get_name();
-    if (words == arguments.size()) throw InputError(fmt::format("no command given; see {} --help", called));
-    throw InputError(fmt::format("\"{}\" is not a command{}; see {} --help", arguments[words],
-                                 suggestion(arguments[words], names), called));
-  }
-
-  void parse(std::vector<std::string> arguments) {
-    const auto [command, words] = command_in(arguments);
-    require_command(*command, words, arguments);
+  void parse(std::vector<std::string> given) {
+    auto [command, words, arguments] = command_line(app_, std::move(given));
+    command_ = command;
     if (const std::string path = config_path_in(arguments); !path.empty()) {
       config_.emplace(path, app_, *command, arguments);
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
@@ -146,56 +152,102 @@ class Program {
     require_values(*command, arguments);
     try {
       app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::Success& request) {  // --help or --version
-      help_ = true;
+    } catch (const CLI::Success& request) {
       body_ = nullptr;
-      if (rank_by_launcher() == 0) app_.exit(request);
+      if (rank_by_launcher() == 0) answer(request, *command, arguments);
     } catch (const CLI::ExtrasError&) {
       throw unknown_argument(*command);
     } catch (const CLI::ArgumentMismatch& error) {
       const std::string what = error.what();
       throw InputError(what.substr(0, what.find(':')), "needs a value; see " + full_name(*command) + " --help");
     } catch (const CLI::ParseError& error) {
-      throw InputError(fmt::format("{}; see {} --help", one_line(error.what()), full_name(*command)));
+      throw InputError(fmt::format("{}; see {} --help", error.what(), full_name(*command)));
+    }
+    set_verbosity(quiet_ ? Verbosity::quiet : verbose_ ? Verbosity::verbose : Verbosity::normal);
+    if (body_) require_texts(*command);
+  }
+
+  // Prints help or version.
+  static void answer(const CLI::Success& request, const CLI::App& command, const std::vector<std::string>& arguments) {
+    if (request.get_name() == "CallForVersion") {
+      fmt::print("{}\n", program_version);
+      return;
+    }
+    const bool brief = std::ranges::find(arguments, "-h") != arguments.end() &&
+                       std::ranges::find(arguments, "--help") == arguments.end();
+    fmt::print("{}", help_page(command, brief, columns_of_standard_output()));
+  }
+
+  // CLI11 would read the next argument as the value of "--dt=", and the value of a switch in its own way.
+  static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
+    for (const std::string& argument : arguments) {
+      if (argument == "--") return;
+      const std::size_t equals = argument.find('=');
+      if (!argument.starts_with("--") || equals == std::string::npos) continue;
+      const std::string name = argument.substr(0, equals);
+      const CLI::Option* option = command.get_option_no_throw(name);
+      if (option && option->get_items_expected_max() == 0)
+        throw InputError(name, "is a switch; give it without a value");
+      if (equals == argument.size() - 1 && !(option && may_be_empty(*option))) throw empty_value(name, command);
     }
   }
 
-  // CLI11 would read the next argument as the value of "--dt=".
-  static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
-    for (const std::string& argument : arguments)
-      if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
-        throw InputError(argument.substr(0, argument.size() - 1),
-                         "needs a value; see " + full_name(command) + " --help");
+  static void require_texts(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+      const std::vector<std::string>& texts = option->results();
+      if (option->get_items_expected_max() == 0 || may_be_empty(*option)) continue;
+      if (std::ranges::find(texts, "") == texts.end()) continue;
+      throw empty_value(option->get_positional() ? option->get_single_name() : first_name(*option), command);
+    }
   }
 
-  static std::string full_name(const CLI::App& command) {
-    return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+  // As add_value() names it in messages: "-o" of "-o,--output".
+  static std::string first_name(const CLI::Option& option) {
+    return option.get_snames().empty() ? "--" + option.get_single_name() : "-" + option.get_snames().front();
+  }
+
+  static InputError empty_value(const std::string& name, const CLI::App& command) {
+    const CLI::Option* option = command.get_option_no_throw(name);
+    const std::string form = option ? option->get_type_name() : "";
+    return InputError(name, fmt::format("an empty value is not accepted; give {}, or leave {} out",
+                                        form.empty() ? "a value" : form, name.starts_with("-") ? "the option" : "it"));
   }
 
   InputError unknown_argument(const CLI::App& command) const {
     const std::vector<std::string> rest = app_.remaining(true);
     const std::string word = rest.empty() ? "" : rest.front().substr(0, rest.front().find('='));
-    std::vector<std::string> names;
-    for (const CLI::Option* option : command.get_options())
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    return InputError(word, fmt::format("not an option of {}{}; see {} --help", full_name(command),
-                                        suggestion(word, names), full_name(command)));
+    if (!word.starts_with("-"))
+      return InputError(printable(word, 200), fmt::format("one argument too many; see {} --help", full_name(command)));
+    return InputError(printable(word, 200),
+                      fmt::format("not an option of {}{}; see {} --help", full_name(command),
+                                  suggestion(word, names_of_options(command)), full_name(command)));
+  }
+
+  static void say_costs(double seconds) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    say_detail(fmt::format("took {:.2f} s, at most {:.0f} MB of memory", seconds,
+                           static_cast<double>(usage.ru_maxrss) / 1024));
   }
 
   CLI::App app_{"Mercury simulates soft robots, shows them in a window and makes videos of them.", "mercury"};
   CommandBody body_;
+  const CLI::App* command_ = nullptr;  // that the command line names
   std::optional<ConfigFile> config_;
-  bool help_ = false;
+  bool quiet_ = false, verbose_ = false;
+  std::string config_path_;  // config_path_in() reads it earlier
+  std::vector<std::string> words_of_help_;
 };
 
 }  // namespace
 
 int run_program(const std::vector<std::string>& arguments) {
+  replace_closed_streams();
   catch_interrupts();
   try {
     return Program().run(arguments);
   } catch (const std::exception& error) {
-    print_message(error.what());
+    print_message(error_text(error));
     return status_failed;
   }
 }

@@ -75,7 +75,7 @@ class Filming {
     }
     if (result.frames == 0) throw VideoError("stopped before the first frame; nothing was kept");
     writer->finish();
-    if (!options_.quiet) report_result(options_.video.output_of(output.name), result);
+    report_result(options_.video.output_of(output.name), result);
     return !result.interrupted;
   }
 
@@ -91,9 +91,9 @@ class Filming {
     if (view.caption.empty()) view.caption = clip.title;
     view.camera.zoom *= clip.zoom;
     VideoPipeline pipeline(*offscreen_, task_.subject.simulation_of(clip), view, clip.captions);
-    if (first && !options_.quiet) report_start(pipeline, writer);
+    if (first) report_start(pipeline, writer);
     for (const std::string& note : pipeline.simulation().notes()) say(note);
-    return pipeline.run(writer, task_.plan.pixels, task_.plan.timing, options_.quiet);
+    return pipeline.run(writer, task_.plan.pixels, task_.plan.timing, false);
   }
 
   void report_start(const VideoPipeline& pipeline, const FrameWriter& writer) const {
@@ -125,7 +125,7 @@ class Filming {
 int render_robots(RenderOptions& options) {
   RenderTask task = render_task(options);
   const auto [width, height] = task.plan.size;
-  if (!options.video.single_picture() && task.plan.size != options.video.asked_size() && !options.quiet)
+  if (!options.video.single_picture() && task.plan.size != options.video.asked_size())
     say(fmt::format("{} needs even sides: drawn at {}x{}", options.video.output_of(""), width, height));
   for (const std::string& note : task.subject.notes) say(note);
   Filming filming(options, task);
@@ -143,13 +143,12 @@ void add_render_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = program.add_subcommand("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(*command);
+  command->get_option("ROBOTS")->description(
+      "Robot files (.json, .cbor) and folders of them, or a recording (.h5), or the folder of a run");
   options->video.add_to(*command);
   options->view.add_to(*command);
   options->film.add_to(*command);
-  command->add_flag("--quiet", options->quiet, "Print only errors on standard error");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
-           "FILE.toml");
   command->footer(
       "Examples:\n"
       "  mercury render --random voxel:12 --seed 1 -o group.mp4\n"

@@ -21,8 +21,6 @@ struct RenderOptions {
   VideoOptions video;
   ViewOptions view;
   RunFilmOptions film;
-  std::string config;
-  bool quiet = false;
 };
 
 struct Subject {

@@ -31,10 +31,10 @@ constexpr double recorded_rate = 30;  // frames per second of simulated time, wi
 struct RunOptions {
   RobotOptions robots;
   SimulationOptions simulation;
-  std::string csv, config, record;
+  std::string csv, record;
   std::optional<std::int64_t> every;
   bool compress = false;
-  bool json = false, strict = false, quiet = false;
+  bool json = false, strict = false;
 };
 
 double distance(Vec3 a, Vec3 b) { return length(a - b); }
@@ -103,12 +103,11 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulat
                                                      .deflate = options.compress ? 1 : 0});
 }
 
-RunReport simulate(Simulation& simulation, std::int64_t steps, bool quiet, Recorder* recorder,
-                   ReproChanges* changes = nullptr) {
+RunReport simulate(Simulation& simulation, std::int64_t steps, Recorder* recorder, ReproChanges* changes = nullptr) {
   Stepper stepper(simulation);
   Observer observer(simulation);
   const std::int64_t first = simulation.steps();
-  Progress progress("simulating", "steps", steps - first, quiet);
+  Progress progress("simulating", "steps", steps - first);
   const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / simulation.configuration().dt));
   bool on = true;
   while (on && simulation.steps() < steps) {
@@ -163,7 +162,7 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const double seconds = options.simulation.seconds(0);
   const std::int64_t last =
       seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
-  return report_results(options, simulate(simulation, last, options.quiet, nullptr, &changes));
+  return report_results(options, simulate(simulation, last, nullptr, &changes));
 }
 
 void print_notes(const std::vector<std::string>& notes) {
@@ -179,7 +178,7 @@ int run_recorded(const RunOptions& options, std::int64_t steps) {
   print_notes(simulation.notes());
   validate_recording(options);
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
-  const RunReport report = simulate(simulation, steps, options.quiet, recorder.get());
+  const RunReport report = simulate(simulation, steps, recorder.get());
   recorder->finish();
   return report_results(options, report);
 }
@@ -195,7 +194,7 @@ int run(const RunOptions& options) {
   const Configuration configuration = options.simulation.configuration(robots.environments, notes);
   print_notes(notes);
   validate_recording(options);
-  const RunReport report = evaluate(robots, configuration, steps, options.quiet);
+  const RunReport report = evaluate(robots, configuration, steps);
   print_notes(report.notes);
   return report_results(options, report);
 }
@@ -206,6 +205,8 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(*command);
+  command->get_option("ROBOTS")->description(
+      "Robot files (.json, .cbor) and folders of them, or an explosion that the window saved (.repro)");
   add_text(*command, "--csv", options->csv,
            "Also write one line per robot to this file; - prints it instead of the table", "FILE");
   add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
@@ -214,10 +215,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
-  command->add_flag("--quiet", options->quiet, "Print no progress on standard error");
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
-           "FILE.toml");
   command->footer(
       "Displacement is the distance of the centre of mass from its start. Speed is the length of its path divided by\n"
       "the time. Strain is the largest of any spring; \"> 50\" is the largest share of springs that had more than 50 "

@@ -65,7 +65,7 @@ class Failures {
 
 }  // namespace
 
-RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, std::int64_t steps, bool quiet) {
+RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, std::int64_t steps) {
   const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / configuration.dt));
   Evaluator evaluator({.configuration = configuration, .steps = steps, .sample_every = period, .hashes = true},
                       robots.source, robots.count);
@@ -74,7 +74,7 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   std::size_t failed = 0;
   bool stopped = false;
   {
-    Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count), quiet);
+    Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count));
     stopped = !take_results(evaluator, progress, steps, [&](const Evaluation& robot) {
       if (!robot.failure.empty()) {
         ++failed;

@@ -25,7 +25,7 @@ struct ViewCommandOptions {
   RobotOptions robots;
   SimulationOptions simulation;
   ViewOptions view;
-  std::string config, size, quality = "auto", report;
+  std::string size, quality = "auto", report;
   bool fresh = false, paused = false;
 };
 
@@ -96,6 +96,9 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<ViewCommandOptions>();
   CLI::App* command = program.add_subcommand("view", "Show robots in an interactive window");
   options->robots.add_to(*command);
+  command->get_option("ROBOTS")->description(
+      "Robot files (.json, .cbor) and folders of them, or a recording (.h5), an explosion (.repro) or the folder of a "
+      "run");
   add_text(*command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
       ->group("Window");
   add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
@@ -107,8 +110,6 @@ void add_view_command(CLI::App& program, const Choose& choose) {
       ->group("Window");
   options->view.add_to(*command);
   options->simulation.add_to(*command);
-  add_text(*command, "--config", options->config, "Read options from a TOML file; the command line overrides them",
-           "FILE.toml");
   command->footer(
       "Without ROBOTS the window shows the sample robots. Press F1 for a list of all keys.\n"
       "A RUN of mercury evolve opens with its scores, champions and families; it may still be running.\n"

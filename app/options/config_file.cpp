@@ -5,12 +5,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
 
+#include "app/base/suggestion.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -18,11 +21,16 @@ namespace {
 
 CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
 
-// Whether this command or one of its subcommands has the option.
-bool known_anywhere(CLI::App& command, const std::string& key) {
-  if (find_option(command, key)) return true;
-  const auto below = command.get_subcommands([](CLI::App*) { return true; });
-  return std::any_of(below.begin(), below.end(), [&](CLI::App* child) { return known_anywhere(*child, key); });
+std::vector<CLI::App*> children_of(CLI::App& command) {
+  return command.get_subcommands([](CLI::App*) { return true; });
+}
+
+// The options of a command and of those below it, without dashes.
+void collect_keys(CLI::App& command, std::vector<std::string>& keys) {
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (name != "config" && name != "help" && name != "version") keys.push_back(name);
+  for (CLI::App* child : children_of(command)) collect_keys(*child, keys);
 }
 
 bool is_given(const CLI::Option& option, const std::vector<std::string>& given) {
@@ -70,55 +78,89 @@ std::vector<std::string> arguments_of(const CLI::Option& option, const std::stri
 }
 
 std::string full_name(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  return parent && parent->get_parent() ? full_name(*parent) + "." + command.get_name() : command.get_name();
+  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+}
+
+// Whether the command is `scope` or below it.
+bool is_within(const CLI::App* command, const CLI::App& scope) {
+  for (; command; command = command->get_parent())
+    if (command == &scope) return true;
+  return false;
+}
+
+toml::table parse(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  // Opening a pipe would wait for a writer.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError("--config", path + " is not a file; give a TOML file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError("--config", fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
+  try {
+    return toml::parse(stream, path);
+  } catch (const toml::parse_error& failure) {
+    // "Error while parsing key-value pair: expected '=', saw 'i'"
+    std::string_view problem = failure.description();
+    const std::size_t colon = problem.find(": ");
+    if (problem.starts_with("Error while parsing") && colon != problem.npos) problem.remove_prefix(colon + 2);
+    throw InputError(fmt::format("{}:{}", path, failure.source().begin.line), fmt::format("not TOML: {}", problem));
+  }
 }
 
 }  // namespace
 
 ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& command,
                        const std::vector<std::string>& given)
-    : path_(path) {
-  toml::table file;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) throw InputError("--config", path + " cannot be read");
-  try {
-    file = toml::parse(stream, path);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}", path, error.source().begin.line), std::string(error.description()));
-  }
-  const auto take = [&](const toml::table& table, CLI::App& scope) {
-    for (const auto& [key, value] : table) {
-      const std::string name = "--" + std::string(key.str());
-      const unsigned line = static_cast<unsigned>(value.source().begin.line);
-      const std::string where = fmt::format("{}:{}", path, line);
-      if (value.is_table()) continue;
-      if (key.str() == "config" || !known_anywhere(scope, std::string(key.str())))
-        throw InputError(
-            where, fmt::format("\"{}\" is not an option; mercury {} --help lists them", key.str(), command.get_name()));
-      CLI::Option* option = find_option(command, std::string(key.str()));
-      if (!option || is_given(*option, given)) continue;
-      try {
-        const std::vector<std::string> taken = arguments_of(*option, name, value);
-        // A command's own table is read last and overrides the top level.
-        std::erase_if(arguments_, [&](const std::string& old) { return old == name || old.starts_with(name + "="); });
-        arguments_.insert(arguments_.end(), taken.begin(), taken.end());
-        lines_[name] = line;
-      } catch (const std::invalid_argument& error) {
-        throw InputError(where, fmt::format("{} {}", name, error.what()));
-      }
-    }
-  };
-  take(file, program);
-  for (const auto& [key, value] : file) {
+    : path_(path), command_(command), given_(given) {
+  take(parse(path), program);
+}
+
+// Tables come after the keys above them, which they override.
+template <class Table>
+void ConfigFile::take(const Table& table, CLI::App& scope) {
+  for (const auto& [key, value] : table)
+    if (!value.is_table()) take_key(std::string(key.str()), value, scope);
+  for (const auto& [key, value] : table) {
     if (!value.is_table()) continue;
-    const auto scopes = program.get_subcommands([&](const CLI::App* child) { return child->get_name() == key.str(); });
-    if (scopes.empty())
-      throw InputError(fmt::format("{}:{}", path, value.source().begin.line),
-                       fmt::format("[{}] is not a command", key.str()));
-    if (key.str() == full_name(command) || full_name(command).starts_with(std::string(key.str()) + "."))
-      take(*value.as_table(), *scopes.front());
+    const std::vector<CLI::App*> children = children_of(scope);
+    const auto child =
+        std::ranges::find(children, key.str(), [](const CLI::App* one) { return std::string_view(one->get_name()); });
+    if (child == children.end()) {
+      std::vector<std::string> names;
+      for (const CLI::App* one : children)
+        if (!one->get_group().empty()) names.push_back(one->get_name());
+      throw InputError(where(value), fmt::format("[{}] is not a command of {}{}", key.str(), full_name(scope),
+                                                 suggestion(std::string(key.str()), names)));
+    }
+    take(*value.as_table(), **child);
   }
+}
+
+template <class Node>
+void ConfigFile::take_key(const std::string& key, const Node& value, CLI::App& scope) {
+  std::vector<std::string> known;
+  collect_keys(scope, known);
+  if (std::ranges::find(known, key) == known.end())
+    throw InputError(where(value),
+                     fmt::format("\"{}\" is not an option of {}{}; see {} --help", key, full_name(scope),
+                                 suggestion(key, known), full_name(is_within(&command_, scope) ? command_ : scope)));
+  if (!is_within(&command_, scope)) return;
+  const CLI::Option* option = find_option(command_, key);
+  if (!option || is_given(*option, given_)) return;
+  const std::string name = "--" + key;
+  try {
+    const std::vector<std::string> taken = arguments_of(*option, name, value);
+    std::erase_if(arguments_, [&](const std::string& old) { return old == name || old.starts_with(name + "="); });
+    arguments_.insert(arguments_.end(), taken.begin(), taken.end());
+    lines_[name] = static_cast<unsigned>(value.source().begin.line);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(where(value), fmt::format("{} {}", name, error.what()));
+  }
+}
+
+template <class Node>
+std::string ConfigFile::where(const Node& node) const {
+  return fmt::format("{}:{}", path_, static_cast<unsigned>(node.source().begin.line));
 }
 
 std::string ConfigFile::located(const std::string& error) const {
@@ -128,11 +170,12 @@ std::string ConfigFile::located(const std::string& error) const {
 
 std::string config_path_in(const std::vector<std::string>& arguments) {
   constexpr std::string_view prefix = "--config=";
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i].starts_with(prefix)) return arguments[i].substr(prefix.size());
-    if (arguments[i] == "--config" && i + 1 < arguments.size()) return arguments[i + 1];
+  std::string path;
+  for (std::size_t i = 0; i < arguments.size() && arguments[i] != "--"; ++i) {
+    if (arguments[i].starts_with(prefix)) path = arguments[i].substr(prefix.size());
+    if (arguments[i] == "--config" && i + 1 < arguments.size()) path = arguments[i + 1];
   }
-  return {};
+  return path;
 }
 
 }  // namespace mercury

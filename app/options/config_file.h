@@ -12,12 +12,13 @@ namespace mercury {
 
 // The options of a TOML file as arguments of the command line. A key is the name of an option without its dashes.
 // Values are numbers, text, true or false, [x, y, z] for vectors and ["a", "b"] for options that may be repeated. Keys
-// at the top level apply to every command that has the option. Keys in a table such as [render] apply to that command
-// only and override the others.
+// at the top level apply to every command that has the option. Keys in a table such as [render] or [new] apply to that
+// command only, those in [new.voxel] to that kind only; they override the keys above them.
 class ConfigFile {
  public:
   // Takes the options that `command` has and that are not on the command line `given`. Throws InputError
-  // ("sim.toml:3: ...") if the file cannot be read or no command of `program` has an option with the name of a key.
+  // ("sim.toml:3: ...") if the file cannot be read, or if a table or key is not a command or an option of it; also in
+  // tables of other commands. Does not wait for pipes: it takes regular files only.
   ConfigFile(const std::string& path, CLI::App& program, CLI::App& command, const std::vector<std::string>& given);
 
   const std::vector<std::string>& arguments() const { return arguments_; }
@@ -25,12 +26,22 @@ class ConfigFile {
   std::string located(const std::string& error) const;
 
  private:
+  // `Table` and `Node` are those of toml++, which no header of ours includes.
+  template <class Table>
+  void take(const Table& table, CLI::App& scope);
+  template <class Node>
+  void take_key(const std::string& key, const Node& value, CLI::App& scope);
+  template <class Node>
+  std::string where(const Node& node) const;  // "sim.toml:3"
+
   std::string path_;
+  CLI::App& command_;
+  std::vector<std::string> given_;
   std::vector<std::string> arguments_;
   std::map<std::string, unsigned> lines_;  // by option: "--dt"
 };
 
-// The value of --config on a command line; empty = not given.
+// The last value of --config on a command line; empty = not given, or given empty.
 std::string config_path_in(const std::vector<std::string>& arguments);
 
 }  // namespace mercury

@@ -44,7 +44,6 @@ void RobotOutput::add_files_to(CLI::App& command) {
   add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), or a folder", "FILE|FOLDER")->required();
   add_choice(command, "--format", format_, {"json", "cbor"}, "Of the files in a folder (default json)");
   command.add_flag("--force", force_, "Replace files that exist");
-  add_text(command, "--config", config_, "Read options from a TOML file; those given here count more", "FILE.toml");
 }
 
 bool RobotOutput::names_file() const {

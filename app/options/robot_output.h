@@ -54,7 +54,6 @@ class RobotOutput {
   std::uint64_t seed_ = 1;
   std::string format_ = "json";  // of files in a folder
   bool force_ = false;           // replace files that exist
-  std::string config_;
 };
 
 // Makes robots 0 .. count - 1 of the seed and writes them. A robot that cannot be made is reported on standard

@@ -30,10 +30,12 @@ void ViewOptions::add_to(CLI::App& command) {
                  fmt::format("Colour by (default {})", words_.color)));
   add(add_value(command, "--scale", words_.scale, "Ends of the colours' scale (default: fits)", "LOW,HIGH",
                 range_from));
-  add(add_value(command, "--show", words_.show,
-                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
-                "path,labels,captions,legend,clock,scale (default skin,clock)",
-                "LIST", text_from));
+  add(offer(add_value(command, "--show", words_.show,
+                      "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
+                      "path,labels,captions,legend,clock,scale (default skin,clock)",
+                      "LIST", text_from),
+            {"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "path", "labels",
+             "captions", "legend", "clock", "scale"}));
   add(add_text(command, "--caption", words_.caption, "Text in the upper left corner; further lines are smaller",
                "TEXT"));
   add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colours of the surroundings (default dark)"));
@@ -43,10 +45,9 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_choice(command, "--layout", words_.layout, {"grid", "race"}, "Robots in a grid, or in lanes side by side"));
   add(add_value(command, "--grid", words_.grid, "Columns and rows (default: what fills the picture)", "CxR",
                 grid_from));
-  add(add_text(
-      command, "--camera", words_.camera,
-      "group keeps all in view, follow[:ROBOT] goes along, turntable, top, still, or a camera file (default group)",
-      "CAMERA"));
+  add(add_text(command, "--camera", words_.camera,
+               "group keeps all in view, follow goes along, or the path of a camera file (default group)",
+               "group|follow[:ROBOT]|turntable|top|still|FILE.json"));
   add(command.add_flag("--follow", follow_, "The same as --camera follow"));
   add(add_number(command, "--azimuth", words_.azimuth, "Where the eye is, around the robots from +x (default -75)",
                  "DEGREES"));

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <thread>
 
 #include "app/base/bounded_queue.h"
@@ -23,8 +24,13 @@ constexpr std::size_t waiting_snapshots = 4;  // simulated, not yet drawn
 class VideoStages {
  public:
   VideoStages(const VideoParts& parts, const VideoTiming& timing, bool quiet, VideoControl& control)
-      : parts_(parts), timing_(timing), control_(control), progress_("rendering", "frames", timing.frames, quiet),
-        encoder_(parts.writer, [this](std::int64_t written) { progress_.update(control_.frames = written); }) {}
+      : parts_(parts), timing_(timing), control_(control),
+        progress_(quiet ? std::optional<Progress>()
+                        : std::optional<Progress>(std::in_place, "rendering", "frames", timing.frames)),
+        encoder_(parts.writer, [this](std::int64_t written) {
+          control_.frames = written;
+          if (progress_) progress_->update(written);
+        }) {}
 
   VideoResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -82,7 +88,7 @@ class VideoStages {
   const VideoParts& parts_;
   const VideoTiming& timing_;
   VideoControl& control_;
-  Progress progress_;
+  std::optional<Progress> progress_;
   BoundedQueue<FrameSnapshot> snapshots_{waiting_snapshots};
   FrameEncoder encoder_;
   bool interrupted_ = false;

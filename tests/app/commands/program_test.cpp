@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Invalid input gives one line and exit status 2; help, version and TOML files.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "tests/app/program.h"
 
@@ -40,6 +41,14 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadInput{"NoCommand", {}, "no command given; see mercury --help"},
         BadInput{"UnknownCommand", {"rendr"}, "\"rendr\" is not a command; did you mean render?; see mercury --help"},
+        BadInput{"UnknownCommandToExplain",
+                 {"help", "rendr"},
+                 "\"rendr\" is not a command; did you mean render?; see mercury --help"},
+        BadInput{"UnknownOptionBeforeTheCommand",
+                 {"--secnds", "2", "run"},
+                 "--secnds: not an option; did you mean --seconds?; see mercury --help"},
+        BadInput{"OptionsWithoutCommand", {"--seconds", "2", "-q"}, "no command given; see mercury --help"},
+        BadInput{"SwitchWithValue", with({"--json=3"}), "--json: is a switch; give it without a value"},
         BadInput{"NewWithoutKind", {"new"}, "no command given; see mercury new --help"},
         BadInput{"UnknownOption", with({"--secnds", "2"}),
                  "--secnds: not an option of mercury run; did you mean --seconds?; see mercury run --help"},
@@ -53,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NoCount",
                  {"run", "--random", "voxel:0"},
                  "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
-        BadInput{"NoFile", {"run", "nothing.json"}, "nothing.json: No such file or directory"}),
+        BadInput{"NoFile", {"run", "nothing.json"}, "nothing.json: No such file or directory"},
+        BadInput{"NoFolder", {"run", "my-robots"}, "my-robots: No such file or directory"}),
     [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
@@ -84,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"UnknownSolver", with({"--solver", "euler"}),
                  "--solver: \"euler\" is not a solver; give force or xpbd"},
         BadInput{"UnknownDevice", with({"--device", "tpu"}),
-                 "--device: \"tpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all"},
+                 "--device: \"tpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cpu?"},
         BadInput{"NegativeThreads", with({"--threads", "-1"}), "--threads: -1 is not accepted; give 0 or more"},
         BadInput{"NegativeSeed", with({"--seed", "-1"}),
                  "--seed: \"-1\" is not accepted; give a whole number of 0 or more"},
@@ -92,6 +102,64 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"FlatVoxels", with({"--voxels", "3x3x0"}),
                  "--voxels: \"3x3x0\" is not accepted; give XxYxZ, or a range as in 4x3x3..7x5x4, in whole numbers "
                  "above 0"}),
+    [](const auto& tested) { return tested.param.name; });
+
+// A variable that a script did not set.
+INSTANTIATE_TEST_SUITE_P(
+    EmptyValues, BadInputTest,
+    testing::Values(
+        BadInput{"Csv", with({"--csv", ""}),
+                 "--csv: an empty value is not accepted; give FILE, or leave the option out"},
+        BadInput{"CsvWithEqualsSign", with({"--csv="}),
+                 "--csv: an empty value is not accepted; give FILE, or leave the option out"},
+        BadInput{"Record", with({"--record", ""}),
+                 "--record: an empty value is not accepted; give FILE.h5, or leave the option out"},
+        BadInput{"Config", with({"--config", ""}),
+                 "--config: an empty value is not accepted; give FILE.toml, or leave the option out"},
+        BadInput{"Output",
+                 {"new", "voxel", "-o", ""},
+                 "-o: an empty value is not accepted; give FILE|FOLDER, or leave the option out"},
+        BadInput{"Robots", {"run", ""}, "ROBOTS: an empty value is not accepted; give PATH, or leave it out"},
+        BadInput{"Run", {"evolve", ""}, "RUN: an empty value is not accepted; give FOLDER, or leave it out"},
+        BadInput{"Name",
+                 {"mutate", "a.json", "-o", "b.json", "--name", ""},
+                 "--name: an empty value is not accepted; give NAME, or leave the option out"},
+        BadInput{"Number", with({"--dt", ""}), "--dt: \"\" is not accepted; give a number"}),
+    [](const auto& tested) { return tested.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    MistypedValues, BadInputTest,
+    testing::Values(
+        BadInput{"Solver", with({"--solver", "xpdb"}),
+                 "--solver: \"xpdb\" is not a solver; give force or xpbd; did you mean xpbd?"},
+        BadInput{
+            "Environment", with({"--environment", "ocan"}),
+            "--environment: \"ocan\" is not an environment; give ocean, ocean-simple or land; did you mean ocean?"},
+        BadInput{"Device", with({"--device", "cuad:1"}),
+                 "--device: \"cuad:1\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?"},
+        BadInput{
+            "Kind",
+            {"run", "--random", "vxel:3"},
+            "--random: \"vxel\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N; did you mean voxel?"},
+        BadInput{"Word", with({"--form", "ribg"}),
+                 "--form: \"ribg\" is not accepted; give any, bell, tube, ring or pod; did you mean ring?"},
+        BadInput{"Shown",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,sprngs"},
+                 "--show: \"sprngs\" is not accepted; give some of "
+                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,captions,legend,clock,scale; did "
+                 "you mean springs?"},
+        BadInput{
+            "Camera",
+            {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "turntabel"},
+            "--camera: \"turntabel\" is not accepted; give group, follow, turntable, top, still, follow:ROBOT or a "
+            "camera file (.json); did you mean turntable?"},
+        BadInput{"Theme",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--theme", "drak"},
+                 "--theme: \"drak\" is not accepted; give dark, light; did you mean dark?"},
+        BadInput{"Color",
+                 {"render", "--random", "voxel", "-o", "a.mp4", "--color", "strian"},
+                 "--color: \"strian\" is not accepted; give material, activation, strain, force, speed, pressure, "
+                 "energy, stiffness, power; did you mean strain?"}),
     [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
@@ -157,9 +225,12 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(Program, PrintsItsVersion) {
-  const Outcome outcome = mercury({"--version"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.output, StartsWith("mercury "));
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--version"}, {"-V"}, {"run", "-V"}, {"-V", "new", "voxel"}}) {
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.output, StartsWith("mercury "));
+  }
 }
 
 TEST(Program, HelpNamesEveryCommandAndGoesToStandardOutput) {
@@ -174,11 +245,64 @@ TEST(Program, EachCommandHasItsOwnHelp) {
   EXPECT_THAT(mercury({"new", "voxel", "--help"}).output, HasSubstr("--symmetry"));
 }
 
+TEST(Program, HelpExplainsACommandLikeItsOption) {
+  EXPECT_EQ(mercury({"help"}).output, mercury({"--help"}).output);
+  EXPECT_EQ(mercury({"help", "run"}).output, mercury({"run", "--help"}).output);
+  EXPECT_EQ(mercury({"help", "new", "voxel"}).output, mercury({"new", "--help", "voxel"}).output);
+  EXPECT_EQ(mercury({"help", "run"}).status, 0);
+}
+
+TEST(Program, ShortHelpLeavesOutWhatFewNeed) {
+  const std::string brief = mercury({"run", "-h"}).output, all = mercury({"run", "--help"}).output;
+  EXPECT_LT(brief.size(), all.size());
+  EXPECT_THAT(brief, HasSubstr("--csv"));
+  EXPECT_THAT(brief, testing::Not(HasSubstr("--canvas-symmetry")));
+  EXPECT_THAT(brief, HasSubstr("more options: mercury run --help"));
+}
+
+// Only examples, and names of options with long forms, may be wider than the terminal.
+TEST(Program, HelpFitsTheTerminal) {
+  for (const int columns : {50, 80}) {
+    setenv("COLUMNS", std::to_string(columns).c_str(), 1);
+    for (const char* command : {"run", "render", "evolve", "info"}) {
+      std::istringstream lines(mercury({command, "--help"}).output);
+      for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("  mercury ") && !line.starts_with("  mpirun ") && !line.starts_with("  -")) {
+          EXPECT_LE(line.size(), static_cast<std::size_t>(columns)) << line;
+        }
+    }
+  }
+  unsetenv("COLUMNS");
+}
+
+TEST(Program, OptionsMayStandBeforeTheCommand) {
+  const std::vector<std::string> usual{"run", "--random", "voxel:2", "--seed", "4", "--seconds", "0.01", "--csv", "-"};
+  const Outcome expected = mercury(usual);
+  ASSERT_EQ(expected.status, 0);
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"--seconds", "0.01", "run", "--random", "voxel:2", "--seed", "4", "--csv", "-"},
+           {"--random", "voxel:2", "--seed=4", "-q", "--seconds", "0.01", "--csv", "-", "run"}})
+    EXPECT_EQ(mercury(arguments).output, expected.output);
+}
+
+TEST(Program, QuietAndVerboseStandAnywhere) {
+  const std::vector<std::string> with_note{"--random", "voxel", "--seconds", "0.01"};
+  for (const bool before : {false, true}) {
+    std::vector<std::string> arguments = with_note;
+    arguments.insert(arguments.begin(), before ? std::initializer_list<std::string>{"-v", "run"}
+                                               : std::initializer_list<std::string>{"run", "-v"});
+    EXPECT_THAT(mercury(arguments).messages, HasSubstr("of memory")) << before;
+    for (std::string& argument : arguments)
+      if (argument == "-v") argument = "-q";
+    EXPECT_EQ(mercury(arguments).messages, "") << before;
+  }
+}
+
 TEST(Program, OutputThatCannotBeWrittenIsAnError) {
   const Outcome outcome =
       run_program("sh", {"-c", std::string(MERCURY_PROGRAM) + " run --random voxel --seconds 0.01 >/dev/full"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: standard output cannot be written\n");
+  EXPECT_EQ(outcome.messages, "mercury: standard output cannot be written: No space left on device\n");
 }
 
 class ConfigFileTest : public FolderTest {
@@ -225,12 +349,51 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
   };
   expect_error("dt = 0.002\ndensity = -5\n", ":2: --density: -5 is not accepted; give a finite number >= 0 kg/m3");
   expect_error("\n\nsolver = \"euler\"\n", ":3: --solver: \"euler\" is not a solver; give force or xpbd");
-  expect_error("speeed = 3\n", ":1: \"speeed\" is not an option; mercury run --help lists them");
-  expect_error("[walk]\nspeed = 3\n", ":1: [walk] is not a command");
+  expect_error("speeed = 3\n",
+               ":1: \"speeed\" is not an option of mercury; did you mean speed?; see mercury run --help");
+  expect_error("[walk]\nspeed = 3\n", ":1: [walk] is not a command of mercury");
   expect_error("strict = 3\n", ":1: --strict is a switch; give true or false");
   expect_error("dt = true\n", ":1: --dt is not a switch; give a value");
   expect_error("environment = \"land\"\ndensity = 3\n",
                ":2: --density: land has no such parameter; it applies to ocean");
+}
+
+// A typo is reported even where the present command would not read it.
+TEST_F(ConfigFileTest, TyposInTablesOfOtherCommandsAreReported) {
+  const std::string file = path("a.toml");
+  const auto expect_error = [&](const std::string& toml, const std::string& message) {
+    const Outcome outcome = run_with(toml);
+    EXPECT_EQ(outcome.status, 2) << toml;
+    EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
+  };
+  expect_error("[new.voxl]\nair = 0.2\n", ":1: [voxl] is not a command of mercury new; did you mean voxel?");
+  expect_error("[new.voxel]\nedge = 0.2\nair = 0.3\nsymetry = \"x\"\n",
+               ":4: \"symetry\" is not an option of mercury new voxel; did you mean symmetry?; see mercury new voxel "
+               "--help");
+  expect_error("[render]\nfsp = 25\n",
+               ":2: \"fsp\" is not an option of mercury render; did you mean fps?; see mercury render --help");
+  expect_error("[new.nn]\nair = 0.2\n", ":2: \"air\" is not an option of mercury new nn; see mercury new nn --help");
+  expect_error("solver = \"xpdb\"\n", ":1: --solver: \"xpdb\" is not a solver; give force or xpbd; did you mean xpbd?");
+  expect_error("csv = \"\"\n", ":1: --csv: an empty value is not accepted; give FILE, or leave the option out");
+}
+
+// Each table overrides the keys above it: [new.voxel] those of [new], and those those at the top.
+TEST_F(ConfigFileTest, TablesOfKindsOverrideThoseOfTheirCommand) {
+  write("a.toml", "seed = 3\n[new]\nseed = 4\ncount = 2\n[new.voxel]\nseed = 5\nvoxels = \"2x2x2\"\n");
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("v"), "--config", path("a.toml")}).status, 0);
+  EXPECT_EQ(listing("v"), (std::vector<std::string>{"voxel-5-0.json", "voxel-5-1.json"}));
+  ASSERT_EQ(mercury({"new", "shell", "-o", path("s"), "--config", path("a.toml")}).status, 0);
+  EXPECT_EQ(listing("s"), (std::vector<std::string>{"shell-4-0.json", "shell-4-1.json"}));
+}
+
+// Opening a pipe without a writer would wait for ever.
+TEST_F(ConfigFileTest, MustBeARegularFile) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const std::string& file : {path("pipe"), folder_.string(), std::string("/dev/zero")}) {
+    const Outcome outcome = mercury({"run", "--random", "voxel", "--config", file});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.messages, "mercury: --config: " + file + " is not a file; give a TOML file\n");
+  }
 }
 
 TEST_F(ConfigFileTest, InvalidTomlIsReportedWithItsLine) {
@@ -242,7 +405,8 @@ TEST_F(ConfigFileTest, InvalidTomlIsReportedWithItsLine) {
 TEST_F(ConfigFileTest, FileMustExist) {
   const Outcome outcome = mercury({"run", "--random", "voxel", "--config", path("none.toml")});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages, "mercury: --config: " + path("none.toml") + " cannot be read\n");
+  EXPECT_EQ(outcome.messages,
+            "mercury: --config: " + path("none.toml") + " cannot be read: No such file or directory\n");
 }
 
 }  // namespace

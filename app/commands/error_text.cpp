@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/error_text.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include "app/base/suggestion.h"
+#include "app/commands/command_list.h"
+
+namespace mercury {
+
+std::string error_text(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error))
+    return "not enough memory";
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    const std::string path = (file->path2().empty() ? file->path1() : file->path2()).string();
+    return (path.empty() ? "" : path + ": ") + file->code().message();
+  }
+  const std::string_view text = error.what();
+  // "[json.exception.type_error.302] type must be number"
+  if (const std::size_t end = text.find("] "); text.starts_with("[json.exception.") && end != text.npos)
+    return std::string(text.substr(end + 2));
+  return std::string(text);
+}
+
+std::string with_suggestion(const std::string& message, const CLI::App& command) {
+  const std::size_t colon = message.find(": \"");
+  if (colon == std::string::npos || message.find("did you mean") != std::string::npos) return message;
+  const std::size_t begin = colon + 3, end = message.find("\" is n", begin);  // "is not", "is neither"
+  if (end == std::string::npos) return message;
+  const std::string name = message.substr(0, colon), value = message.substr(begin, end - begin);
+  const CLI::Option* option = name.starts_with("-") ? command.get_option_no_throw(name) : nullptr;
+  if (!option) return message;
+  const std::vector<std::string> choices = description_of(*option).choices;
+  const std::string word = value.substr(0, value.find(':'));
+  return std::ranges::find(choices, word) == choices.end() ? message + suggestion(word, choices) : message;
+}
+
+}  // namespace mercury

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/help_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+
+#include "app/commands/command_line.h"
+#include "mercury/generator.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t first_column = 28;  // names of options; their explanations begin behind it
+
+// Lines of text behind names, as in "  --dt S        Time step".
+std::string entry(const std::string& name, const std::string& text, std::size_t columns) {
+  std::string result = "  " + name;
+  const std::vector<std::string> lines = wrapped(text, columns - first_column);
+  if (lines.empty()) return result + "\n";
+  const bool is_long = result.size() + 2 > first_column;
+  if (is_long) result += "\n";
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    result += std::string(i == 0 && !is_long ? first_column - result.size() : first_column, ' ') + lines[i] + "\n";
+  return result;
+}
+
+std::string entry(const OptionDescription& option, std::size_t columns) {
+  std::string name = fmt::format("{}", fmt::join(option.names, ", "));
+  if (!option.form.empty() && !option.positional) name += " " + option.form;
+  if (option.many) name += " ...";
+  return entry(name, option.help + (option.required ? " (required)" : ""), columns);
+}
+
+std::string usage_of(const std::string& name, const std::vector<OptionDescription>& options, bool family) {
+  std::string text = "Usage: " + name;
+  if (family) return text + " COMMAND [OPTIONS]";
+  for (const OptionDescription& option : options) {
+    if (!option.positional) continue;
+    const std::string argument = option.names.front() + (option.many ? "..." : "");
+    text += option.required ? " " + argument : " [" + argument + "]";
+  }
+  for (const OptionDescription& option : options)
+    if (option.required && !option.positional) text += fmt::format(" {} {}", option.names.front(), option.form);
+  return text + " [OPTIONS]";
+}
+
+// A prose paragraph is wrapped; indented lines, which are examples, stay as they are. An explanation behind an example
+// that is too wide moves to a line of its own.
+std::string footer_page(const std::string& footer, std::size_t columns) {
+  std::string page, paragraph;
+  const auto end_paragraph = [&] {
+    for (const std::string& line : wrapped(paragraph, columns)) page += line + "\n";
+    paragraph.clear();
+  };
+  for (std::size_t start = 0; start < footer.size();) {
+    const std::size_t end = std::min(footer.find('\n', start), footer.size());
+    const std::string line = footer.substr(start, end - start);
+    start = end + 1;
+    if (!line.empty() && line.front() != ' ') {
+      paragraph += (paragraph.empty() ? "" : " ") + line;
+      if (line.ends_with(":")) end_paragraph();
+      continue;
+    }
+    end_paragraph();
+    const std::size_t gap = line.size() > columns ? line.find("   ", 2) : std::string::npos;
+    if (gap == std::string::npos) {
+      page += line + "\n";
+    } else {
+      page += line.substr(0, gap) + "\n";
+      for (const std::string& part : wrapped(line.substr(gap), columns - 6)) page += "      " + part + "\n";
+    }
+  }
+  end_paragraph();
+  return page;
+}
+
+bool is_kind(const std::string& group) {
+  return std::ranges::any_of(generators(), [&](const Generator& generator) { return generator.title == group; });
+}
+
+// Groups that a brief page leaves out: kinds of random robots, if the command takes all of them, and what is tuned
+// rarely.
+std::vector<std::string> rare_groups(const std::vector<std::string>& groups) {
+  std::vector<std::string> kinds, rare;
+  for (const Generator& generator : generators())
+    if (std::ranges::find(groups, generator.title) != groups.end()) kinds.emplace_back(generator.title);
+  if (kinds.size() > 1) rare = kinds;
+  rare.insert(rare.end(), {"Environment", "Several hosts"});
+  return rare;
+}
+
+}  // namespace
+
+std::vector<std::string> groups_of(const std::vector<OptionDescription>& options) {
+  std::vector<std::string> groups;
+  for (const OptionDescription& option : options)
+    if (!option.positional && std::ranges::find(groups, option.group) == groups.end()) groups.push_back(option.group);
+  const bool of_one_kind = std::ranges::count_if(groups, is_kind) == 1;
+  const auto rank = [&](const std::string& group) {
+    if (group == "Options" || group == "General") return group == "Options" ? 0 : 4;
+    return !is_kind(group) ? 2 : of_one_kind ? 1 : 3;
+  };
+  std::ranges::stable_sort(groups, {}, rank);
+  return groups;
+}
+
+std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start < text.size();) {
+    std::size_t end = std::min(text.find(' ', start), text.size());
+    // Long lists break behind a comma.
+    const std::size_t comma = end - start > columns ? text.rfind(',', start + columns - 1) : std::string::npos;
+    if (comma != std::string::npos && comma > start) end = comma + 1;
+    const std::string word = text.substr(start, end - start);
+    start = end < text.size() && text[end] != ' ' ? end : end + 1;
+    if (word.empty()) continue;
+    if (lines.empty() || lines.back().size() + 1 + word.size() > columns)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  }
+  return lines;
+}
+
+std::string help_page(const CLI::App& command, bool brief, int columns) {
+  const auto width = static_cast<std::size_t>(columns);
+  const std::string name = full_name(command);
+  const std::vector<OptionDescription> options = options_of(command);
+  const std::vector<std::string> commands = names_of_commands(command);
+  std::string page = fmt::format("{}.\n\n{}\n", fmt::join(wrapped(command.get_description(), width), "\n"),
+                                 fmt::join(wrapped(usage_of(name, options, !commands.empty()), width), "\n         "));
+  while (page.find("..\n") != std::string::npos) page.replace(page.find("..\n"), 3, ".\n");
+  if (options.front().positional) page += "\n";
+  for (const OptionDescription& option : options)
+    if (option.positional) page += entry(option, width);
+  if (!commands.empty()) page += "\nCommands:\n";
+  for (const std::string& child : commands)
+    page += entry(child, command.get_subcommand_ptr(child)->get_description(), width);
+  const std::vector<std::string> groups = groups_of(options), rare = rare_groups(groups);
+  std::size_t left_out = 0;
+  for (const std::string& group : groups) {
+    const bool shown = !brief || std::ranges::find(rare, group) == rare.end();
+    if (shown) page += "\n" + group + ":\n";
+    for (const OptionDescription& option : options) {
+      if (option.positional || option.group != group) continue;
+      if (shown)
+        page += entry(option, width);
+      else
+        ++left_out;
+    }
+  }
+  if (left_out > 0) page += fmt::format("\n{} more options: {} --help\n", left_out, name);
+  if (const std::string footer = footer_of(command); !footer.empty()) page += "\n" + footer_page(footer, width);
+  return page;
+}
+
+int columns_of_standard_output() {
+  int columns = 80;
+  winsize size{};
+  const char* variable = std::getenv("COLUMNS");
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+    columns = size.ws_col;
+  else if (variable)
+    std::from_chars(variable, variable + std::strlen(variable), columns);
+  return std::clamp(columns, 40, 100);
+}
+
+}  // namespace mercury

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// What shells and scripts meet: streams that are closed or full, signals, exit status.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::HasSubstr;
+
+// A short run of each command that needs no display. `prints`: its result goes to standard output.
+struct ShortRun {
+  const char* name;
+  std::vector<std::string> arguments;  // "@" stands for the folder of the test
+  bool prints = true;
+};
+
+const std::vector<ShortRun> short_runs{
+    {"run", {"run", "@/a.json", "--seconds", "0.01", "--device", "cpu"}},
+    {"render",
+     {"render", "@/a.json", "--still", "0", "--size", "64x64", "--gl", "osmesa", "--device", "cpu", "-o", "@/new.png"},
+     false},
+    {"evolve", {"evolve", "@/run", "--population", "2", "--generations", "1", "--seconds", "0.01", "--device", "cpu"}},
+    {"new", {"new", "voxel", "-o", "@/new/"}},
+    {"mutate", {"mutate", "@/a.json", "-o", "@/mutated/"}},
+    {"cross", {"cross", "@/a.json", "@/b.json", "-o", "@/crossed/"}},
+    {"grow", {"grow", "@/a.json", "-o", "@/grown/"}},
+    {"bench", {"bench", "--size", "2x2x2", "--count", "1", "--least-seconds", "0.001", "--device", "cpu"}},
+    {"info", {"info", "@/a.json"}},
+    {"machine", {"info"}},
+    {"help", {"help"}},
+    {"version", {"--version"}}};
+
+void PrintTo(const ShortRun& run, std::ostream* out) { *out << run.name; }
+
+class EveryCommand : public FolderTest, public testing::WithParamInterface<ShortRun> {
+ protected:
+  EveryCommand() {
+    mercury({"new", "voxel", "-o", path("a.json"), "--seed", "1"});
+    mercury({"new", "voxel", "-o", path("b.json"), "--seed", "2"});
+  }
+
+  // Through a shell, with redirections such as "2>&-".
+  Outcome run_with(const std::string& redirections) const {
+    std::vector<std::string> command{"-c", "exec \"$0\" \"$@\" " + redirections, MERCURY_PROGRAM};
+    for (std::string argument : GetParam().arguments) {
+      if (argument.starts_with("@")) argument.replace(0, 1, folder_.string());
+      command.push_back(argument);
+    }
+    return run_program("sh", command);
+  }
+};
+
+TEST_P(EveryCommand, WorksWithoutStandardInput) { EXPECT_EQ(run_with("<&-").status, 0); }
+
+// Messages that nobody can read are dropped.
+TEST_P(EveryCommand, WorksWhereMessagesCannotBeWritten) {
+  for (const char* redirection : {"2>/dev/full -v", "2>&- -v"}) {
+    const Outcome outcome = run_with(redirection);
+    EXPECT_EQ(outcome.status, 0) << redirection;
+    EXPECT_EQ(outcome.output.empty(), !GetParam().prints) << redirection;
+    // The next run writes the same files.
+    for (const char* written : {"new.png", "run", "new", "mutated", "crossed", "grown"})
+      std::filesystem::remove_all(folder_ / written);
+  }
+}
+
+// Results that nobody can read are an error, in one line.
+TEST_P(EveryCommand, FailsWhereResultsCannotBeWritten) {
+  for (const char* redirection : {">/dev/full", ">&-"}) {
+    const Outcome outcome = run_with(redirection);
+    EXPECT_EQ(outcome.status, GetParam().prints ? 1 : 0) << redirection << outcome.messages;
+    const char* message = GetParam().prints ? "mercury: standard output cannot be written: " : "";
+    EXPECT_THAT(outcome.messages, HasSubstr(message));
+    for (const char* written : {"new.png", "run", "new", "mutated", "crossed", "grown"})
+      std::filesystem::remove_all(folder_ / written);
+  }
+}
+
+// A reader that has read enough, such as `head`, ends the program without a word, as it ends any other.
+TEST_P(EveryCommand, EndsQuietlyWhenTheReaderLeaves) { EXPECT_EQ(run_with("-q | exit 0").messages, ""); }
+
+// An output file never becomes standard error.
+TEST_P(EveryCommand, WritesNoMessageIntoItsOutputFiles) {
+  run_with("-v 2>&- >&-");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string content(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(content.find("mercury: "), std::string::npos) << entry.path();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Terminal, EveryCommand, testing::ValuesIn(short_runs),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+// --- Signals
+
+// Runs a command that would take hours, sends a signal after its first message, and waits. Returns its wait status.
+int status_after_signal(std::vector<std::string> arguments, int number) {
+  int pipe_ends[2];
+  EXPECT_EQ(pipe(pipe_ends), 0);
+  arguments.insert(arguments.begin(), MERCURY_PROGRAM);
+  arguments.emplace_back("-v");
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(pipe_ends[1], STDERR_FILENO);
+    close(pipe_ends[0]);
+    close(pipe_ends[1]);
+    if (!freopen("/dev/null", "w", stdout)) _exit(127);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    execv(words[0], words.data());
+    _exit(127);
+  }
+  close(pipe_ends[1]);
+  char letters[4096];
+  EXPECT_GT(read(pipe_ends[0], letters, 1), 0);
+  kill(child, number);
+  while (read(pipe_ends[0], letters, sizeof letters) > 0) {
+  }
+  close(pipe_ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+class Signals : public FolderTest, public testing::WithParamInterface<int> {};
+
+TEST_P(Signals, EndWith128AndTheirNumber) {
+  mercury({"new", "voxel", "-o", path("a.json"), "--seed", "1"});
+  mercury({"new", "voxel", "-o", path("b.json"), "--seed", "2"});
+  const std::vector<std::vector<std::string>> long_runs{
+      {"run", path("a.json"), "--seconds", "1e6", "--device", "cpu"},
+      {"run", "--random", "voxel:100000", "--seconds", "1e4", "--device", "cpu"},
+      {"render", path("a.json"), "--seconds", "1e5", "--size", "64x64", "--gl", "osmesa", "--device", "cpu", "-o",
+       path("frames/")},
+      {"evolve", path("run"), "--population", "8", "--generations", "100000", "--device", "cpu"},
+      {"new", "voxel", "-o", path("new/"), "--count", "1000000000"},
+      {"new", "voxel", "-o", path("best/"), "--best-of", "1000000000", "--device", "cpu"},
+      {"mutate", path("a.json"), "-o", path("mutated/"), "--count", "1000000000"},
+      {"cross", path("a.json"), path("b.json"), "-o", path("crossed/"), "--count", "1000000000"}};
+  for (const std::vector<std::string>& arguments : long_runs)
+    EXPECT_EQ(status_after_signal(arguments, GetParam()), 128 + GetParam()) << arguments[0] << " " << arguments[1];
+}
+
+INSTANTIATE_TEST_SUITE_P(Terminal, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& tested) {
+  return tested.param == SIGINT ? "Interrupt" : tested.param == SIGTERM ? "Terminate" : "HangUp";
+});
+
+}  // namespace
+}  // namespace mercury::test
