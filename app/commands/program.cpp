@@ -131,7 +131,7 @@ class Program {
     const auto children = command.get_subcommands([](CLI::App*) { return true; });
     if (children.empty())
       add(add_text(command, "--config", config_path_,
-                   "Read options from a TOML file; the command line overrides them (docs/options.md)", "FILE.toml"));
+                   "Read options from a TOML file; the command line overrides them (docs/command-line.md)", "FILE.toml"));
     for (CLI::App* child : children) add_general_options(*child);
   }
 
