@@ -97,7 +97,7 @@ int measure(const Options& options) {
               .timing = {.frames = number("frames"), .interval = 1.0 / 30, .pace = 1.0 / 30},
               .settings = {.size = {number("width"), number("height")},
                            .expected_frames = number("frames"),
-                           .crf = number("crf"),
+                           .crf = number("crf") < 0 ? std::nullopt : std::optional(number("crf")),
                            .ffmpeg = options.at("ffmpeg")}};
   video.configuration.device = device_named(options.at("device"));
   const int device = video.configuration.device.kind == DeviceKind::cpu ? -1 : video.configuration.device.index;

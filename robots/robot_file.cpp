@@ -92,7 +92,10 @@ Robot load_robot(const std::filesystem::path& path) {
 }
 
 void save_robot(const std::filesystem::path& path, const Robot& robot) {
-  const RobotFormat format = robot_format_of(path);
+  save_robot(path, robot, robot_format_of(path));
+}
+
+void save_robot(const std::filesystem::path& path, const Robot& robot, RobotFormat format) {
   std::string document;
   try {
     document = serialize_robot(robot, format);

@@ -59,12 +59,15 @@ std::filesystem::path follow_links(std::filesystem::path path) {
 
 // A device, a pipe or a socket: it takes what is written, and must not be replaced by a file.
 bool is_special(const std::filesystem::path& path) {
+  // An open file of some process, such as /dev/stderr: it may be a regular file, which somebody else writes.
+  const std::string name = path.string();
+  if (name.starts_with("/dev/fd/") || name.starts_with("/dev/std") || name.starts_with("/proc/")) return true;
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
 void write_into(const std::filesystem::path& path, std::string_view content) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
   if (!file.is_open()) fail(path, errno);
   int error = write_all(file.get(), content);
   if (const int at_close = file.close(); error == 0) error = at_close;
@@ -110,8 +113,8 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+  if (is_special(path)) return write_into(path, content);
   const std::filesystem::path target = follow_links(path);
-  if (is_special(target)) return write_into(path, content);
   std::filesystem::path temporary;
   int descriptor = -1;
   for (int attempt = 0; descriptor < 0; ++attempt) {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -21,6 +22,36 @@ namespace mercury {
 namespace {
 
 constexpr std::size_t kept_text = 65536;  // text_of() returns the last bytes of the output, at most this many
+
+// The children that kill_children() ends, 0 = none. A signal handler reads them.
+constexpr std::size_t most_children = 64;
+std::array<std::atomic<pid_t>, most_children> children{};
+static_assert(std::atomic<pid_t>::is_always_lock_free);
+
+void enter(pid_t child) {
+  for (auto& slot : children) {
+    pid_t empty = 0;
+    if (slot.compare_exchange_strong(empty, child)) return;
+  }
+}
+
+// Call it before the child is waited for: after that, its number may be another process.
+void strike_out(pid_t child) {
+  for (auto& slot : children) {
+    pid_t number = child;
+    if (slot.compare_exchange_strong(number, 0)) return;
+  }
+}
+
+// Waits until the child has ended, without releasing its number. Returns whether it has.
+bool has_ended(pid_t child, int flags) {
+  siginfo_t state{};
+  int result = 0;
+  do {
+    result = waitid(P_PID, static_cast<id_t>(child), &state, WEXITED | WNOWAIT | flags);
+  } while (result < 0 && errno == EINTR);
+  return result < 0 || state.si_pid == child;
+}
 
 [[noreturn]] void throw_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
@@ -91,6 +122,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   ::close(pipe_ends[0]);
   if (error == 0) {
     pid_ = pid;
+    enter(pid);
     return;
   }
   for (const int descriptor : {input_, output_, messages_}) ::close(descriptor);
@@ -123,45 +155,50 @@ bool ChildProcess::write(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
+// Takes the status of a child that has ended.
+void ChildProcess::reap() {
+  strike_out(pid_);
+  while (waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+}
+
 int ChildProcess::finish() {
   close_input();
-  while (pid_ > 0) {
-    if (waitpid(pid_, &status_, 0) == pid_) {
-      pid_ = -1;
-    } else if (errno != EINTR) {
-      pid_ = -1;
-      throw_errno("wait for a child process");
-    }
-  }
+  if (pid_ > 0 && has_ended(pid_, 0)) reap();
   return status_;
 }
 
 bool ChildProcess::running() {
-  if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = -1;
+  if (pid_ > 0 && has_ended(pid_, WNOHANG)) reap();
   return pid_ > 0;
 }
 
 void ChildProcess::release() {
+  strike_out(pid_);
   pid_ = -1;
   close_input();
 }
 
 void ChildProcess::kill() {
   if (pid_ > 0) {
-    ::kill(pid_, SIGKILL);
-    while (waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
-    }
-    pid_ = -1;
+    ::kill(-pid_, SIGKILL);
+    reap();
   }
   close_input();
 }
 
 void ChildProcess::signal(int number) {
-  if (pid_ > 0) ::kill(pid_, number);
+  if (const pid_t child = pid_; child > 0) ::kill(-child, number);
 }
 
 std::string ChildProcess::output() const { return text_of(output_); }
 std::string ChildProcess::messages() const { return text_of(messages_); }
+
+void kill_children() {
+  for (const auto& slot : children)
+    if (const pid_t child = slot.load(); child > 0) ::kill(-child, SIGKILL);
+}
 
 std::string describe_exit(int status) {
   if (WIFSIGNALED(status)) {

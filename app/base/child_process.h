@@ -37,11 +37,12 @@ class ChildProcess {
   int finish();
   // Whether the child still runs, without waiting for it. finish() then returns at once.
   bool running();
-  // Ends the child at once (SIGKILL).
+  // Ends the child and its process group at once (SIGKILL).
   void kill();
   // Leaves the child to itself: the destructor no longer kills it.
   void release();
-  // Sends a signal if the child still runs. Another thread may call it during write().
+  // Sends a signal to the child and its process group if the child still runs. Another thread may call it during
+  // write().
   void signal(int number);
 
   std::string output() const;    // the last 64 KiB of its standard output so far
@@ -49,6 +50,7 @@ class ChildProcess {
 
  private:
   void close_input();
+  void reap();
 
   std::atomic<pid_t> pid_ = -1;
   int input_ = -1;
@@ -56,6 +58,10 @@ class ChildProcess {
   int messages_ = -1;
   int status_ = 0;
 };
+
+// Ends all children that were not released, with their process groups. Only for the last moment of this process: a
+// signal handler may call it.
+void kill_children();
 
 // "ended with status 1", "was killed by signal 9 (Killed)"; empty for status 0.
 std::string describe_exit(int status);

@@ -8,6 +8,9 @@
 #include <array>
 #include <atomic>
 
+#include "app/base/child_process.h"
+#include "app/base/output_files.h"
+
 namespace mercury {
 namespace {
 
@@ -22,6 +25,7 @@ static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>:
 
 void on_signal(int number) {
   if (int none = 0; first_signal.compare_exchange_strong(none, number)) return;
+  kill_children();
   for (auto& slot : unfinished)
     if (const char* path = slot.load()) unlink(path);
   _exit(128 + number);
@@ -49,7 +53,7 @@ void throw_if_interrupted() {
   if (interrupted()) throw Interrupted();
 }
 
-UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(target), path_(target) {
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(follow_links(target)), path_(target_) {
   path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));
   for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
     const char* empty = nullptr;

@@ -2,7 +2,7 @@
 // Ctrl-C, kill and a closed terminal: work in progress ends in an orderly way.
 //
 //   first signal    sets a flag; loops that ask interrupted() stop and finish their files
-//   second signal   removes unfinished files and ends the program at once
+//   second signal   kills child processes, removes unfinished files, and ends the program at once
 #pragma once
 
 #include <exception>
@@ -30,7 +30,8 @@ void throw_if_interrupted();
 // a second signal.
 class UnfinishedFile {
  public:
-  // Chooses path(): in the folder of `target`, with its name and this process's id. Does not create the file.
+  // Chooses path(): in the folder of `target`, links followed, with its name and this process's id. Does not create the
+  // file.
   explicit UnfinishedFile(const std::filesystem::path& target);
   ~UnfinishedFile();  // removes the file unless keep() was called
   UnfinishedFile(const UnfinishedFile&) = delete;

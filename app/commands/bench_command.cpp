@@ -12,6 +12,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
+#include "app/options/output_options.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/random_voxel.h"
@@ -22,6 +23,7 @@ namespace {
 
 struct BenchOptions {
   SimulationOptions simulation;
+  OutputOptions output;
   std::vector<int> size{10, 10, 10};
   std::size_t count = 0;  // 0 = chosen by choose_count()
   std::uint64_t seed = 1;
@@ -181,7 +183,10 @@ std::vector<Measurement> sweep(const BenchOptions& options, const Configuration&
 int bench(const BenchOptions& options) {
   const Configuration configuration = options.simulation.configuration();
   require_positive("--least-seconds", options.least_seconds, "s");
-  if (!options.csv.empty()) require_writable("--csv", options.csv);
+  OutputFiles outputs = options.output.files();
+  if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
+  outputs.check();
+  outputs.make_folders();
   const std::vector<Measurement> all =
       options.sweep ? sweep(options, configuration)
                     : std::vector{measure(options, configuration, choose_count(options, configuration))};
@@ -219,6 +224,7 @@ void add_bench_command(CLI::App& program, const Choose& choose) {
                     "Measure 1, 2, 4, ... robots, until the memory is full or --count is reached");
   add_text(*command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)",
            "FILE");
+  options->output.add_force_to(*command);
   options->simulation.add_to(*command);
   command->footer(
       "Springs per second = robots x springs x steps / time. The time covers whole steps (muscles, springs,\n"

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/commands.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_output.h"
@@ -25,11 +26,23 @@ int cross(const CrossOptions& options) {
     throw InputError("ROBOTS", fmt::format("{} robots are not accepted; give the files of two", parents.size()));
   const Robot &a = parents[0], &b = parents[1];
   cross_robots(a, b, options.output.seed(), "child");  // throws for two that are too different
-  const std::optional<std::string> file = options.output.file_stem();
-  return write_children(options.output, options.output.count(), parents, [&](std::uint64_t index, std::uint64_t seed) {
-    const std::string name = options.name.empty() ? a.name + "-x" : options.name + "-";
-    return cross_robots(a, b, seed, file ? *file : name + std::to_string(index));
-  });
+  const auto name_of = [&](std::uint64_t index) {
+    return (options.name.empty() ? a.name + "-x" : options.name + "-") + std::to_string(index);
+  };
+  const RobotOutput& output = options.output;
+  RobotFiles files = output.open(output.count(), numbered_names(name_of, output.count()), paths_of(options.paths));
+  if (output.dry_run())
+    return print_dry_run(
+        "cross", {{"parents", size_text(parents)},
+                  {"make", fmt::format("{} of seed {}",
+                                       count_text(static_cast<std::int64_t>(output.count()), "child", "children"),
+                                       output.seed())},
+                  {"write", output.description()}});
+  const std::optional<std::string> file = output.file_stem();
+  const MakeChild make = [&](std::uint64_t index, std::uint64_t seed) {
+    return cross_robots(a, b, seed, file ? *file : name_of(index));
+  };
+  return write_children(output, std::move(files), output.count(), parents, make);
 }
 
 }  // namespace

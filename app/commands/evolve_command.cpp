@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury evolve: evolves robots, into a run folder.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,11 +15,15 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/commands/commands.h"
+#include "app/commands/description.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/evolution_progress.h"
 #include "app/options/evolution_options.h"
 #include "app/options/option_values.h"
+#include "app/options/output_options.h"
 #include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
+#include "evolution/run_folder/new_folder.h"
 #include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
@@ -30,7 +36,8 @@ namespace {
 struct EvolveOptions {
   std::string folder;
   std::string shard;  // "3/8"
-  bool resume = false, prepare = false, merge = false, force = false;
+  bool resume = false, prepare = false, merge = false;
+  OutputOptions output;
   EvolutionOptions run;
 };
 
@@ -51,7 +58,7 @@ RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
     if (options.run.generations()) run.set_generations(*options.run.generations());
     return run;
   }
-  if (!options.force && is_run_folder(folder))
+  if (!options.output.force() && is_run_folder(folder))
     throw InputError(folder.string(), "holds a run; --resume goes on with it, --force replaces it");
   std::vector<std::string> notes;
   const RunSettings settings = options.run.settings(notes);
@@ -59,7 +66,7 @@ RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
   // A device that is not there is noticed before a folder is made or replaced.
   if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
     make_backend(settings.evolution.configuration.device);
-  return RunFolder::create(folder, settings, options.force);
+  return RunFolder::create(folder, settings, options.output.force());
 }
 
 // Runs generation after generation. Returns false if the user interrupted.
@@ -215,9 +222,53 @@ int merge(const EvolveOptions& options, const CLI::App& command) {
   return 0;
 }
 
+// --- Without doing it
+
+int describe_more(const EvolveOptions& options, const CLI::App& command) {
+  options.run.require_only_what_may_change(command);
+  if (!options.shard.empty()) shard_from(options.shard);
+  const RunHistory history(options.folder);
+  const EvolutionSettings settings = settings_here(options, command, history.settings());
+  return print_dry_run("evolve",
+                       {{"go on with", options.folder},
+                        {"generations", fmt::format("{} of {} are there", history.generations().size(),
+                                                    options.run.generations().value_or(settings.generations) + 1)},
+                        {"do", options.merge           ? "merge the shards of the next one"
+                               : options.shard.empty() ? "all that follow"
+                                                       : "shard " + options.shard},
+                        {"on", device_text(settings.configuration.device)}});
+}
+
+int describe_work(const EvolveOptions& options, const CLI::App& command) {
+  if (options.resume || options.merge || !options.shard.empty()) return describe_more(options, command);
+  require_new_folder(options.folder, options.output.force());
+  OutputFiles outputs = options.output.files();
+  outputs.add_folder("RUN", options.folder);
+  outputs.check();
+  std::vector<std::string> notes;
+  const EvolutionSettings settings = options.run.settings(notes).evolution;
+  for (const std::string& note : notes) say(note);
+  const std::size_t population = settings.algorithm.population;
+  const std::size_t children = settings.children > 0 ? settings.children : population;
+  const std::size_t robots = population + children * static_cast<std::size_t>(settings.generations);
+  const Configuration& configuration = settings.configuration;
+  return print_dry_run(
+      "evolve",
+      {{"algorithm", settings.algorithm.name},
+       {"maximise", fmt::format("{}", fmt::join(settings.objectives, "; "))},
+       {"robots", fmt::format("{}: {} at first, then {} in each of {} generations", robots, population, children,
+                              settings.generations)},
+       {"trials", fmt::format("{} per robot, each {}", settings.trials.trials,
+                              time_text(configuration, std::llround(settings.trials.seconds / configuration.dt)))},
+       {"in", environment_text(configuration)},
+       {"on", device_text(configuration.device)},
+       {"write", "the folder " + options.folder}});
+}
+
 int evolve(const EvolveOptions& options, const CLI::App& command) {
   if (options.resume + options.prepare + options.merge + !options.shard.empty() > 1)
     throw InputError("--resume, --prepare, --shard and --merge", "give one of them");
+  if (options.output.dry_run()) return rank_by_launcher() > 0 ? 0 : describe_work(options, command);
   if (!options.shard.empty()) return evolve_shard(options, command);
   const bool alone = options.merge || options.prepare;  // of several processes, only the first has something to do
   if (alone && rank_by_launcher() > 0) return 0;
@@ -239,7 +290,7 @@ void add_evolve_command(CLI::App& program, const Choose& choose) {
            "I/N")
       ->group("Several hosts");
   command->add_flag("--merge", options->merge, "Select from the files of all parts")->group("Several hosts");
-  command->add_flag("--force", options->force, "Replace the run in the folder");
+  options->output.add_to(*command);
   options->run.add_to(*command);
   command->footer(
       "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"

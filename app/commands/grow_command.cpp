@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury grow: robots once more from their origins.
 #include <memory>
+#include <set>
 
+#include "app/base/file_name.h"
 #include "app/commands/commands.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
 #include "app/options/robot_output.h"
+#include "mercury/error.h"
 #include "mercury/generator.h"
 
 namespace mercury {
@@ -15,10 +19,24 @@ struct GrowOptions {
   RobotOutput output;
 };
 
+// Files are named by their robots: one of two with the same name would be lost.
+std::set<std::string> names_of(const std::vector<Robot>& robots) {
+  std::set<std::string> names;
+  for (const Robot& robot : robots)
+    if (!names.insert(file_name_of(robot.name)).second)
+      throw InputError(robot.name, "two robots have this name; grow them into different folders");
+  return names;
+}
+
+// Robots may be grown in place: they are read before they are written.
 int grow(const GrowOptions& options) {
   const std::vector<Robot> robots = load_parents(options.paths, "grown");
-  options.output.prepare(robots.size());
-  for (const Robot& robot : robots) options.output.write(generator_of(robot)->regrow(robot));
+  const std::set<std::string> names = names_of(robots);
+  RobotFiles files =
+      options.output.open(robots.size(), [&](std::string_view name) { return names.contains(std::string(name)); });
+  if (options.output.dry_run())
+    return print_dry_run("grow", {{"robots", size_text(robots)}, {"write", options.output.description()}});
+  for (const Robot& robot : robots) files.write(generator_of(robot)->regrow(robot));
   return 0;
 }
 

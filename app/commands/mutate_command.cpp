@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands/commands.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_output.h"
@@ -29,13 +30,24 @@ int mutate(const MutateOptions& options) {
   const std::uint64_t each = options.output.count();
   if (each > std::numeric_limits<std::uint64_t>::max() / parents.size())
     throw InputError("--count", fmt::format("{} is not accepted; give fewer", each));
-  const std::optional<std::string> file = options.output.file_stem();
-  return write_children(options.output, each * parents.size(), parents, [&](std::uint64_t index, std::uint64_t seed) {
+  const auto name_of = [&](std::uint64_t index) {
     const Robot& parent = parents[static_cast<std::size_t>(index / each)];
+    return (options.name.empty() ? parent.name + "-m" : options.name + "-") + std::to_string(index);
+  };
+  const std::uint64_t count = each * parents.size();
+  RobotFiles files = options.output.open(count, numbered_names(name_of, count), paths_of(options.paths));
+  if (options.output.dry_run())
+    return print_dry_run(
+        "mutate",
+        {{"parents", size_text(parents)},
+         {"make", fmt::format("{} of seed {}", count_text(static_cast<std::int64_t>(count), "mutant", "mutants"),
+                              options.output.seed())},
+         {"write", options.output.description()}});
+  const std::optional<std::string> file = options.output.file_stem();
+  return write_children(options.output, std::move(files), count, parents, [&](std::uint64_t index, std::uint64_t seed) {
     MutationRequest own = options.mutation;
     own.seed = seed;
-    const std::string name = options.name.empty() ? parent.name + "-m" : options.name + "-";
-    return mutate_robot(parent, own, file ? *file : name + std::to_string(index));
+    return mutate_robot(parents[static_cast<std::size_t>(index / each)], own, file ? *file : name_of(index));
   });
 }
 

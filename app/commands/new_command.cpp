@@ -9,6 +9,7 @@
 #include "app/base/messages.h"
 #include "app/commands/best_of.h"
 #include "app/commands/commands.h"
+#include "app/commands/dry_run.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_output.h"
@@ -33,7 +34,24 @@ struct NewOptions {
   }
 };
 
-int keep_best(const NewOptions& options, const MakeRobot& make) {
+// See Generator::make.
+RobotNames names_of(const std::string& kind, std::uint64_t seed, std::uint64_t count) {
+  return numbered_names([=](std::uint64_t index) { return fmt::format("{}-{}-{}", kind, seed, index); }, count);
+}
+
+int describe_work(const NewOptions& options, const std::string& kind) {
+  const RobotOutput& output = options.output;
+  const bool search = options.best_of > 0;
+  return print_dry_run(
+      "new " + kind,
+      {{"make", fmt::format("{} of seed {}", search ? options.best_of : output.count(), output.seed())},
+       {"simulate", search ? time_text(options.simulation.configuration(), options.simulation.steps()) : ""},
+       {"on", search ? device_text(options.simulation.configuration().device) : ""},
+       {"keep", search ? fmt::format("the {} that get farthest", output.count()) : ""},
+       {"write", output.description()}});
+}
+
+int keep_best(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
   const RobotOutput& output = options.output;
   if (options.best_of < output.count())
     throw InputError("--best-of",
@@ -45,14 +63,15 @@ int keep_best(const NewOptions& options, const MakeRobot& make) {
                         .configuration = options.simulation.configuration(),
                         .steps = options.simulation.steps(),
                         .settling = std::llround(options.settle / options.simulation.configuration().dt)};
-  output.prepare();
+  RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), options.best_of));
+  if (output.dry_run()) return describe_work(options, kind);
   const std::vector<Winner> winners = best_of(contest, make, output.seed(), output.count());
   if (interrupted()) {
     say("stopped; nothing was written");
     return 1;
   }
   for (const Winner& winner : winners) {
-    output.write(*winner.robot);
+    files.write(*winner.robot);
     say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.distance));
   }
   if (winners.size() < output.count())
@@ -66,8 +85,11 @@ std::string environment_for(const NewOptions& options) {
   return options.simulation.chosen_environment();
 }
 
-int make_files(const NewOptions& options, const MakeRobot& make) {
-  return options.best_of > 0 ? keep_best(options, make) : write_robots(options.output, make);
+int make_files(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
+  if (options.best_of > 0) return keep_best(options, kind, make);
+  const RobotOutput& output = options.output;
+  RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), output.count()));
+  return output.dry_run() ? describe_work(options, kind) : write_robots(output, std::move(files), make);
 }
 
 std::string footer_of(const Generator& generator) {
@@ -100,7 +122,7 @@ void add_kind(CLI::App& family, const Choose& choose, const Generator& generator
       const ParameterValues& values = options->shape.values();
       generator.validate(values);
       const std::string environment = environment_for(options->shared);
-      return make_files(options->shared, [&](std::uint64_t seed, std::uint64_t index) {
+      return make_files(options->shared, generator.kind, [&](std::uint64_t seed, std::uint64_t index) {
         return generator.make(values, environment, seed, index);
       });
     });

@@ -48,9 +48,8 @@ std::vector<Robot> load_parents(const std::vector<std::string>& paths, const cha
   return parents;
 }
 
-int write_children(const RobotOutput& output, std::uint64_t count, const std::vector<Robot>& parents,
+int write_children(const RobotOutput& output, RobotFiles files, std::uint64_t count, const std::vector<Robot>& parents,
                    const MakeChild& make) {
-  output.prepare(count);
   std::unordered_set<std::uint64_t> bodies;
   for (const Robot& parent : parents) bodies.insert(body_hash(parent));
   Progress progress("making robots", "robots", static_cast<std::int64_t>(count));
@@ -79,7 +78,7 @@ int write_children(const RobotOutput& output, std::uint64_t count, const std::ve
         return 1;
       }
       if (found) {
-        output.write(*child.robot);
+        files.write(*child.robot);
       } else {
         all = false;
         warn(fmt::format("child {} was left out: {}", first + i,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@ namespace mercury {
 // `verb` in the message: "eel: cannot be mutated, ...".
 std::vector<Robot> load_parents(const std::vector<std::string>& paths, const char* verb);
 
+inline std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& names) {
+  return {names.begin(), names.end()};
+}
+
 // Makes the index-th child from a seed. Throws InputError if it cannot be made.
 using MakeChild = std::function<Robot(std::uint64_t index, std::uint64_t seed)>;
 
@@ -23,7 +28,7 @@ using MakeChild = std::function<Robot(std::uint64_t index, std::uint64_t seed)>;
 // a parent. A child that cannot be made, or whose body is there already, is drawn again with other seeds; after 30
 // draws it is reported on standard error and left out. The children depend on the seed of the output alone, not on
 // threads. Returns the exit status: 0, or 1 if a child is missing or the user interrupted.
-int write_children(const RobotOutput& output, std::uint64_t count, const std::vector<Robot>& parents,
+int write_children(const RobotOutput& output, RobotFiles files, std::uint64_t count, const std::vector<Robot>& parents,
                    const MakeChild& make);
 
 }  // namespace mercury

@@ -2,11 +2,15 @@
 // mercury render: makes videos and pictures without a window.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <set>
 
+#include "app/base/file_name.h"
 #include "app/base/messages.h"
 #include "app/commands/commands.h"
+#include "app/commands/description.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/render_subject.h"
 #include "app/options/option_values.h"
 #include "app/video/video_pipeline.h"
@@ -24,9 +28,7 @@ struct Output {
 class FileNames {
  public:
   std::string of(const Robot& robot) {
-    std::string base = robot.name.empty() ? "robot" : robot.name;
-    for (char& letter : base)
-      if (letter == '/') letter = '_';
+    const std::string base = file_name_of(robot.name);
     std::string name = base;
     for (int number = 2; !taken_.insert(name).second; ++number) name = fmt::format("{}-{}", base, number);
     return name;
@@ -57,14 +59,15 @@ std::vector<Output> outputs_of(const RenderOptions& options, std::vector<Clip> c
 // Simulates, draws and writes clips.
 class Filming {
  public:
-  Filming(const RenderOptions& options, const RenderTask& task) : options_(options), task_(task) {}
+  Filming(const RenderOptions& options, const RenderTask& task, bool may_replace)
+      : options_(options), task_(task), may_replace_(may_replace) {}
 
   // Opens the writer first: a missing encoder or an invalid file name is then reported before the slow start of OpenGL.
   // Returns false when the user interrupted it; the video then ends there.
   bool make(const Output& output) {
     VideoOptions::Plan whole = task_.plan;
     whole.timing.frames *= static_cast<std::int64_t>(output.clips.size());
-    const std::unique_ptr<FrameWriter> writer = options_.video.open(whole, output.name);
+    const std::unique_ptr<FrameWriter> writer = options_.video.open(whole, output.name, may_replace_);
     VideoResult result;
     for (const Clip& clip : output.clips) {
       const VideoResult of_clip = film(clip, *writer);
@@ -119,17 +122,64 @@ class Filming {
 
   const RenderOptions& options_;
   const RenderTask& task_;
+  const bool may_replace_;
   std::unique_ptr<OffscreenRenderer> offscreen_;
 };
 
+// Returns whether existing files may be replaced.
+bool check_outputs(const RenderOptions& options, const std::vector<std::string>& names) {
+  OutputFiles outputs = options.output.files();
+  for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
+  outputs.add_input(options.view.camera_file());
+  for (const std::string& name : names) options.video.add_output_to(outputs, name);
+  return outputs.check();
+}
+
+int describe_work(const RenderOptions& options, const RenderTask& task, const std::vector<Output>& outputs) {
+  const Subject& subject = task.subject;
+  const auto& [width, height] = task.plan.size;
+  std::size_t clips = 0;
+  for (const Output& output : outputs) clips += output.clips.size();
+  Intentions intentions;
+  std::vector<Robot> robots;
+  for (const Output& output : outputs)
+    for (const Clip& clip : output.clips) robots.insert(robots.end(), clip.robots.begin(), clip.robots.end());
+  if (subject.recording) {
+    const auto count = static_cast<std::int64_t>(subject.recording->robots().size());
+    intentions.emplace_back("play", subject.recording->path().string() + ": " + count_text(count, "robot", "robots"));
+  } else {
+    const double last =
+        task.plan.timing.start + static_cast<double>(task.plan.timing.frames - 1) * task.plan.timing.interval;
+    intentions.emplace_back("robots", size_text(robots));
+    intentions.emplace_back("simulate",
+                            time_text(subject.configuration, std::llround(last / subject.configuration.dt)));
+    intentions.emplace_back("in", environment_text(subject.configuration));
+    intentions.emplace_back("on", device_text(subject.configuration.device));
+  }
+  const std::int64_t frames = task.plan.timing.frames * static_cast<std::int64_t>(clips);
+  intentions.emplace_back("draw", fmt::format("{} of {}x{}", count_text(frames, "frame", "frames"), width, height));
+  for (const Output& output : outputs) intentions.emplace_back("write", options.video.output_of(output.name));
+  return print_dry_run("render", intentions);
+}
+
 int render_robots(RenderOptions& options) {
+  check_options(options);
+  // The names of several videos are known later.
+  bool may_replace = !options.video.each() && check_outputs(options, {""});
   RenderTask task = render_task(options);
+  const std::vector<Output> outputs = outputs_of(options, std::move(task.subject.clips));
+  if (options.video.each()) {
+    std::vector<std::string> names;
+    for (const Output& output : outputs) names.push_back(output.name);
+    may_replace = check_outputs(options, names);
+  }
+  if (options.output.dry_run()) return describe_work(options, task, outputs);
   const auto [width, height] = task.plan.size;
   if (!options.video.single_picture() && task.plan.size != options.video.asked_size())
     say(fmt::format("{} needs even sides: drawn at {}x{}", options.video.output_of(""), width, height));
   for (const std::string& note : task.subject.notes) say(note);
-  Filming filming(options, task);
-  for (const Output& output : outputs_of(options, std::move(task.subject.clips)))
+  Filming filming(options, task, may_replace);
+  for (const Output& output : outputs)
     if (!filming.make(output)) {
       say("stopped early; the video ends there");
       return 1;
@@ -148,6 +198,7 @@ void add_render_command(CLI::App& program, const Choose& choose) {
   options->video.add_to(*command);
   options->view.add_to(*command);
   options->film.add_to(*command);
+  options->output.add_to(*command);
   options->simulation.add_to(*command);
   command->footer(
       "Examples:\n"

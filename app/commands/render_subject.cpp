@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/render_subject.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "mercury/error.h"
@@ -83,18 +85,38 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
   return robots_of(options);
 }
 
+// Throws InputError for a moment that a recording does not have, or that a simulation would never reach.
+void require_moment(const VideoOptions& video, const Subject& subject) {
+  if (!video.still()) return;
+  const double moment = *video.still();
+  if (!subject.recording) {
+    if (moment / subject.configuration.dt > 1e15)
+      throw InputError("--still", fmt::format("{} s are too many steps of {} s", moment, subject.configuration.dt));
+    return;
+  }
+  const TrajectoryReader& recording = *subject.recording;
+  const double length = recording.time(recording.frames() - 1) - recording.time(0);
+  if (moment > length * (1 + 1e-9))
+    throw InputError("--still", fmt::format("{} is not accepted; the recording has {:.6g} s", moment, length));
+}
+
 }  // namespace
 
 Simulation Subject::simulation_of(const Clip& clip) const {
   return recording ? playback(recording) : Simulation(configuration, clip.robots);
 }
 
-RenderTask render_task(RenderOptions& options) {
+void check_options(RenderOptions& options) {
   if (options.film.map()) options.video.set_usual_still(0);
   options.video.plan(options.simulation.seconds());
+  options.view.settings();
+}
+
+RenderTask render_task(RenderOptions& options) {
   RenderTask task{.view = options.view.settings()};
   task.subject = subject_of(options, task.view);
   task.plan = options.video.plan(task.subject.seconds);
+  require_moment(options.video, task.subject);
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();

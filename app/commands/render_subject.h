@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/commands/run_film.h"
+#include "app/options/output_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/video_options.h"
@@ -21,6 +22,7 @@ struct RenderOptions {
   VideoOptions video;
   ViewOptions view;
   RunFilmOptions film;
+  OutputOptions output;
 };
 
 struct Subject {
@@ -40,7 +42,11 @@ struct RenderTask {
   ViewSettings view;
 };
 
-// May change options that have another default for this subject. Throws InputError.
+// Throws InputError for options that cannot be used, whatever is filmed. May change options that have another default
+// for this subject. Call it first.
+void check_options(RenderOptions& options);
+
+// Reads what is filmed. Throws InputError.
 RenderTask render_task(RenderOptions& options);
 
 }  // namespace mercury

@@ -1,38 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/results_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
+#include <optional>
+#include <thread>
 
-#include "mercury/error.h"
+#include "app/base/interrupt.h"
 #include "robots/whole_file.h"
 
 namespace mercury {
+namespace {
 
-bool is_standard_output(const std::string& file) { return file == "-" || file == "/dev/stdout"; }
-
-void require_writable(const std::string& option, const std::string& file) {
-  if (is_standard_output(file)) return;
-  const std::filesystem::path path(file);
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) throw InputError(option, file + " is a folder; give a file");
-  const bool is_special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (is_special ? access(file.c_str(), W_OK) != 0 : access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(option, file + " cannot be written: " + std::strerror(errno));
+bool is_named_pipe(const std::string& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
+// A named pipe, open while an object of this class lives. Opening it would block until somebody reads, and Ctrl-C would
+// not end that; so this asks again and again.
+class PipeWithReader {
+ public:
+  explicit PipeWithReader(const std::string& file) {
+    while (true) {
+      descriptor_ = ::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+      if (descriptor_ >= 0 || errno != ENXIO) return;
+      throw_if_interrupted();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  ~PipeWithReader() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  PipeWithReader(const PipeWithReader&) = delete;
+  PipeWithReader& operator=(const PipeWithReader&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace
+
 void write_results(const std::string& file, std::string_view content) {
-  if (is_standard_output(file))
+  if (is_standard_output(file)) {
     fmt::print("{}", content);
-  else
-    write_whole_file(file, content);
+    return;
+  }
+  std::fflush(stdout);  // what was printed so far is not lost if this takes long, or fails
+  std::optional<PipeWithReader> pipe;
+  if (is_named_pipe(file)) pipe.emplace(file);
+  write_whole_file(file, content);
 }
 
 }  // namespace mercury

@@ -5,16 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "app/base/output_files.h"
+
 namespace mercury {
 
-// "-" and "/dev/stdout" stand for standard output.
-bool is_standard_output(const std::string& file);
-
-// Fails before long work rather than after it. Throws InputError(option, ...) for a folder, or a file that cannot be
-// written.
-void require_writable(const std::string& option, const std::string& file);
-
-// Throws InputError if it cannot be written.
+// Writes a file whole or not at all; writes directly into a device, a pipe or standard output ("-", "/dev/stdout").
+// Waits for the reader of a named pipe. Throws InputError or std::runtime_error if it cannot be written, Interrupted.
 void write_results(const std::string& file, std::string_view content);
 
 }  // namespace mercury

@@ -13,14 +13,18 @@
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/commands/commands.h"
+#include "app/commands/description.h"
+#include "app/commands/dry_run.h"
 #include "app/commands/results_file.h"
 #include "app/commands/run_evaluation.h"
 #include "app/options/option_values.h"
+#include "app/options/output_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/recorder.h"
 #include "app/recording/report.h"
 #include "app/recording/repro.h"
+#include "app/recording/trajectory_layout.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
@@ -31,6 +35,7 @@ constexpr double recorded_rate = 30;  // frames per second of simulated time, wi
 struct RunOptions {
   RobotOptions robots;
   SimulationOptions simulation;
+  OutputOptions output;
   std::string csv, record;
   std::optional<std::int64_t> every;
   bool compress = false;
@@ -85,6 +90,21 @@ class Observer {
   std::vector<double> path_, strain_, strained_;
 };
 
+// Throws InputError for files that cannot be written. Makes their folders.
+void prepare_outputs(const RunOptions& options) {
+  OutputFiles outputs = options.output.files();
+  for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
+  if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
+  if (!options.record.empty()) {
+    if (!is_trajectory_name(options.record))
+      throw InputError("--record",
+                       "\"" + options.record + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
+    outputs.add_file("--record", options.record);
+  }
+  outputs.check();
+  if (!options.output.dry_run()) outputs.make_folders();
+}
+
 // Throws InputError for options that do not go together.
 void validate_recording(const RunOptions& options) {
   if (options.every && *options.every < 1)
@@ -93,11 +113,15 @@ void validate_recording(const RunOptions& options) {
     throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
 }
 
+// Steps between two frames.
+std::int64_t recorded_every(const RunOptions& options, const Configuration& configuration) {
+  const double usual = std::clamp(1 / (recorded_rate * configuration.dt), 1.0, 1e15);
+  return options.every.value_or(static_cast<std::int64_t>(usual + 0.5));
+}
+
 std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation, std::int64_t steps) {
-  const double dt = simulation.configuration().dt;
-  const auto default_every = static_cast<std::int64_t>(std::clamp(1 / (recorded_rate * dt), 1.0, 1e15) + 0.5);
   return std::make_unique<Recorder>(simulation, options.record,
-                                    RecordingOptions{.every = options.every.value_or(default_every),
+                                    RecordingOptions{.every = recorded_every(options, simulation.configuration()),
                                                      .last_step = steps,
                                                      .seed = options.robots.seed(),
                                                      .deflate = options.compress ? 1 : 0});
@@ -147,6 +171,24 @@ int report_results(const RunOptions& options, const RunReport& report) {
   return options.strict && exploded > 0 ? 1 : 0;
 }
 
+// Robots, or a repro, whose configuration and length are its own.
+int describe_work(const RunOptions& options, const Configuration& configuration, std::int64_t steps,
+                  const std::string& robots) {
+  const std::int64_t every = recorded_every(options, configuration);
+  return print_dry_run(
+      "run", {{"robots", robots},
+              {"simulate", time_text(configuration, steps)},
+              {"in", environment_text(configuration)},
+              {"by", solver_text(configuration)},
+              {"on", device_text(configuration.device)},
+              {"record",
+               options.record.empty() ? "" : options.record + ": " + count_text(steps / every + 1, "frame", "frames")},
+              {"write", options.csv},
+              {"print", is_standard_output(options.csv) ? "CSV"
+                        : options.json                  ? "JSON"
+                                                        : "a table"}});
+}
+
 // Runs until the robot has exploded, or for --seconds from the start of the repro.
 int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Device device = options.simulation.configuration().device;
@@ -158,10 +200,12 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   if (simulation.device_name() != repro.device_name)
     warn(fmt::format("the explosion of {} was seen on {}; this device, {}, may give another result", file.string(),
                      repro.device_name, simulation.device_name()));
-  ReproChanges changes(repro);
   const double seconds = options.simulation.seconds(0);
   const std::int64_t last =
       seconds > 0 ? simulation.steps() + std::llround(seconds / repro.configuration.dt) : repro.last_step;
+  if (options.output.dry_run())
+    return describe_work(options, repro.configuration, last - simulation.steps(), file.string());
+  ReproChanges changes(repro);
   return report_results(options, simulate(simulation, last, nullptr, &changes));
 }
 
@@ -176,7 +220,6 @@ int run_recorded(const RunOptions& options, std::int64_t steps) {
   Simulation simulation(options.simulation.configuration(robots, notes), robots);
   print_notes(notes);
   print_notes(simulation.notes());
-  validate_recording(options);
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
   const RunReport report = simulate(simulation, steps, recorder.get());
   recorder->finish();
@@ -184,16 +227,17 @@ int run_recorded(const RunOptions& options, std::int64_t steps) {
 }
 
 int run(const RunOptions& options) {
-  if (!options.csv.empty()) require_writable("--csv", options.csv);
+  prepare_outputs(options);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
   options.simulation.configuration();  // errors in options come before those in files
   const std::int64_t steps = options.simulation.steps();
-  if (!options.record.empty()) return run_recorded(options, steps);
+  validate_recording(options);
+  if (!options.record.empty() && !options.output.dry_run()) return run_recorded(options, steps);
   const RobotSequence robots = options.robots.sequence();
   std::vector<std::string> notes;
   const Configuration configuration = options.simulation.configuration(robots.environments, notes);
   print_notes(notes);
-  validate_recording(options);
+  if (options.output.dry_run()) return describe_work(options, configuration, steps, size_text(robots));
   const RunReport report = evaluate(robots, configuration, steps);
   print_notes(report.notes);
   return report_results(options, report);
@@ -212,6 +256,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
            "FILE.h5");
   add_number(*command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
+  options->output.add_to(*command);
   command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");

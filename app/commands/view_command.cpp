@@ -9,10 +9,12 @@
 
 #include "app/commands/commands.h"
 #include "app/options/option_values.h"
+#include "app/options/output_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
 #include "app/recording/repro.h"
+#include "app/video/frame_writer.h"
 #include "app/window/toolkit/embedded.h"
 #include "app/window/viewer.h"
 #include "mercury/error.h"
@@ -25,6 +27,7 @@ struct ViewCommandOptions {
   RobotOptions robots;
   SimulationOptions simulation;
   ViewOptions view;
+  OutputOptions output;
   std::string size, quality = "auto", report;
   bool fresh = false, paused = false;
 };
@@ -33,6 +36,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   window::ViewerOptions result;
   if (!options.size.empty()) {
     const std::vector<int> size = sizes_from("--size", options.size, 2, "WIDTHxHEIGHT");
+    require_drawable({size[0], size[1]});
     result.size = {size[0], size[1]};
   }
   result.quality = render::quality_named(options.quality);
@@ -63,7 +67,19 @@ void open_with_run(window::ViewerOptions& viewer, const std::filesystem::path& r
   viewer.run = run;
 }
 
+// The report is a log, which may go to a device or a pipe. What the window itself saves, it asks about.
+void check_report(const ViewCommandOptions& options) {
+  if (options.report.empty()) return;
+  OutputFiles outputs = options.output.files();
+  for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
+  outputs.add_input(options.view.camera_file());
+  outputs.add_stream("--report", options.report);
+  outputs.check();
+  outputs.make_folders();
+}
+
 int view(const ViewCommandOptions& options) {
+  check_report(options);
   window::ViewerOptions viewer = viewer_options(options);
   viewer.configuration = options.simulation.configuration();
   if (options.robots.empty()) {
@@ -108,6 +124,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--report", options->report,
            "Write the events of the window to a file, one JSON object per line (docs/window.md)", "FILE")
       ->group("Window");
+  options->output.add_force_to(*command);
   options->view.add_to(*command);
   options->simulation.add_to(*command);
   command->footer(

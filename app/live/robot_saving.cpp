@@ -40,20 +40,6 @@ SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
   return result;
 }
 
-std::string file_name_of(std::string_view name) {
-  std::string text;
-  for (const char letter : name) {
-    const auto code = static_cast<unsigned char>(letter);
-    text += code < 0x20 || code == 0x7f || std::string_view("/\\:*?\"<>|").find(letter) != std::string_view::npos
-                ? '_'
-                : letter;
-  }
-  // A leading dot would hide the file, a leading dash look like an option.
-  while (!text.empty() && (text.front() == '.' || text.front() == '-')) text.erase(0, 1);
-  if (text.size() > 120) text.resize(120);
-  return text.empty() ? "robot" : text;
-}
-
 fs::path unused_name(const fs::path& wanted) {
   std::error_code ignored;
   fs::path name = wanted;

@@ -4,8 +4,9 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "app/base/file_name.h"
 
 namespace mercury {
 
@@ -24,9 +25,6 @@ struct FileToSave {
 // Writes all files, each whole or not at all, and makes missing folders. Writes nothing if a file exists and
 // `overwrite` is false.
 SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite);
-
-// Returns `name` with characters replaced that file names must not have; "robot" if nothing is left.
-std::string file_name_of(std::string_view name);
 
 // Returns `wanted`, or the first of wanted-2, wanted-3, ... that does not exist.
 std::filesystem::path unused_name(const std::filesystem::path& wanted);

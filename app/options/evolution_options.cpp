@@ -190,8 +190,8 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
 }
 
 void EvolutionOptions::require_only_what_may_change(const CLI::App& command) const {
-  const std::set<std::string> allowed{"RUN",     "--resume",  "--generations", "--device", "--threads",
-                                      "--quiet", "--verbose", "--config",      "--shard",  "--merge"};
+  const std::set<std::string> allowed{"RUN",       "--resume", "--generations", "--device", "--threads", "--quiet",
+                                      "--verbose", "--config", "--shard",       "--merge",  "--dry-run"};
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = option->get_single_name();
     if (option->count() == 0 || allowed.contains(name) || allowed.contains("--" + name)) continue;

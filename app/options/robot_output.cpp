@@ -5,13 +5,15 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <charconv>
+#include <utility>
 
+#include "app/base/file_name.h"
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/options/option_values.h"
 #include "mercury/error.h"
-#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -41,48 +43,96 @@ void RobotOutput::add_to(CLI::App& command, const std::string& count_help) {
 }
 
 void RobotOutput::add_files_to(CLI::App& command) {
-  add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), or a folder", "FILE|FOLDER")->required();
+  add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), a folder, or - for standard output",
+           "FILE|FOLDER")
+      ->required();
   add_choice(command, "--format", format_, {"json", "cbor"}, "Of the files in a folder (default json)");
-  command.add_flag("--force", force_, "Replace files that exist");
+  output_.add_to(command);
 }
 
 bool RobotOutput::names_file() const {
   const std::string extension = fs::path(path_).extension().string();
-  return (extension == ".json" || extension == ".cbor") && !fs::is_directory(path_);
+  return is_standard_output(path_) || is_device_or_pipe(path_) ||
+         ((extension == ".json" || extension == ".cbor") && !fs::is_directory(path_));
 }
 
 std::optional<std::string> RobotOutput::file_stem() const {
-  return names_file() ? std::optional(fs::path(path_).stem().string()) : std::nullopt;
+  const bool has_name = names_file() && !is_standard_output(path_) && !is_device_or_pipe(path_);
+  return has_name ? std::optional(fs::path(path_).stem().string()) : std::nullopt;
 }
 
-void RobotOutput::prepare(std::uint64_t robots) const {
+std::string RobotOutput::description() const {
+  if (is_standard_output(path_)) return "standard output";
+  return names_file() ? path_ : fmt::format("the folder {} (.{})", path_, format_);
+}
+
+void RobotOutput::require_usable(std::uint64_t robots) const {
   const fs::path path(path_);
-  if (count_ < 1) throw InputError("--count", "0 is not accepted; give 1 or more");
+  if (count_ < 1 || robots < 1 || robots > most_new_robots)
+    throw InputError("--count",
+                     robots > count_ && count_ > 0
+                         ? fmt::format("{} robots are too many; give at most {} in all", robots, most_new_robots)
+                         : fmt::format("{} is not accepted; give 1 to {}", count_, most_new_robots));
   if (path.empty()) throw InputError("-o", "give a file (.json, .cbor) or a folder");
   if (names_file()) {
     if (robots > 1) throw InputError("-o", path_ + " is one file; give a folder for several robots");
   } else if (!path.extension().empty() && !path.filename().empty() && !fs::is_directory(path)) {
     throw InputError("-o", fmt::format("{}: \"{}\" is not a robot file; give .json, .cbor or a folder", path_,
                                        path.extension().string()));
-  } else if (fs::exists(path) && !fs::is_directory(path)) {
-    throw InputError("-o", path_ + " is a file, not a folder");
   }
-  const fs::path folder = names_file() ? path.parent_path() : path;
-  std::error_code error;
-  if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) throw InputError("-o", "cannot make the folder " + folder.string() + ": " + error.message());
 }
 
-void RobotOutput::write(const Robot& robot) const {
-  const fs::path file = names_file() ? fs::path(path_) : fs::path(path_) / (robot.name + "." + format_);
-  if (!force_ && fs::exists(file))
-    throw InputError(file.string(), "exists already; use --force to replace it, or another name");
+RobotFiles RobotOutput::open(std::uint64_t robots, const RobotNames& names, const std::vector<fs::path>& inputs) const {
+  require_usable(robots);
+  OutputFiles outputs = output_.files();
+  for (const fs::path& input : inputs) outputs.add_input(input);
+  RobotFiles files;
+  files.path_ = path_;
+  files.is_file_ = names_file();
+  files.format_ = format_ == "json" ? RobotFormat::json : RobotFormat::cbor;
+  if (files.is_file_) {
+    outputs.add_stream("-o", path_);
+  } else {
+    outputs.add_folder("-o", path_);
+    std::error_code error;
+    for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error))
+      if (entry->path().extension() == "." + format_ && names(entry->path().stem().string()))
+        outputs.add_stream("-o", entry->path().string());
+  }
+  files.may_replace_ = outputs.check();
+  if (!dry_run()) outputs.make_folders();
+  return files;
+}
+
+fs::path RobotFiles::file_of(const Robot& robot) const {
+  if (is_file_) return path_;
+  return path_ / (file_name_of(robot.name) + (format_ == RobotFormat::json ? ".json" : ".cbor"));
+}
+
+void RobotFiles::write(const Robot& robot) {
+  const fs::path file = file_of(robot);
+  if (is_standard_output(file.string())) {
+    fmt::print("{}", serialize_robot(robot, format_));
+    return;
+  }
+  if (is_device_or_pipe(file)) return save_robot(file, robot, format_);
+  if (!may_replace_ && !written_.contains(file) && fs::exists(fs::symlink_status(file)))
+    throw InputError(file.string(), "exists already; use --force to replace it, or give another name");
   save_robot(file, robot);
+  written_.insert(file);
   fmt::print("{}\n", file.string());
 }
 
-int write_robots(const RobotOutput& output, const MakeRobot& make) {
-  output.prepare();
+RobotNames numbered_names(std::function<std::string(std::uint64_t index)> name_of, std::uint64_t count) {
+  return [name_of = std::move(name_of), count](std::string_view name) {
+    const std::size_t digits = name.find_last_not_of("0123456789") + 1;  // 0 if there is nothing else
+    std::uint64_t index = 0;
+    const auto error = std::from_chars(name.data() + digits, name.data() + name.size(), index).ec;
+    return error == std::errc{} && index < count && file_name_of(name_of(index)) == name;
+  };
+}
+
+int write_robots(const RobotOutput& output, RobotFiles files, const MakeRobot& make) {
   Progress progress("making robots", "robots", static_cast<std::int64_t>(output.count()));
   bool all = true;
   for (std::uint64_t first = 0; first < output.count(); first += at_once) {
@@ -93,7 +143,7 @@ int write_robots(const RobotOutput& output, const MakeRobot& make) {
         return 1;
       }
       if (robot) {
-        output.write(*robot);
+        files.write(*robot);
       } else {
         all = false;
         warn(fmt::format("a robot was left out: {}", failure));

@@ -8,12 +8,18 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/options/output_options.h"
 #include "mercury/robot.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
+
+inline constexpr std::uint64_t most_new_robots = 1'000'000;  // of one command
 
 // Makes the index-th robot of a seed. Throws InputError if it cannot be made.
 using MakeRobot = std::function<Robot(std::uint64_t seed, std::uint64_t index)>;
@@ -27,7 +33,32 @@ struct MadeRobot {
 // Robots first .. first + count - 1 of a seed, made on all cores.
 std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, std::uint64_t first, std::size_t count);
 
-// Where new robots go, and how many.
+// Whether one of the robots that will be made may have this name. The files of these names are looked up before the
+// work begins.
+using RobotNames = std::function<bool(std::string_view name)>;
+
+// The names of robots 0 .. count - 1, each of which ends with its number, behind something that is no digit.
+RobotNames numbered_names(std::function<std::string(std::uint64_t index)> name_of, std::uint64_t count);
+
+// Where the robots of a command go, checked. Made by RobotOutput::open().
+class RobotFiles {
+ public:
+  // Writes one robot to the file, or to NAME.json in the folder, and prints the file's name unless the robot itself is
+  // printed. On an error no partial file is left. Throws InputError if the file exists, unless it may be replaced or
+  // this object wrote it.
+  void write(const Robot& robot);
+
+ private:
+  friend class RobotOutput;
+  std::filesystem::path file_of(const Robot& robot) const;
+
+  std::filesystem::path path_;  // a file, or a folder
+  bool is_file_ = false, may_replace_ = false;
+  RobotFormat format_ = RobotFormat::json;
+  std::set<std::filesystem::path> written_;
+};
+
+// The options for where new robots go, and how many.
 class RobotOutput {
  public:
   // Adds the options to a command, with --count and --seed, or without. The object must outlive it.
@@ -36,28 +67,30 @@ class RobotOutput {
 
   std::uint64_t count() const { return count_; }
   std::uint64_t seed() const { return seed_; }
+  bool dry_run() const { return output_.dry_run(); }
 
-  // Creates the folders. Throws InputError if --count is 0, or if the name cannot be used for this number of robots.
-  void prepare(std::uint64_t robots) const;
-  void prepare() const { prepare(count_); }
-  // The name of the one file without folder and extension; none if the robots go into a folder.
+  // Checks the file or folder for this number of robots, see OutputFiles; `inputs` are read and must not be written.
+  // Makes missing folders, unless it is a dry run. Throws InputError if --count cannot be used, or -o.
+  RobotFiles open(std::uint64_t robots, const RobotNames& names,
+                  const std::vector<std::filesystem::path>& inputs = {}) const;
+  // The name of the one file without folder and extension; none if the robots go into a folder, or are printed.
   std::optional<std::string> file_stem() const;
-  // Writes one robot to the file, or to NAME.json in the folder, and prints the file's name. On an error no partial
-  // file is left. Throws InputError if the file exists, unless --force is given.
-  void write(const Robot& robot) const;
+  // For people: "eel.json", "standard output", "the folder my-robots (.cbor)".
+  std::string description() const;
 
  private:
   bool names_file() const;
+  void require_usable(std::uint64_t robots) const;
 
-  std::string path_;  // a file (.json, .cbor) or a folder
+  std::string path_;  // a file (.json, .cbor), a folder, a device, "-"
   std::uint64_t count_ = 1;
   std::uint64_t seed_ = 1;
-  std::string format_ = "json";  // of files in a folder
-  bool force_ = false;           // replace files that exist
+  std::string format_ = "json";  // of what has no extension
+  OutputOptions output_;
 };
 
 // Makes robots 0 .. count - 1 of the seed and writes them. A robot that cannot be made is reported on standard
 // error, and the next one is made. Returns the exit status: 0, or 1 if one could not be made or the user interrupted.
-int write_robots(const RobotOutput& output, const MakeRobot& make);
+int write_robots(const RobotOutput& output, RobotFiles files, const MakeRobot& make);
 
 }  // namespace mercury

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -12,7 +13,9 @@
 namespace mercury {
 namespace {
 
-constexpr int sheet_gap = 4;  // between the moments of a contact sheet [pixels]
+constexpr int sheet_gap = 4;        // between the moments of a contact sheet [pixels]
+constexpr int most_moments = 1000;  // of a contact sheet in a row, or a column
+constexpr double slowest = 1e-6;    // simulated seconds per second of video
 
 PictureSize size_from(const std::string& option, const std::string& text) {
   static const std::map<std::string, PictureSize> names{{"480p", {854, 480}},
@@ -50,19 +53,22 @@ void VideoOptions::add_to(CLI::App& command) {
                  "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
   add(command.add_flag("--no-interop", no_interop_,
                        "Copy positions through the host even where CUDA and OpenGL can share them on the card"));
-  add(add_number(command, "--crf", crf_, "Of the encoding: lower is better and larger (default 18 .mp4, 30 .webm)",
-                 "N"));
+  add(add_number(command, "--crf", crf_,
+                 "Of the encoding: lower is better and larger, 0 is lossless (default 18 .mp4, 30 .webm)", "N"));
   add(add_text(command, "--ffmpeg", ffmpeg_, "The encoder (default: MERCURY_FFMPEG, else ffmpeg)", "PROGRAM"));
 }
 
 void VideoOptions::validate() const {
+  require_drawable(asked_size());
   if (frames_per_second_) require_positive("--fps", *frames_per_second_, " frames/s");
-  require_positive("--speed", speed_, "");
-  if (crf_ < -1 || crf_ > 63)
-    throw InputError("--crf", fmt::format("{} is not accepted; give 0 to 51 (.mp4) or 63 (.webm)", crf_));
+  if (!(speed_ >= slowest && speed_ <= 1 / slowest))
+    throw InputError("--speed", fmt::format("{} is not accepted; give {} to {:.0f}", speed_, slowest, 1 / slowest));
   if (still_ && !(std::isfinite(*still_) && *still_ >= 0))
     throw InputError("--still", fmt::format("{} is not accepted; give a finite number >= 0 s", *still_));
   if (still_ && contact_sheet_) throw InputError("--still", "not together with --contact-sheet; give one of them");
+  if (contact_sheet_ && std::max(contact_sheet_->columns, contact_sheet_->rows) > most_moments)
+    throw InputError("--contact-sheet", fmt::format("{}x{} is not accepted; give up to {} columns and rows",
+                                                    contact_sheet_->columns, contact_sheet_->rows, most_moments));
 }
 
 void VideoOptions::set_usual_still(double seconds) {
@@ -77,12 +83,15 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
   validate();
   if (single_picture()) return plan_pictures(seconds);
   const VideoKind kind = video_kind_of(output_);
+  const double rate = frames_per_second_.value_or(usual_frame_rate(kind));
+  require_encodable(kind, rate, crf_);
   return {.size = encoded_size(kind, asked_size()),
           .pixels = pixel_format_of(kind),
-          .timing = video_timing(seconds, speed_, frames_per_second_.value_or(usual_frame_rate(kind)))};
+          .timing = video_timing(seconds, speed_, rate)};
 }
 
 VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
+  require_picture_name(output_);
   if (still_) return {.size = asked_size(), .timing = {.frames = 1, .start = *still_}};
   const PictureSize sheet = asked_size();
   const int width = (sheet.width + sheet_gap) / contact_sheet_->columns - sheet_gap;
@@ -90,6 +99,7 @@ VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
                           static_cast<int>(std::lround(static_cast<double>(width) * sheet.height / sheet.width))};
   if (frame.width < 16 || frame.height < 16)
     throw InputError("--contact-sheet", "the moments are too small to be drawn; give a larger --size or fewer moments");
+  size_of_sheet(*contact_sheet_, frame, sheet_gap);
   const std::int64_t frames = static_cast<std::int64_t>(contact_sheet_->columns) * contact_sheet_->rows;
   const double interval = frames > 1 ? seconds / static_cast<double>(frames - 1) : 0;
   return {.size = frame, .timing = {.frames = frames, .interval = interval, .pace = interval}};
@@ -102,7 +112,17 @@ std::string VideoOptions::output_of(const std::string& name) const {
   return (path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), name, path.extension().string())).string();
 }
 
-std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name) const {
+void VideoOptions::add_output_to(OutputFiles& outputs, const std::string& name) const {
+  const std::string output = output_of(name);
+  if (single_picture())
+    outputs.add_stream("-o", output);
+  else if (video_kind_of(output) == VideoKind::png_folder)
+    outputs.add_new_folder("-o", output);
+  else
+    outputs.add_file("-o", output);
+}
+
+std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name, bool may_replace) const {
   const std::string output = output_of(name);
   if (single_picture())
     return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap);
@@ -110,7 +130,8 @@ std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::str
                                     .frames_per_second = 1 / plan.timing.pace,
                                     .expected_frames = plan.timing.frames,
                                     .crf = crf_,
-                                    .ffmpeg = ffmpeg_});
+                                    .ffmpeg = ffmpeg_,
+                                    .force = may_replace});
 }
 
 }  // namespace mercury

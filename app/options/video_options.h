@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/base/output_files.h"
 #include "app/scene/group_layout.h"
 #include "app/video/frame_writer.h"
 #include "app/video/video_stages.h"
@@ -29,16 +30,19 @@ class VideoOptions {
     VideoTiming timing;
   };
   Plan plan(double seconds) const;
-  // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots.
-  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name) const;
+  // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots. `may_replace`: see
+  // VideoSettings::force.
+  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name, bool may_replace) const;
   // The file or folder that open() writes.
   std::string output_of(const std::string& name) const;
+  void add_output_to(OutputFiles& outputs, const std::string& name) const;
 
   // From now on: one picture, of this moment, unless the options ask for another kind of output [s].
   void set_usual_still(double seconds);
 
   double speed() const { return speed_; }
   bool each() const { return each_; }
+  std::optional<double> still() const { return still_; }  // [s]
   std::optional<Grid> contact_sheet() const { return contact_sheet_; }
   bool single_picture() const { return still_ || contact_sheet_; }
   PictureSize asked_size() const;
@@ -55,7 +59,7 @@ class VideoOptions {
   std::optional<double> frames_per_second_, still_;
   std::optional<Grid> contact_sheet_;
   double speed_ = 1;
-  int crf_ = -1;
+  std::optional<int> crf_;
   bool each_ = false, no_interop_ = false;
   std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
 };

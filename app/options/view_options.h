@@ -15,6 +15,8 @@ class ViewOptions {
 
   // The settings that the options describe. Throws InputError or ParameterError for an option that cannot be used.
   ViewSettings settings() const;
+  // The camera file that is read; empty = none.
+  std::string camera_file() const { return words_.camera.ends_with(".json") ? words_.camera : std::string(); }
   bool chooses_what_is_shown() const { return words_.show.has_value(); }
 
  private:

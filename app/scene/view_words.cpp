@@ -18,6 +18,9 @@
 namespace mercury {
 namespace {
 
+constexpr int most_cells = 10000;     // of a grid in a row, or a column
+constexpr float farthest_cut = 1e6f;  // from the origin of a robot, which explodes there [m]
+
 float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180; }
 
 render::Theme theme_named(const std::string& name) {
@@ -42,7 +45,7 @@ render::CutPlane cut_from(const std::string& text) {
   if (colon != std::string::npos) {
     const char *begin = text.data() + colon + 1, *all = text.data() + text.size();
     const auto [end, error] = std::from_chars(begin, all, place);
-    placed = begin != all && end == all && error == std::errc{} && std::isfinite(place);
+    placed = begin != all && end == all && error == std::errc{} && std::abs(place) <= farthest_cut;
   }
   if (axis == axes.end() || !placed)
     throw ParameterError(
@@ -53,18 +56,20 @@ render::CutPlane cut_from(const std::string& text) {
 void validate(const ViewWords& words) {
   if (words.scale) {
     const auto [low, high] = *words.scale;
-    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
-      throw ParameterError("scale", fmt::format("\"{:g},{:g}\" is not accepted; give the lower end first", low, high));
+    if (!(low < high) || !std::isfinite(high - low))
+      throw ParameterError(
+          "scale", fmt::format("\"{:g},{:g}\" is not accepted; give two finite numbers, the lower first", low, high));
   }
-  if (words.grid && (words.grid->columns < 1 || words.grid->rows < 1))
-    throw ParameterError("grid", fmt::format("{}x{} is not accepted; give columns and rows above 0",
-                                             words.grid->columns, words.grid->rows));
+  if (words.grid && (std::min(words.grid->columns, words.grid->rows) < 1 ||
+                     std::max(words.grid->columns, words.grid->rows) > most_cells))
+    throw ParameterError("grid", fmt::format("{}x{} is not accepted; give 1 to {} columns and rows",
+                                             words.grid->columns, words.grid->rows, most_cells));
   if (words.azimuth && !std::isfinite(*words.azimuth))
     throw ParameterError("azimuth", "give a finite number of degrees");
   if (words.elevation && !(std::abs(*words.elevation) <= 90))
     throw ParameterError("elevation", "give -90 to 90 degrees");
-  if (words.zoom && !(std::isfinite(*words.zoom) && *words.zoom > 0))
-    throw ParameterError("zoom", fmt::format("{} is not accepted; give a finite number > 0", *words.zoom));
+  if (words.zoom && !(*words.zoom >= 0.001f && *words.zoom <= 1000))
+    throw ParameterError("zoom", fmt::format("{} is not accepted; give 0.001 to 1000", *words.zoom));
 }
 
 void set_race(ViewSettings& settings) {

@@ -5,19 +5,29 @@
 
 #include <algorithm>
 
+#include "app/video/picture_file.h"
 #include "mercury/error.h"
-#include "render/png.h"
 
 namespace mercury {
 
-ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap)
-    : output_(output), grid_(grid), frame_(frame), gap_(gap) {
-  if (std::filesystem::path(output).extension() != ".png")
-    throw ParameterError("output", output + ": a picture is written as .png; give such a name");
-  const int width = grid.columns * (frame.width + gap) - gap, height = grid.rows * (frame.height + gap) - gap;
+PictureSize size_of_sheet(Grid grid, PictureSize frame, int gap) {
+  const auto side = [&](int cells, int pixels) { return std::int64_t{cells} * (std::int64_t{pixels} + gap) - gap; };
+  const std::int64_t width = side(grid.columns, frame.width), height = side(grid.rows, frame.height);
   if (width < 1 || height < 1 || width > 32768 || height > 32768)
     throw ParameterError(
         "size", fmt::format("the picture would be {}x{}; give a size that leads to 1x1 to 32768x32768", width, height));
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+void require_picture_name(const std::string& output) {
+  if (std::filesystem::path(output).extension() != ".png")
+    throw ParameterError("output", output + ": a picture is written as .png; give such a name");
+}
+
+ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap)
+    : output_(output), grid_(grid), frame_(frame), gap_(gap) {
+  require_picture_name(output);
+  const auto [width, height] = size_of_sheet(grid, frame, gap);
   make_parent_folder(output);
   sheet_ = {.width = width, .height = height, .format = render::PixelFormat::rgb, .bytes = {}};
   sheet_.bytes.assign(render::image_size(sheet_.format, width, height), 0x10);
@@ -35,7 +45,7 @@ void ContactSheet::write(const render::Image& frame) {
   ++count_;
 }
 
-void ContactSheet::finish() { render::write_png(output_, sheet_); }
+void ContactSheet::finish() { write_picture(output_, sheet_); }
 
 std::string ContactSheet::description() const {
   return grid_.columns * grid_.rows == 1 ? "a PNG picture"

@@ -7,12 +7,18 @@
 
 namespace mercury {
 
+// The size of a sheet of frames of this size, with `gap` pixels between them. Throws ParameterError("size", ...) for
+// one wider or higher than 32768 pixels.
+PictureSize size_of_sheet(Grid grid, PictureSize frame, int gap);
+
+// Throws ParameterError("output", ...) for a name that is not *.png.
+void require_picture_name(const std::string& output);
+
 // A still picture is a sheet of one. Takes rgb frames and lays them out row by row; finish() writes them as one PNG.
 // Cells without a frame stay empty.
 class ContactSheet final : public FrameWriter {
  public:
-  // `frame`: size of each frame; `gap` between them [pixels]. Throws InputError for a name that is not *.png, or a
-  // sheet wider or higher than 32768 pixels.
+  // Throws as require_picture_name() and size_of_sheet().
   ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap);
   void write(const render::Image& frame) override;
   void finish() override;

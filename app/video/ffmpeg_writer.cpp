@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "app/base/output_files.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -25,14 +26,15 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
   std::vector<std::string> arguments;
   switch (kind) {
     case VideoKind::mp4:
-      arguments = {"-c:v",       "libx264",   "-preset", "veryfast",
-                   "-profile:v", "high",      "-crf",    fmt::to_string(settings.crf < 0 ? 18 : settings.crf),
-                   "-movflags",  "+faststart"};
+      arguments = {"-c:v",      "libx264",   "-preset", "veryfast", "-crf", fmt::to_string(settings.crf.value_or(18)),
+                   "-movflags", "+faststart"};
+      // Lossless video has a profile of its own, which x264 chooses.
+      if (settings.crf != 0) arguments.insert(arguments.end(), {"-profile:v", "high"});
       break;
     case VideoKind::webm:
-      arguments = {
-          "-c:v",      "libvpx-vp9", "-b:v",      "0", "-crf",    fmt::to_string(settings.crf < 0 ? 30 : settings.crf),
-          "-deadline", "good",       "-cpu-used", "5", "-row-mt", "1"};
+      arguments = {"-c:v",      "libvpx-vp9", "-b:v",      "0", "-crf",    fmt::to_string(settings.crf.value_or(30)),
+                   "-deadline", "good",       "-cpu-used", "5", "-row-mt", "1"};
+      if (settings.crf == 0) arguments.insert(arguments.end(), {"-lossless", "1"});
       break;
     case VideoKind::gif: {
       const double bytes = 4.0 * settings.size.width * settings.size.height;
@@ -55,8 +57,8 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
 
 // Creates the file at once, so that an unusable name is reported before anything is computed.
 void create(const std::string& output, const UnfinishedFile& file) {
-  if (std::filesystem::exists(output) && !std::filesystem::is_regular_file(output))
-    throw ParameterError("output", output + " is not a file that can be replaced");
+  if (is_device_or_pipe(output))
+    throw ParameterError("output", output + " is a device or pipe; give the name of a file");
   const int descriptor = ::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) throw ParameterError("output", output + " cannot be written: " + std::strerror(errno));
   ::close(descriptor);
@@ -89,7 +91,7 @@ std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& s
 }
 
 std::string failure_line(const std::string& messages) {
-  std::string last;
+  std::string last, guess;
   for (std::size_t start = 0; start < messages.size();) {
     std::size_t end = messages.find_first_of("\r\n", start);
     if (end == std::string::npos) end = messages.size();
@@ -97,8 +99,12 @@ std::string failure_line(const std::string& messages) {
     start = end + 1;
     const bool is_noise = line.find_first_not_of(" \t") == std::string::npos || line == "Conversion failed!" ||
                           line.find("Last message repeated") != std::string::npos;
-    if (!is_noise) last = line.substr(line.find_first_not_of(" \t"));
+    if (is_noise) continue;
+    // ffmpeg guesses at rate and size after the encoder has said what is wrong.
+    const bool is_guess = line.find("maybe incorrect parameters") != std::string::npos;
+    (is_guess ? guess : last) = line.substr(line.find_first_not_of(" \t"));
   }
+  if (last.empty()) last = guess;
   constexpr std::size_t longest = 300;
   return last.size() > longest ? last.substr(0, longest) + "..." : last;
 }

@@ -53,6 +53,7 @@ void show_bodies(DrawingThread::Canvas& canvas, const std::shared_ptr<GroupDrawi
 
 VideoSettings video_settings(const std::string& output, const FilmOptions& options) {
   const VideoKind kind = video_kind_of(output);
+  require_drawable(options.size);
   return {.size = encoded_size(kind, options.size),
           .frames_per_second = options.frames_per_second == 0 ? usual_frame_rate(kind) : options.frames_per_second,
           .crf = options.crf,

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/scene/view_settings.h"
@@ -40,7 +41,7 @@ struct FilmOptions {
   render::Quality quality = render::Quality::automatic;
   double frames_per_second = 0;  // 0 = usual_frame_rate()
   double speed = 1;              // film_of(): simulated seconds per second of film
-  int crf = -1;                  // see VideoSettings
+  std::optional<int> crf;        // see VideoSettings
   std::string ffmpeg;
 };
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/video/frame_writer.h"
 
-#include <cmath>
+#include <fmt/format.h>
+
 #include <cstdlib>
 
+#include "app/base/output_files.h"
 #include "app/video/ffmpeg_writer.h"
 #include "app/video/png_folder.h"
 #include "mercury/error.h"
@@ -15,12 +17,23 @@ namespace fs = std::filesystem;
 
 void require_usable(const std::string& output, VideoKind kind, const VideoSettings& settings) {
   require_drawable(settings.size);
-  if (!(settings.frames_per_second > 0 && settings.frames_per_second <= 1000))
-    throw ParameterError("fps", "give a number above 0 and up to 1000");
-  if (kind == VideoKind::gif && settings.frames_per_second > 50)
-    throw ParameterError("fps", "a GIF shows at most 50 frames/s; give 50 or less, or another format");
+  require_encodable(kind, settings.frames_per_second, settings.crf);
   if (settings.size != encoded_size(kind, settings.size))
     throw InputError(output, "this format needs an even width and height");
+}
+
+const char* name_of(VideoKind kind) {
+  switch (kind) {
+    case VideoKind::mp4:
+      return ".mp4";
+    case VideoKind::webm:
+      return ".webm";
+    case VideoKind::gif:
+      return ".gif";
+    case VideoKind::png_folder:
+      break;
+  }
+  return "a folder of PNG pictures";
 }
 
 }  // namespace
@@ -30,6 +43,21 @@ void require_drawable(PictureSize size) {
   if (width < 1 || height < 1 || width > 16384 || height > 16384)
     throw ParameterError("size", std::to_string(width) + "x" + std::to_string(height) +
                                      " is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384");
+}
+
+void require_encodable(VideoKind kind, double frames_per_second, std::optional<int> crf) {
+  // Slower than one frame in 1000 s, formats round the rate to 0.
+  if (!(frames_per_second >= 0.001 && frames_per_second <= 1000))
+    throw ParameterError("fps", fmt::format("{} is not accepted; give 0.001 to 1000 frames/s", frames_per_second));
+  if (kind == VideoKind::gif && frames_per_second > 50)
+    throw ParameterError("fps", "a GIF shows at most 50 frames/s; give 50 or less, or another format");
+  if (kind == VideoKind::gif && frames_per_second < 0.002)
+    throw ParameterError("fps", "a GIF shows a frame for at most 500 s; give 0.002 or more, or another format");
+  if (!crf) return;
+  const int worst = kind == VideoKind::mp4 ? 51 : kind == VideoKind::webm ? 63 : -1;
+  if (worst < 0) throw ParameterError("crf", fmt::format("{} has no such quality; leave it out", name_of(kind)));
+  if (*crf < 0 || *crf > worst)
+    throw ParameterError("crf", fmt::format("{} is not accepted; give 0 to {} for {}", *crf, worst, name_of(kind)));
 }
 
 void make_parent_folder(const fs::path& output) {
@@ -42,6 +70,8 @@ void make_parent_folder(const fs::path& output) {
 VideoKind video_kind_of(const std::string& output) {
   const fs::path path(output);
   if (output.empty()) throw ParameterError("output", "give a file (.mp4, .webm or .gif) or a folder for PNG pictures");
+  if (is_standard_output(output))
+    throw ParameterError("output", "videos and pictures are not written to standard output; give a file or a folder");
   if (fs::is_directory(path) || path.filename().empty()) return VideoKind::png_folder;
   const std::string extension = path.extension().string();
   if (extension == ".mp4") return VideoKind::mp4;
@@ -80,7 +110,7 @@ std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const 
     const fs::path path(output);
     const fs::path folder = path.filename().empty() && path.has_parent_path() ? path.parent_path() : path;
     make_parent_folder(folder);
-    return std::make_unique<PngFolder>(folder);
+    return std::make_unique<PngFolder>(folder, settings.force);
   }
   make_parent_folder(output);
   return std::make_unique<FfmpegWriter>(output, kind, settings);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -21,8 +22,9 @@ struct VideoSettings {
   PictureSize size;
   double frames_per_second = 30;
   std::int64_t expected_frames = 0;  // 0 = unknown
-  int crf = -1;        // constant rate factor of H.264 and VP9, lower is better; -1 = the format's default
-  std::string ffmpeg;  // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
+  std::optional<int> crf;            // constant rate factor of H.264 and VP9: lower is better; none = the usual one
+  std::string ffmpeg;                // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
+  bool force = false;                // a folder for PNG pictures may hold files, see PngFolder
 };
 
 enum class VideoKind { mp4, webm, gif, png_folder };
@@ -64,6 +66,9 @@ class FrameWriter {
 
 // Throws ParameterError("size", ...) unless both sides are from 1 to 16384.
 void require_drawable(PictureSize size);
+
+// Throws ParameterError for a rate or a quality ("fps", "crf") that this kind of video does not have.
+void require_encodable(VideoKind kind, double frames_per_second, std::optional<int> crf);
 
 // Opens a writer of the kind video_kind_of(output), and makes missing parent folders. Throws InputError when the name
 // or the settings cannot be used, VideoError when the encoder cannot be started.

@@ -13,12 +13,16 @@
 
 namespace mercury {
 
-// Writes frame-00000.png, frame-00001.png, ... on all cores. Frames of an earlier, longer video in the same folder are
-// removed by finish().
+// Writes frame-00000.png, frame-00001.png, ... on all cores, into a folder that is new or empty. With `force` it may
+// hold files: pictures of an earlier video are replaced, and finish() removes those that are left of it. Other files
+// stay.
+//
+// One process at a time fills a folder. It holds a lock on the folder itself (flock), which needs no file and ends with
+// the process, even with kill -9.
 class PngFolder final : public FrameWriter {
  public:
-  // Throws InputError if the folder cannot be made or written into.
-  explicit PngFolder(const std::filesystem::path& folder);
+  // Throws InputError if the folder cannot be made or written into, is not empty, or is being filled.
+  PngFolder(const std::filesystem::path& folder, bool force);
   ~PngFolder() override;
   void write(const render::Image& frame) override;
   void finish() override;
@@ -29,6 +33,7 @@ class PngFolder final : public FrameWriter {
     std::int64_t number;
     render::Image picture;
   };
+  void open(bool force);
   void work();
   void stop();
   void rethrow();
@@ -36,6 +41,7 @@ class PngFolder final : public FrameWriter {
   void remove_frames_from(std::int64_t first) const;
 
   std::filesystem::path folder_;
+  int lock_ = -1;  // the open folder
   bool made_folder_ = false;
   bool finished_ = false;
   std::int64_t written_ = 0;

@@ -78,21 +78,27 @@ void write_settings(const fs::path& folder, const RunFileTexts& texts) {
 
 }  // namespace
 
+void require_new_folder(const fs::path& folder, bool force) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error)) throw InputError(folder.string(), "is a file; give a new folder");
+  if ((force && is_run_folder(folder)) || is_unfinished(folder)) return;
+  const bool is_empty = fs::directory_iterator(folder, error) == fs::directory_iterator();
+  if (error) fail(folder, error.value());
+  if (!is_empty)
+    throw InputError(folder.string(), is_run_folder(folder)
+                                          ? "holds a run; give --resume to go on with it or --force to replace it"
+                                          : "is not empty; give a new folder");
+}
+
 JournalWriter make_run_folder(const fs::path& folder, const RunSettings& settings, bool force) {
   const RunFileTexts texts = run_file_texts(settings);
   const RunFile file = parse_run_file(folder, texts);
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-    throw InputError(folder.string(), "is a file; give a new folder");
+  require_new_folder(folder, force);
   make_folder(folder);
   if ((force && is_run_folder(folder)) || is_unfinished(folder)) {
     const std::optional<JournalWriter> lock = lock_of(folder);
     remove_run(folder);
-  } else if (fs::directory_iterator(folder, error) != fs::directory_iterator() || error) {
-    if (error) fail(folder, error.value());
-    throw InputError(folder.string(), is_run_folder(folder)
-                                          ? "holds a run; give --resume to go on with it or --force to replace it"
-                                          : "is not empty; give a new folder");
   }
   JournalWriter journal = JournalWriter::create(folder / journal_name, file.fingerprint);
   try {

@@ -162,10 +162,11 @@ def render(
     `what` are robots, the path of a robot file or of a folder of them, or the path of a recording (.h5). While a recording
     is played, other threads must not use h5py.
 
-    `output` is a file (.mp4, .webm, .gif) or a folder for PNG pictures. `seconds` are simulated (default 10; of a
-    recording, all), `speed` of them per second of video, `fps` frames per second of video (default 30; 25 for .gif).
-    `crf` is the encoder's: lower is better and larger. `environment`, `solver`, `dt`, `damping`, `device` and `threads`
-    are those of Batch; a recording has its own. `look` are the options of Look.
+    `output` is a file (.mp4, .webm, .gif), which is replaced, or a new or empty folder for PNG pictures. `seconds` are
+    simulated (default 10; of a recording, all), `speed` of them per second of video, `fps` frames per second of video
+    (default 30; 25 for .gif). `crf` is the encoder's: lower is better and larger, 0 is lossless. `environment`,
+    `solver`, `dt`, `damping`, `device` and `threads` are those of Batch; a recording has its own. `look` are the options
+    of Look.
 
     The result shows itself in notebooks. Ctrl-C ends it and keeps nothing. Raises InputError for what cannot be used,
     and DeviceError where there is no OpenGL or no encoder.

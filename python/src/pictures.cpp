@@ -156,15 +156,13 @@ PictureOptions picture_options(nb::handle size, const nb::dict& given) {
 
 FilmOptions film_options(nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
                          const nb::dict& given) {
-  if (crf < -1 || crf > 63)
-    throw ParameterError("crf", std::to_string(crf) + " is not accepted; give 0 to 51 (.mp4) or 63 (.webm)");
   const PictureOptions picture = picture_options(size, given);
   return {.size = picture.size,
           .view = picture.view,
           .quality = picture.quality,
           .frames_per_second = fps,
           .speed = speed,
-          .crf = crf,
+          .crf = crf == -1 ? std::nullopt : std::optional(crf),
           .ffmpeg = ffmpeg};
 }
 

@@ -251,6 +251,14 @@ def test_a_film_follows_robots_that_come_and_go(batch, tmp_path):
     assert sorted(os.listdir(tmp_path / "frames")) == [f"frame-{i:05}.png" for i in range(3)]
 
 
+def test_a_film_fills_only_a_new_or_empty_folder(batch, tmp_path):
+    (tmp_path / "frame-00000.png").write_text("mine")
+    with pytest.raises(mercurysim.InputError, match="is not empty; give a new or empty folder"):
+        mercurysim.Film(tmp_path, batch, size=SMALL)
+    assert os.listdir(tmp_path) == ["frame-00000.png"]
+    assert (tmp_path / "frame-00000.png").read_text() == "mine"
+
+
 def test_a_film_keeps_its_batch(robots, tmp_path):
     film = mercurysim.Film(tmp_path / "frames", mercurysim.Batch(robots, device="cpu"), size=SMALL)
     film.frame()

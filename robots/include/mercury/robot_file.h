@@ -35,6 +35,8 @@ Robot load_robot(const std::filesystem::path& path);
 // Writes a file, whole or not at all. Throws InputError as serialize_robot, and for a file that cannot be written, with
 // the system's reason.
 void save_robot(const std::filesystem::path& path, const Robot& robot);
+// The same in a format that the name need not show, as for a device or a pipe.
+void save_robot(const std::filesystem::path& path, const Robot& robot, RobotFormat format);
 
 // The robot files that these files and folders stand for, in the given order. A folder stands for its *.json and *.cbor
 // files, sorted by name. If `recursive`, those of the folders inside it follow; links to folders are not followed.

@@ -43,7 +43,7 @@ TEST_F(NewCommand, ExistingFilesAreReplacedOnlyWithForce) {
   const Outcome refused = mercury(command);
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.messages,
-            "mercury: " + path("a.json") + ": exists already; use --force to replace it, or another name\n");
+            "mercury: -o: " + path("a.json") + " exists already; use --force to replace it, or give another name\n");
   EXPECT_EQ(read("a.json"), "mine");
   std::vector<std::string> forced = command;
   forced.push_back("--force");
@@ -90,7 +90,12 @@ TEST_F(NewCommand, InvalidInputIsReported) {
   EXPECT_EQ(message({"-o", path("a.txt")}),
             "mercury: -o: " + path("a.txt") + ": \".txt\" is not a robot file; give .json, .cbor or a folder\n");
   EXPECT_EQ(message({"-o", path("file")}), "mercury: -o: " + path("file") + " is a file, not a folder\n");
-  EXPECT_EQ(message({"-o", path("r"), "--count", "0"}), "mercury: --count: 0 is not accepted; give 1 or more\n");
+  EXPECT_EQ(message({"-o", path("r"), "--count", "0"}), "mercury: --count: 0 is not accepted; give 1 to 1000000\n");
+  for (const char* count : {"1000001", "9223372036854775808", "18446744073709551615"})
+    EXPECT_EQ(message({"-o", path("r"), "--count", count}),
+              "mercury: --count: " + std::string(count) + " is not accepted; give 1 to 1000000\n");
+  EXPECT_EQ(message({"-o", path("r"), "--count", "18446744073709551616"}),
+            "mercury: --count: \"18446744073709551616\" is out of range; give a whole number of 0 or more\n");
   EXPECT_EQ(message({"-o", path("r"), "--count", "5", "--best-of", "3"}),
             "mercury: --best-of: 3 is not accepted; give at least --count, 5\n");
   EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--seconds", "2", "--settle", "3"}),

@@ -117,7 +117,7 @@ TEST_F(MutateCommand, InvalidInputIsReported) {
             "mercury: -o: " + path("c.json") + " is one file; give a folder for several robots\n");
   EXPECT_EQ(refusal({"mutate", "-o", path("c/")}), "mercury: no robots given; name files or folders\n");
   EXPECT_EQ(refusal({"mutate", path("a.json"), "-o", path("c/"), "--count", "0"}),
-            "mercury: --count: 0 is not accepted; give 1 or more\n");
+            "mercury: --count: 0 is not accepted; give 1 to 1000000\n");
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.json", "b.json", "broken.json", "unknown.json"}));
 }
 
@@ -166,7 +166,7 @@ TEST_F(GrowCommand, InvalidInputIsReported) {
   EXPECT_EQ(refusal({"grow", path("a.json"), "-o", path("c.json")}),
             "mercury: voxel-1-0: /origin: edge must be a number of metres\n");
   EXPECT_EQ(refusal({"grow", path("b.json"), "-o", path("b.json")}),
-            "mercury: " + path("b.json") + ": exists already; use --force to replace it, or another name\n");
+            "mercury: -o: " + path("b.json") + " exists already; use --force to replace it, or give another name\n");
   EXPECT_THAT(refusal({"grow", path("b.json"), "-o", path("c.json"), "--seed", "3"}),
               HasSubstr("--seed: not an option of mercury grow"));
 }

@@ -2,7 +2,9 @@
 // mercury render: makes short videos and checks the files.
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -136,7 +138,7 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
                                                        {"--follow", "--azimuth", "30"}};
   std::set<std::string> pictures;
   for (const std::vector<std::string>& variant : variants) {
-    std::vector<std::string> more{"--still", "0.5"};
+    std::vector<std::string> more{"--still", "0.5", "--force"};
     more.insert(more.end(), variant.begin(), variant.end());
     const Outcome outcome = mercury(command("a.png", more));
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
@@ -204,18 +206,125 @@ TEST_F(InterruptedVideo, LeavesAPlayableVideo) {
   }
 }
 
-TEST_F(InterruptedVideo, SecondInterruptEndsAtOnceAndLeavesNoFile) {
-  // An encoder that never ends keeps the program waiting.
-  write("stuck", "#!/bin/sh\nexec sleep 20\n", true);
+// An encoder that neither reads nor obeys keeps the program waiting.
+TEST_F(InterruptedVideo, SecondInterruptEndsAtOnceWithTheEncoderAndLeavesNoFile) {
+  ASSERT_EQ(mkfifo(path("life").c_str(), 0600), 0);
+  // The script and its child hold the pipe open for as long as they live.
+  write("stuck", "#!/bin/sh\nexec 9>" + path("life") + "\ntrap '' TERM INT HUP PIPE\nwhile :; do sleep 1000; done\n",
+        true);
   ChildProcess child(MERCURY_PROGRAM, command("b.mp4", {"--seconds", "100000", "--ffmpeg", path("stuck")}));
+  std::ifstream life(path("life"));  // waits until the script has opened it
   while (child.messages().find("encoding") == std::string::npos) std::this_thread::yield();
   child.signal(SIGINT);
-  while (listing().size() > 1) {  // until the program has handled both signals
+  while (listing().size() > 2) {  // until the program has handled both signals
     child.signal(SIGINT);
     std::this_thread::yield();
   }
   EXPECT_EQ(outcome_of(child).status, 128 + SIGINT);
-  EXPECT_EQ(listing(), std::vector<std::string>{"stuck"});
+  EXPECT_EQ(life.get(), std::ifstream::traits_type::eof());  // waits until nobody holds it any more
+  EXPECT_EQ(listing(), (std::vector<std::string>{"life", "stuck"}));
+}
+
+// --- What is not replaced, and what is not accepted
+
+class RefusedVideo : public RenderCommand {
+ protected:
+  // The one line of a command that would run for days.
+  std::string refusal(const std::string& output, std::vector<std::string> more) const {
+    if (std::find(more.begin(), more.end(), "--seconds") == more.end()) more.insert(more.end(), {"--seconds", "10000"});
+    const Outcome outcome = mercury(command(output, more));
+    EXPECT_EQ(outcome.status, 2) << testing::PrintToString(more) << outcome.messages;
+    EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1) << outcome.messages;
+    return outcome.messages;
+  }
+};
+
+TEST_F(RefusedVideo, FolderThatHoldsSomethingIsFilledOnlyWithForce) {
+  const std::vector<std::string> longer{"--fps", "1", "--seconds", "3"}, shorter{"--fps", "1", "--seconds", "1"};
+  ASSERT_EQ(mercury(command("frames", longer)).status, 0);
+  const std::string last = read("frames/frame-00002.png");
+  EXPECT_EQ(refusal("frames", {}),
+            "mercury: -o: " + path("frames") + " is not empty; use --force to write into it, or give another folder\n");
+  EXPECT_EQ(read("frames/frame-00002.png"), last);
+  for (const char* name : {"frames/note", "frames/frame-1.png", "frames/frame-00007.jpg"}) write(name, "mine");
+  write("frames/frame-00005.png", "of an earlier film, behind a gap");
+  std::vector<std::string> forced = shorter;
+  forced.push_back("--force");
+  ASSERT_EQ(mercury(command("frames", forced)).status, 0);
+  EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00007.jpg", "frame-1.png", "note"}));
+}
+
+TEST_F(RefusedVideo, FolderThatAnotherProcessFillsIsRefused) {
+  ChildProcess first(MERCURY_PROGRAM, command("frames", {"--seconds", "100000", "--fps", "1000"}));
+  while (!std::filesystem::exists(path("frames")) || listing("frames").empty()) std::this_thread::yield();
+  EXPECT_EQ(refusal("frames", {"--force"}),
+            "mercury: -o: " + path("frames") + " is being filled by another process; give another folder\n");
+  first.kill();
+  // A process that was killed holds nothing any more.
+  EXPECT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "1", "--force"})).status, 0);
+}
+
+TEST_F(RefusedVideo, NumbersThatCannotBeUsedAreReportedBeforeAnyWork) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--fps", "1e-30"}, "--fps: 1e-30 is not accepted; give 0.001 to 1000 frames/s"},
+      {{"--fps", "nan"}, "--fps: nan is not accepted"},
+      {{"--fps", "inf"}, "--fps: inf is not accepted"},
+      {{"--fps", "-1"}, "--fps: -1 is not accepted"},
+      {{"--fps", "1001"}, "--fps: 1001 is not accepted"},
+      {{"--speed", "nan"}, "--speed: nan is not accepted; give 1e-06 to 1000000"},
+      {{"--speed", "1e-300"}, "--speed: 1e-300 is not accepted"},
+      {{"--speed", "1e300"}, "--speed: 1e+300 is not accepted"},
+      {{"--speed", "0"}, "--speed: 0 is not accepted"},
+      {{"--seconds", "1e300"}, "--seconds: "},
+      {{"--seconds", "nan"}, "--seconds: nan is not accepted"},
+      {{"--seconds", "1e8", "--fps", "1000"}, "--seconds: 1e+11 frames are too many for a video"},
+      {{"--crf", "52"}, "--crf: 52 is not accepted; give 0 to 51 for .mp4"},
+      {{"--crf", "-1"}, "--crf: -1 is not accepted; give 0 to 51 for .mp4"},
+      {{"--size", "16385x1"}, "--size: 16385x1 is not accepted; give WIDTHxHEIGHT from 1x1 to 16384x16384"},
+      {{"--size", "1x16385"}, "--size: 1x16385 is not accepted"},
+      {{"--size", "2147483648x1"}, "--size: \"2147483648x1\" is not accepted"},
+      {{"--cut", "y:nan"}, "--cut: \"y:nan\" is not accepted"},
+      {{"--cut", "y:inf"}, "--cut: \"y:inf\" is not accepted"},
+      {{"--cut", "y:1e30"}, "--cut: \"y:1e30\" is not accepted"},
+      {{"--cut", "y:"}, "--cut: \"y:\" is not accepted"},
+      {{"--scale", "nan,1"}, "--scale: "},
+      {{"--scale", "-3e38,3e38"}, "--scale: "},
+      {{"--azimuth", "nan"}, "--azimuth: "},
+      {{"--elevation", "inf"}, "--elevation: "},
+      {{"--zoom", "1e30"}, "--zoom: 1e+30 is not accepted; give 0.001 to 1000"},
+      {{"--zoom", "nan"}, "--zoom: nan is not accepted"},
+      {{"--grid", "1000000000x2"}, "--grid: 1000000000x2 is not accepted; give 1 to 10000 columns and rows"},
+      {{"--still", "nan"}, "--still: nan is not accepted"},
+      {{"--still", "1e300"}, "--still: 1e+300 s are too many steps of 0.001 s"},
+      {{"--still", "-1"}, "--still: -1 is not accepted"},
+      {{"--contact-sheet", "5x2000000000"}, "--contact-sheet: 5x2000000000 is not accepted; give up to 1000 columns"},
+      {{"--contact-sheet", "1000x1"}, "--contact-sheet: the moments are too small to be drawn"},
+      {{"--contact-sheet", "1x1000"}, "--size: the picture would be 160x93996; give a size that leads to"}};
+  for (const auto& [options, message] : cases) {
+    const bool picture = options[0] == "--still" || options[0] == "--contact-sheet";
+    EXPECT_THAT(refusal(picture ? "a.png" : "a.mp4", options), testing::StartsWith("mercury: " + message));
+  }
+  EXPECT_EQ(refusal("a.webm", {"--crf", "64"}), "mercury: --crf: 64 is not accepted; give 0 to 63 for .webm\n");
+  EXPECT_EQ(refusal("a.gif", {"--crf", "20"}), "mercury: --crf: .gif has no such quality; leave it out\n");
+  EXPECT_EQ(refusal("frames/", {"--crf", "20"}),
+            "mercury: --crf: a folder of PNG pictures has no such quality; leave it out\n");
+  EXPECT_EQ(refusal("a.gif", {"--fps", "51"}),
+            "mercury: --fps: a GIF shows at most 50 frames/s; give 50 or less, or another format\n");
+  EXPECT_EQ(refusal("a.mp4", {"--still", "1"}),
+            "mercury: -o: " + path("a.mp4") + ": a picture is written as .png; give such a name\n");
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+TEST_F(RefusedVideo, StillBeyondARecordingIsRefused) {
+  ASSERT_EQ(mercury({"run", "--random", "voxel:1", "--seconds", "0.5", "--record", path("a.h5")}).status, 0);
+  const auto still = [&](const std::string& moment, const std::string& name) {
+    return mercury({"render", path("a.h5"), "--still", moment, "--size", "160x90", "-o", path(name)});
+  };
+  const Outcome beyond = still("0.6", "b.png");
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_EQ(beyond.messages, "mercury: --still: 0.6 is not accepted; the recording has 0.5 s\n");
+  EXPECT_EQ(still("0.5", "end.png").status, 0);
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a.h5", "end.png"}));
 }
 
 }  // namespace

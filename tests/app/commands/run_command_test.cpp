@@ -141,10 +141,11 @@ TEST_F(RunCommand, CsvHasALinePerRobot) {
 }
 
 TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
+  write("no", "");
   const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("no/a.csv")});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.messages,
-            "mercury: --csv: " + path("no/a.csv") + " cannot be written: No such file or directory\n");
+            "mercury: --csv: " + path("no/a.csv") + " cannot be written: " + path("no") + " is no folder\n");
 }
 
 TEST_F(RunCommand, CsvGoesToAFolderNever) {

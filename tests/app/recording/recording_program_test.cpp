@@ -106,10 +106,12 @@ TEST_F(RunRecord, BadOptionsAreReportedInOneLine) {
   EXPECT_EQ(
       messages({"--record", path("a.txt")}),
       "mercury: --record: \"" + path("a.txt") + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md\n");
+  write("no", "");
   EXPECT_EQ(messages({"--record", path("no/a.h5")}),
-            "mercury: --record: " + path("no/a.h5") + " cannot be written: No such file or directory\n");
+            "mercury: --record: " + path("no/a.h5") + " cannot be written: " + path("no") + " is no folder\n");
   std::filesystem::create_directory(path("folder.h5"));
-  EXPECT_EQ(messages({"--record", path("folder.h5")}), "mercury: --record: " + path("folder.h5") + " is a folder\n");
+  EXPECT_EQ(messages({"--record", path("folder.h5")}),
+            "mercury: --record: " + path("folder.h5") + " is a folder; give a file\n");
   EXPECT_EQ(messages({"--record", file(), "--every", "0"}),
             "mercury: --every: 0 is not accepted; give a number of steps, 1 or more\n");
   EXPECT_EQ(messages({"--every", "5"}), "mercury: --every: goes with --record FILE.h5\n");

@@ -140,14 +140,81 @@ TEST_F(VideoTest, GifOfManyLargeFramesHasAPalettePerFrame) {
 
 TEST_F(VideoTest, FolderHasAPicturePerFrame) {
   const VideoSettings settings{.size = {33, 21}};
-  write_video("frames", settings, 12);
-  write_video("frames", settings, 5, {1, 0, 0.2});  // removes the later frames of the earlier, longer video
+  write_video("frames", settings, 5, {1, 0, 0.2});
   EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png", "frame-00002.png",
                                                          "frame-00003.png", "frame-00004.png"}));
   const Image picture = render::read_png(path("frames/frame-00004.png"));
   EXPECT_EQ(picture.width, 33);
   EXPECT_EQ(picture.height, 21);
   EXPECT_EQ(picture.bytes, plain(VideoKind::png_folder, settings.size, {1, 0, 0.2}).bytes);
+}
+
+TEST_F(VideoTest, FolderIsNewOrEmptyUnlessForced) {
+  const VideoSettings settings{.size = {33, 21}};
+  write_video("frames", settings, 12);
+  EXPECT_THROW(open_frame_writer(path("frames"), settings), InputError);
+  EXPECT_EQ(listing("frames").size(), 12u);
+  write_video("frames", {.size = settings.size, .force = true}, 2);
+  EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
+}
+
+TEST_F(VideoTest, FolderIsFilledOnce) {
+  const VideoSettings settings{.size = {33, 21}, .force = true};
+  {
+    const auto first = open_frame_writer(path("frames"), settings);
+    EXPECT_THROW(open_frame_writer(path("frames"), settings), InputError);
+  }
+  write_video("frames", settings, 1);
+  EXPECT_EQ(listing("frames").size(), 1u);
+}
+
+// Lossless: a decoder gives the bytes that went in, even of noise.
+TEST_F(VideoTest, CrfZeroKeepsEveryBit) {
+  for (const char* name : {"a.mp4", "a.webm"}) {
+    const VideoKind kind = video_kind_of(name);
+    const VideoSettings settings{.size = small, .crf = 0};
+    std::string bytes;
+    {
+      const auto writer = open_frame_writer(path(name), settings);
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const Image frame = noise(kind, small, i);
+        bytes.append(frame.bytes.begin(), frame.bytes.end());
+        writer->write(frame);
+      }
+      writer->finish();
+    }
+    const std::string decoded =
+        output_of("ffmpeg", {"-v", "error", "-i", path(name), "-f", "rawvideo", "-pix_fmt", "yuv420p", path("raw")});
+    EXPECT_EQ(probe(path(name))["pix_fmt"], "yuv420p");
+    EXPECT_EQ(probe(path(name))["nb_read_frames"], "3");
+    EXPECT_TRUE(read("raw") == bytes) << name;
+    std::filesystem::remove(path("raw"));
+  }
+}
+
+TEST_F(VideoTest, QualitiesAndRatesAreThoseOfTheFormat) {
+  EXPECT_NO_THROW(require_encodable(VideoKind::mp4, 30, 51));
+  EXPECT_NO_THROW(require_encodable(VideoKind::webm, 0.001, 63));
+  EXPECT_NO_THROW(require_encodable(VideoKind::png_folder, 1000, std::nullopt));
+  EXPECT_THROW(require_encodable(VideoKind::mp4, 30, 52), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::webm, 30, 64), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::gif, 30, 0), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::mp4, 1e-30, {}), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::gif, 0.001, {}), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::gif, 51, {}), ParameterError);
+  EXPECT_THROW(require_encodable(VideoKind::mp4, std::nan(""), {}), ParameterError);
+}
+
+// The slowest and the fastest rate that are accepted give videos that play.
+TEST_F(VideoTest, ExtremeRatesAreKept) {
+  for (const auto& [name, rate] : {std::pair{"slow.mp4", 0.001},
+                                   {"slow.webm", 0.001},
+                                   {"slow.gif", 0.002},
+                                   {"fast.mp4", 1000.0},
+                                   {"fast.webm", 1000.0}}) {
+    write_video(name, {.size = small, .frames_per_second = rate}, 3);
+    EXPECT_EQ(probe(path(name))["nb_read_frames"], "3") << name;
+  }
 }
 
 TEST_F(VideoTest, ParentFoldersAreMade) {
@@ -250,6 +317,12 @@ TEST(FailureLine, IsTheLastLineWithAMessage) {
   EXPECT_EQ(failure_line("progress 1\rprogress 2\r"), "progress 2");
   EXPECT_EQ(failure_line(""), "");
   EXPECT_EQ(failure_line("\n \n"), "");
+  // The last line of ffmpeg is a guess.
+  EXPECT_EQ(
+      failure_line("[libx264 @ 0x5] high profile doesn't support lossless\nError initializing output stream 0:0 -- "
+                   "Error while opening encoder for output stream #0:0 - maybe incorrect parameters such as "
+                   "bit_rate, rate, width or height\n"),
+      "[libx264 @ 0x5] high profile doesn't support lossless");
 }
 
 TEST(VideoKind, FollowsFromTheName) {
@@ -260,6 +333,8 @@ TEST(VideoKind, FollowsFromTheName) {
   EXPECT_EQ(video_kind_of("frames.d/"), VideoKind::png_folder);
   EXPECT_THROW(video_kind_of("a.avi"), InputError);
   EXPECT_THROW(video_kind_of(""), InputError);
+  EXPECT_THROW(video_kind_of("-"), InputError);
+  EXPECT_THROW(video_kind_of("/dev/stdout"), InputError);
 }
 
 TEST(EncodedSize, IsEvenWhereTheCodecNeedsIt) {

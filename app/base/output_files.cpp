@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/base/output_files.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include "app/base/terminal_question.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<struct stat> status_of(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return status;
+}
+
+// For the effective user, as open() decides it. Returns 0, or the error.
+int access_error(const fs::path& path, int mode) {
+  return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0 ? 0 : errno;
+}
+
+bool is_same(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
+
+bool is_robot_file(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return extension == ".json" || extension == ".cbor";
+}
+
+// Whether `input` is this file, or a folder that has it among its robots.
+bool holds(const fs::path& input, const struct stat& file) {
+  const auto status = status_of(input);
+  if (!status) return false;
+  if (is_same(*status, file)) return true;
+  if (!S_ISDIR(status->st_mode)) return false;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error))
+    if (const auto inside = status_of(entry->path()); is_robot_file(entry->path()) && inside && is_same(*inside, file))
+      return true;
+  return false;
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+// The folder, or the one above it that exists, must take new files.
+void require_writable_folder(const std::string& option, const std::string& name, fs::path folder) {
+  std::error_code error;
+  while (!fs::exists(fs::symlink_status(folder, error)) && folder.has_parent_path() && folder != folder.parent_path())
+    folder = folder.parent_path();
+  if (!fs::exists(fs::symlink_status(folder, error))) folder = ".";
+  const auto status = status_of(folder);
+  if (status && !S_ISDIR(status->st_mode))
+    throw InputError(option, name + " cannot be written: " + folder.string() + " is no folder");
+  if (const int refused = access_error(folder, W_OK | X_OK))
+    throw InputError(option, name + " cannot be written: " + folder.string() + ": " + std::strerror(refused));
+}
+
+}  // namespace
+
+bool is_standard_output(std::string_view file) { return file == "-" || file == "/dev/stdout"; }
+
+bool is_device_or_pipe(const fs::path& path) {
+  // An open file of some process, such as /dev/stderr: it may be a regular file, which somebody else writes.
+  const std::string name = path.string();
+  if (name.starts_with("/dev/fd/") || name.starts_with("/dev/std") || name.starts_with("/proc/")) return true;
+  const auto status = status_of(path);
+  return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
+}
+
+fs::path follow_links(fs::path path) {
+  constexpr int longest_chain = 40;  // as the system's own limit
+  std::error_code error;
+  for (int i = 0; i < longest_chain && fs::is_symlink(path, error); ++i) {
+    const fs::path next = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / next;
+  }
+  return path;
+}
+
+void OutputFiles::add_stream(const std::string& option, const std::string& file) { add(option, file, Kind::stream); }
+void OutputFiles::add_file(const std::string& option, const std::string& file) { add(option, file, Kind::file); }
+void OutputFiles::add_folder(const std::string& option, const std::string& folder) {
+  add(option, folder, Kind::folder);
+}
+void OutputFiles::add_new_folder(const std::string& option, const std::string& folder) {
+  add(option, folder, Kind::new_folder);
+}
+
+void OutputFiles::add(const std::string& option, const std::string& name, Kind kind) {
+  std::error_code ignored;
+  const fs::path end = follow_links(name);
+  const fs::path target = fs::weakly_canonical(end.empty() ? end : fs::absolute(end, ignored), ignored);
+  outputs_.push_back({option, name, kind, ignored ? end : target});
+}
+
+void OutputFiles::require_usable(const Output& output) const {
+  const auto& [option, name, kind, target] = output;
+  if (name.empty()) throw InputError(option, output.is_folder() ? "give a folder" : "give a file");
+  if (kind == Kind::stream && is_standard_output(name)) return;
+  const auto status = status_of(name);
+  if (!status) return require_writable_folder(option, name, folder_of(target));
+  if (output.is_folder()) {
+    if (!S_ISDIR(status->st_mode)) throw InputError(option, name + " is a file, not a folder");
+    return require_writable_folder(option, name, target);
+  }
+  if (S_ISDIR(status->st_mode)) throw InputError(option, name + " is a folder; give a file");
+  if (is_device_or_pipe(name)) {
+    if (kind == Kind::file) throw InputError(option, name + " is a device or pipe; give the name of a file");
+    if (const int refused = access_error(name, W_OK))
+      throw InputError(option, name + " cannot be written: " + std::strerror(refused));
+    return;
+  }
+  require_no_input(output);
+  // The superuser may write everything; who protects a file does not want it replaced.
+  if ((status->st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || access_error(name, W_OK) != 0)
+    throw InputError(option, name + " is write-protected; give another name");
+  require_writable_folder(option, name, folder_of(target));
+}
+
+void OutputFiles::require_no_input(const Output& output) const {
+  const auto file = status_of(output.target);
+  if (!file) return;
+  for (const fs::path& input : inputs_)
+    if (holds(input, *file))
+      throw InputError(output.option, output.name + " is a file that this command reads; give another name");
+}
+
+void OutputFiles::require_distinct() const {
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Output &a = outputs_[j], &b = outputs_[i];
+      const bool both_printed = is_standard_output(a.name) && is_standard_output(b.name);
+      if (!both_printed && (is_device_or_pipe(a.name) || a.target != b.target)) continue;
+      throw InputError(a.option == b.option ? a.option : a.option + ", " + b.option,
+                       b.name + " is named twice; give each output a name of its own");
+    }
+}
+
+void OutputFiles::require_replaceable(const std::vector<const Output*>& existing) const {
+  const Output& first = *existing.front();
+  const bool is_folder = first.is_folder();
+  if (!may_ask_ || !can_ask())
+    throw InputError(first.option, first.name + (is_folder ? " is not empty; use --force to write into it, or give "
+                                                             "another folder"
+                                                           : " exists already; use --force to replace it, or give "
+                                                             "another name"));
+  const std::size_t others = existing.size() - 1;
+  const std::string what = others == 0 ? first.name : first.name + " and " + std::to_string(others) + " more";
+  const std::string question = others > 0  ? " exist; replace them?"
+                               : is_folder ? " is not empty; write into it?"
+                                           : " exists; replace it?";
+  if (!ask(what + question)) throw InputError(first.option, first.name + " stays as it is; nothing was done");
+}
+
+bool OutputFiles::check() const {
+  require_distinct();
+  std::vector<const Output*> existing;
+  std::error_code ignored;
+  for (const Output& output : outputs_) {
+    require_usable(output);
+    const auto status = status_of(output.name);
+    if (!status || is_standard_output(output.name) || output.kind == Kind::folder) continue;
+    if (output.is_folder() ? !fs::is_empty(output.name, ignored) : !is_device_or_pipe(output.name))
+      existing.push_back(&output);
+  }
+  if (existing.empty() || force_) return force_;
+  require_replaceable(existing);
+  return true;
+}
+
+void OutputFiles::make_folders() const {
+  for (const Output& output : outputs_) {
+    if (!output.is_folder() && is_standard_output(output.name)) continue;
+    const fs::path folder = output.is_folder() ? output.target : output.target.parent_path();
+    std::error_code error;
+    if (!folder.empty()) fs::create_directories(folder, error);
+    if (error) throw InputError(output.option, "cannot make the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures as PNG files.
+#pragma once
+
+#include <filesystem>
+
+#include "render/readback.h"
+
+namespace mercury {
+
+// Writes an rgb or rgba image as a PNG, whole or not at all: under a temporary name that is then renamed, which
+// replaces an existing file. Writes directly into a device or a pipe. Throws VideoError, as in "a.png: the disk is
+// full".
+void write_picture(const std::filesystem::path& file, const render::Image& image);
+
+}  // namespace mercury
