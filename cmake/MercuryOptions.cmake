@@ -11,6 +11,7 @@ option(MERCURY_WERROR "Treat warnings in Mercury's own code as errors" ${PROJECT
 set(MERCURY_CUDA "AUTO" CACHE STRING "CUDA backend: AUTO (if nvcc is found), ON (required), OFF")
 set_property(CACHE MERCURY_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(MERCURY_SANITIZE "" CACHE STRING "Sanitizers for every target, for example address,undefined or thread")
+option(MERCURY_FUZZ "Build fuzz_readers, which needs clang (docs/building.md)" OFF)
 set(MERCURY_TEST_LAUNCHER "" CACHE STRING "Starts every test program, for example compute-sanitizer;--tool;memcheck")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)

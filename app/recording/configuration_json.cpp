@@ -2,6 +2,8 @@
 #include "app/recording/configuration_json.h"
 
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "app/recording/trajectory_layout.h"
@@ -27,7 +29,11 @@ void read(const std::string& name, const Json& json, double& value) { value = nu
 void read(const std::string& name, const Json& json, float& value) {
   value = static_cast<float>(number_from(name, json));
 }
-void read(const std::string& name, const Json& json, int& value) { value = static_cast<int>(number_from(name, json)); }
+void read(const std::string& name, const Json& json, int& value) {
+  const double number = number_from(name, json);
+  if (!(std::abs(number) <= std::numeric_limits<int>::max())) throw InputError(name, "is out of range");
+  value = static_cast<int>(number);
+}
 void read(const std::string& name, const Json& json, bool& value) {
   if (!json.is_boolean()) throw InputError(name, "is not true or false");
   value = json.get<bool>();

@@ -59,9 +59,21 @@ Json json_of(const ReproChange& change, std::vector<Material>& materials) {
   return json;
 }
 
-float number_of(const Json& json) {
+const Json& member(const Json& json, const char* name) {
+  if (!json.is_object() || !json.contains(name)) throw InputError(fmt::format("\"{}\" is missing", name));
+  return json[name];
+}
+
+double double_of(const Json& json) {
   if (!json.is_number()) throw InputError("a number is missing");
-  return static_cast<float>(json.get<double>());
+  return json.get<double>();
+}
+
+float number_of(const Json& json) { return static_cast<float>(double_of(json)); }
+
+// Empty if it is missing or no text.
+std::string text_of(const Json& json, const char* name) {
+  return json.contains(name) && json[name].is_string() ? json[name].get<std::string>() : "";
 }
 
 Vec3 vector_of(const Json& json) {
@@ -86,12 +98,12 @@ std::int64_t step_of(const Json& json, std::int64_t least) {
 std::vector<Perturbation> perturbations_of(const Json& json, const Robot& robot) {
   std::vector<Perturbation> perturbations;
   for (const Json& one : json) {
-    const std::int64_t mass = step_of(one.at("mass"), 0);
+    const std::int64_t mass = step_of(member(one, "mass"), 0);
     if (mass >= static_cast<std::int64_t>(robot.masses.size()))
       throw InputError(fmt::format("mass {} is out of range, the robot has {}", mass, robot.masses.size()));
     perturbations.push_back({.mass = static_cast<std::uint16_t>(mass),
-                             .target = vector_of(one.at("target")),
-                             .stiffness = number_of(one.at("stiffness"))});
+                             .target = vector_of(member(one, "target")),
+                             .stiffness = number_of(member(one, "stiffness"))});
   }
   return perturbations;
 }
@@ -113,7 +125,7 @@ std::vector<ReproChange> changes_from(const Json& json, const Repro& repro) {
   std::vector<ReproChange> changes;
   std::int64_t least = repro.clock.step;
   for (const Json& one : json) {
-    ReproChange change{.step = least = step_of(one.at("step"), least)};
+    ReproChange change{.step = least = step_of(member(one, "step"), least)};
     if (one.contains("configuration")) change.configuration = configuration_from(one["configuration"]);
     if (one.contains("materials")) {
       change_materials(one["materials"], materials);
@@ -126,32 +138,32 @@ std::vector<ReproChange> changes_from(const Json& json, const Repro& repro) {
 }
 
 Repro repro_from(const Json& json) {
-  if (!json.is_object() || json.value("format", "") != format)
+  if (!json.is_object() || text_of(json, "format") != format)
     throw InputError("is not a repro: its format is not \"mercury-repro\"");
-  if (json.at("version") != version)
+  if (member(json, "version") != version)
     throw InputError(fmt::format("is of version {}, this program reads {}", json["version"].dump(), version));
   Repro repro;
   try {
-    repro.robot = parse_robot(json.at("robot").dump(), RobotFormat::json);
+    repro.robot = parse_robot(member(json, "robot").dump(), RobotFormat::json);
   } catch (const InputError& error) {
     throw InputError("/robot", error.what());
   }
-  repro.configuration = configuration_from(json.at("configuration"));
-  const Json& start = json.at("start");
+  repro.configuration = configuration_from(member(json, "configuration"));
+  const Json& start = member(json, "start");
   repro.clock = {.dt = repro.configuration.dt,
-                 .base_time = start.at("base_time").get<double>(),
-                 .base_step = step_of(start.at("base_step"), 0)};
-  repro.clock.step = step_of(start.at("step"), repro.clock.base_step);
-  repro.state.positions = vectors_of(start.at("positions"), repro.robot.masses.size());
-  repro.state.velocities = vectors_of(start.at("velocities"), repro.robot.masses.size());
-  repro.perturbations = perturbations_of(start.at("pulls"), repro.robot);
-  repro.changes = changes_from(json.at("changes"), repro);
-  const Json& exploded = json.at("exploded");
-  repro.exploded_at = exploded.at("time").get<double>();
+                 .base_time = double_of(member(start, "base_time")),
+                 .base_step = step_of(member(start, "base_step"), 0)};
+  repro.clock.step = step_of(member(start, "step"), repro.clock.base_step);
+  repro.state.positions = vectors_of(member(start, "positions"), repro.robot.masses.size());
+  repro.state.velocities = vectors_of(member(start, "velocities"), repro.robot.masses.size());
+  repro.perturbations = perturbations_of(member(start, "pulls"), repro.robot);
+  repro.changes = changes_from(member(json, "changes"), repro);
+  const Json& exploded = member(json, "exploded");
+  repro.exploded_at = double_of(member(exploded, "time"));
   if (exploded.contains("first_bad_spring"))
     repro.culprit_spring = static_cast<std::uint32_t>(step_of(exploded["first_bad_spring"], 0));
-  repro.last_step = step_of(exploded.at("last_step"), repro.clock.step);
-  repro.device_name = json.value("device_name", "");
+  repro.last_step = step_of(member(exploded, "last_step"), repro.clock.step);
+  repro.device_name = text_of(json, "device_name");
   return repro;
 }
 
@@ -183,11 +195,9 @@ std::string serialize_repro(const Repro& repro) {
 }
 
 Repro parse_repro(std::string_view document) {
-  try {
-    return repro_from(Json::parse(document));
-  } catch (const Json::exception& error) {
-    throw InputError(std::string("is not a whole repro: ") + error.what());
-  }
+  const Json json = Json::parse(document, nullptr, false);
+  if (json.is_discarded()) throw InputError("is not a repro: not valid JSON");
+  return repro_from(json);
 }
 
 Repro load_repro(const std::filesystem::path& path) {

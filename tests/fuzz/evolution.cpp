@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Run folders of evolutions: run.toml, the journal, encoded genomes.
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "evolution/bytes.h"
+#include "evolution/run_folder/generation_record.h"
+#include "evolution/run_folder/journal.h"
+#include "evolution/run_folder/run_file.h"
+#include "mercury/error.h"
+#include "mercury/evolution.h"
+#include "mercury/genome.h"
+#include "mercury/quantity.h"
+#include "mercury/random.h"
+#include "mercury/run_folder.h"
+#include "tests/fuzz/target.h"
+
+namespace mercury::fuzz {
+namespace {
+
+// Scores without a simulation.
+class DrawnScores : public Assessor {
+ public:
+  std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates, std::span<const double>,
+                                                const Watch&) override {
+    std::vector<Assessment> assessments;
+    for (const GenomePointer& genome : candidates) {
+      Random random(genome->identity());
+      Assessment assessment{.fate = random.below(4) == 0 ? Fate::failed : Fate::sound, .hash = genome->identity()};
+      if (assessment.fate == Fate::failed) assessment.problem = "a problem";
+      assessment.scores = {assessment.fate == Fate::failed ? worst_score : random.uniform(0, 1)};
+      if (assessment.fate != Fate::failed) assessment.values.assign(quantities().size(), random.uniform(0, 1));
+      assessments.push_back(assessment);
+    }
+    return assessments;
+  }
+  std::string device_name() const override { return "none"; }
+};
+
+RunSettings settings(const std::string& algorithm) {
+  RunSettings settings{.program = "a test"};
+  settings.evolution.algorithm = {.name = algorithm, .population = 3};
+  settings.evolution.generations = 2;
+  if (algorithm == "map-elites")
+    settings.evolution.algorithm.axes = {{.quantity = "size", .lowest = -1, .highest = 1, .cells = 4}};
+  return settings;
+}
+
+// A run folder of three generations.
+const std::filesystem::path& run_folder() {
+  static const std::filesystem::path folder = [] {
+    const std::filesystem::path made = scratch_folder() + "/run";
+    RunFolder run = RunFolder::create(made, settings("afpo"));
+    Evolution evolution(run.history().settings().evolution, run.space());
+    DrawnScores scores;
+    while (const std::optional<Generation> generation = evolution.advance(scores))
+      run.append(*generation, {.seconds = 0.5, .device = "none"});
+    return made;
+  }();
+  return folder;
+}
+
+}  // namespace
+
+void check_run_file(std::string_view input) {
+  const std::filesystem::path folder = scratch_folder();
+  const RunFile file = parse_run_file(folder, {.run = std::string(input), .founders = {}});
+  validate(file.settings.evolution);
+  const RunFileTexts written = run_file_texts(file.settings);
+  const RunFile again = parse_run_file(folder, written);
+  require(run_file_texts(again.settings).run == written.run, "run.toml does not read back as it was written");
+  with_generations(folder, std::string(input), 7);
+}
+
+std::vector<std::string> run_file_seeds() {
+  std::vector<std::string> seeds;
+  for (const char* algorithm : {"afpo", "nsga2", "map-elites"})
+    seeds.push_back(run_file_texts(settings(algorithm)).run);
+  RunSettings land = settings("ga");
+  land.evolution.configuration.environment = Land{};
+  land.space.kind = "cppn";
+  seeds.push_back(run_file_texts(land).run);
+  return seeds;
+}
+
+// The first byte chooses: a whole journal, or the index of a record, preceded by two bytes for the size of its genomes.
+void check_journal(std::string_view input) {
+  if (input.empty()) return;
+  const std::string_view rest = input.substr(1);
+  if (input[0] % 2 == 0) {
+    static const std::string path = (run_folder() / journal_name).string();
+    std::ofstream(path, std::ios::binary | std::ios::trunc)
+        .write(rest.data(), static_cast<std::streamsize>(rest.size()));
+    const RunHistory history(run_folder());
+    for (const Individual& individual : history.individuals()) history.genome(individual.id);
+    return;
+  }
+  if (rest.size() < 2) return;
+  const std::uint64_t genomes_size = 256u * static_cast<unsigned char>(rest[0]) + static_cast<unsigned char>(rest[1]);
+  try {
+    const GenerationRecord record = decode_index(rest.substr(2), 0, 0, genomes_size);
+    const std::string written = encode_index(record);
+    require(encode_index(decode_index(written, 0, 0, genomes_size)) == written,
+            "an index does not read back as it was written");
+  } catch (const DamagedBytes& error) {
+    throw InputError(error.what());
+  }
+}
+
+std::vector<std::string> journal_seeds() {
+  static const std::string journal = content_of((run_folder() / journal_name).string());
+  const std::size_t mark = journal.find(head_mark);
+  const RecordHead head = decode_head(std::string_view(journal).substr(mark, RecordHead::size)).value();
+  const std::string index = journal.substr(mark + RecordHead::size, head.index_size);
+  return {std::string(1, '\0') + journal,
+          std::string{'\1', static_cast<char>(head.genomes_size / 256), static_cast<char>(head.genomes_size % 256)} +
+              index};
+}
+
+// The first byte chooses the kind.
+void check_genome(std::string_view input) {
+  static const std::vector<std::unique_ptr<GenomeSpace>> spaces = [] {
+    std::vector<std::unique_ptr<GenomeSpace>> made;
+    for (const char* kind : {"voxel", "cppn", "nn", "shell"}) made.push_back(make_genome_space({.kind = kind}));
+    return made;
+  }();
+  if (input.empty()) return;
+  const GenomeSpace& space = *spaces[static_cast<unsigned char>(input[0]) % spaces.size()];
+  const GenomePointer genome = space.decode(input.substr(1));
+  const std::string written = genome->encode();
+  const GenomePointer again = space.decode(written);
+  require(again->encode() == written, "a genome does not read back as it was written");
+  require(again->identity() == genome->identity(), "a genome has another identity when it is read again");
+  genome->mutate(1, 1);
+  genome->cross(*again, 1);
+}
+
+std::vector<std::string> genome_seeds() {
+  std::vector<std::string> seeds;
+  char choice = 0;
+  for (const char* kind : {"voxel", "cppn", "nn", "shell"}) {
+    const auto space = make_genome_space({.kind = kind});
+    seeds.push_back(choice++ + space->random(1, 0)->encode());
+  }
+  return seeds;
+}
+
+}  // namespace mercury::fuzz

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Configuration files, camera files, and what the window remembers.
+#include <filesystem>
+
+#include "app/live/session_settings.h"
+#include "app/options/config_file.h"
+#include "app/options/option_values.h"
+#include "app/options/simulation_options.h"
+#include "app/scene/camera_plan.h"
+#include "mercury/error.h"
+#include "tests/fuzz/target.h"
+
+namespace mercury::fuzz {
+
+// A program with two commands, one of them with a command of its own.
+void check_configuration_file(std::string_view input) {
+  CLI::App program;
+  SimulationOptions simulation;
+  std::string text;
+  bool flag = false;
+  std::vector<std::string> several;
+  CLI::App* run = program.add_subcommand("run");
+  simulation.add_to(*run);
+  run->add_option("--text", text);
+  run->add_flag("--flag", flag);
+  run->add_option("--several", several);
+  CLI::App* made = program.add_subcommand("new")->add_subcommand("voxel");
+  made->add_option("--text", text);
+  const std::string path = scratch_file(input, "input.toml");
+  for (CLI::App* command : {run, made}) {
+    const ConfigFile file(path, program, *command, {"--dt=1"});
+    for (const std::string& argument : file.arguments())
+      require(argument.starts_with("--"), "an argument that is not an option: " + argument);
+    if (command != run) continue;
+    try {
+      std::vector<std::string> arguments = file.arguments();
+      std::reverse(arguments.begin(), arguments.end());
+      run->parse(arguments);
+      simulation.configuration();
+    } catch (const CLI::ParseError&) {
+    } catch (const InputError& error) {
+      throw InputError(file.located(error.what()));
+    }
+  }
+}
+
+std::vector<std::string> configuration_file_seeds() {
+  return {"dt = 0.001\n[run]\ntext = \"a\"\nflag = true\nseveral = [\"a\", \"b\"]\nflow = [1, 0.5, -2]\n",
+          "# all\nenvironment = \"land\"\nfriction = 0.5\nno-self-collision = true\n[new.voxel]\ntext = 'b'\n",
+          "[run]\nsolver = \"xpbd\"\ndevice = \"cpu\"\nthreads = 2\ndamping = 1e-3\n"};
+}
+
+void check_camera(std::string_view input) {
+  const CameraPlan plan = load_camera(scratch_file(input, "input.json"));
+  const std::string first = scratch_folder() + "/first.json", second = scratch_folder() + "/second.json";
+  try {
+    save_camera(first, plan);
+  } catch (const InputError&) {
+    return;
+  }
+  save_camera(second, load_camera(first));
+  require(content_of(first) == content_of(second), "the camera does not read back as it was written");
+}
+
+std::vector<std::string> camera_seeds() {
+  return {R"({"format":"mercury-camera","version":1,"mode":"still","azimuth":-1.3,"elevation":0.2,"target":[0,0,1],)"
+          R"("distance":2,"zoom":1.5,"field_of_view":0.6})",
+          R"({"format":"mercury-camera","version":1,"mode":"follow","robot":"eel"})",
+          R"({"format":"mercury-camera","version":1,"mode":"turntable","period":12})"};
+}
+
+void check_session(std::string_view input) {
+  Messages messages;
+  const std::string path = scratch_file(input, "input.toml");
+  const SessionSettings settings = load_session_settings(path, messages);
+  const std::string first = scratch_folder() + "/first.toml", second = scratch_folder() + "/second.toml";
+  save_session_settings(first, settings, messages);
+  messages.take();
+  save_session_settings(second, load_session_settings(first, messages), messages);
+  for (const Message& message : messages.take()) fail("what was written is not read: " + message.text);
+  require(content_of(first) == content_of(second), "the settings do not read back as they were written");
+}
+
+std::vector<std::string> session_seeds() {
+  Messages messages;
+  const std::string path = scratch_folder() + "/seed.toml";
+  SessionSettings settings;
+  settings.folder = "robots";
+  save_session_settings(path, settings, messages);
+  return {content_of(path)};
+}
+
+}  // namespace mercury::fuzz
