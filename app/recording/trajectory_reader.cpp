@@ -127,6 +127,9 @@ auto TrajectoryReader::guarded(const Work& work) const {
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw InputError(path.string(), "is a folder, not a trajectory");
+  // Opening a FIFO would wait for a writer.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError(path.string(), "is not a regular file, as a trajectory must be");
   guarded([&] {
     file_ = open_file(path, unfinished_);
     if (!has_member(file_, "h5md") || !has_member(file_, "parameters") || !has_member(file_, "particles"))

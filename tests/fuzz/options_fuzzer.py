@@ -138,10 +138,10 @@ class Drawing:
         command = draw.choice(self.commands)
         words = list(command["words"])
         options = [o for o in command["options"] if "--help" not in o["names"] or draw.random() < 0.05]
-        if draw.random() < 0.8:  # small and quick, so that a command gets to its work
+        if command["words"]:  # small and quick, so that a command gets to its work and ends
             for names in (["--seconds", "0.02"], ["--device", "cpu"], ["--size", "32x32"], ["--generations", "1"],
                           ["--population", "3"], ["--random", "voxel:2"], ["-o", draw.choice(SOUND_OUTPUTS)]):
-                if any(names[0] in o["names"] for o in options) and draw.random() < 0.8:
+                if any(names[0] in o["names"] for o in options) and (names[0] not in ("--random", "-o") or draw.random() < 0.8):
                     words += names
             if any(o["positional"] for o in options) and "--random" not in words:
                 words.append(draw.choice(self.paths[:2]))

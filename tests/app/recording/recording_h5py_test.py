@@ -64,7 +64,7 @@ class Recording(unittest.TestCase):
         return Path(self.folder.name) / name
 
     def record(self, name, *options, robots=("--random", "voxel:3")):
-        mercury("run", *robots, *OPTIONS, "--record", self.path(name), *options)
+        mercury("run", *robots, *OPTIONS, "--record", self.path(name), "--force", *options)
         file = h5py.File(self.path(name))
         self.addCleanup(file.close)
         return file
@@ -156,6 +156,32 @@ class Recording(unittest.TestCase):
                 self.assert_same_frames(first, second)
                 first.close()
                 second.close()
+
+    def test_a_recording_that_was_killed_opens_with_the_frames_so_far(self):
+        options = ["--random", "voxel:2", "--seed", "3", "--device", "cpu", "--threads", "1", "--every", "1"]
+        child = subprocess.Popen([MERCURY, "run", *options, "--seconds", "1e6", "--record", self.path("a.h5")],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(child.kill)
+        while True:  # as another program watches a run
+            self.assertIsNone(child.poll())
+            part = next(iter(Path(self.folder.name).glob("a.h5.*.part")), None)
+            try:
+                with h5py.File(part, swmr=True) as file:
+                    if len(file["parameters/step"]) > 0:
+                        break
+            except (OSError, TypeError, AttributeError):  # not yet
+                pass
+        child.kill()
+        child.wait()
+        with h5py.File(part, swmr=True) as killed:
+            frames = len(killed["parameters/step"])
+            self.assertEqual(killed["parameters/step"][()].tolist(), list(range(frames)))
+            whole = self.record("b.h5", "--every", 1, "--threads", 1, robots=("--random", "voxel:2"))
+            frames = min(frames, len(whole["parameters/step"]))
+            for name in killed["particles"]:
+                for element in ("position", "velocity"):
+                    path = f"particles/{name}/{element}/value"
+                    self.assertEqual(killed[path][:frames].tobytes(), whole[path][:frames].tobytes())
 
 
 if __name__ == "__main__":

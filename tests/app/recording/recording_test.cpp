@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording has the simulation bit for bit, and enough to simulate it again.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cstring>
@@ -308,6 +309,8 @@ std::string refusal(const std::string& path) {
 TEST_F(Recording, OtherFilesAreRefused) {
   EXPECT_EQ(refusal(path("none.h5")), path("none.h5") + ": No such file or directory");
   EXPECT_EQ(refusal(folder_.string()), folder_.string() + ": is a folder, not a trajectory");
+  ASSERT_EQ(mkfifo(path("fifo.h5").c_str(), 0600), 0);
+  EXPECT_EQ(refusal(path("fifo.h5")), path("fifo.h5") + ": is not a regular file, as a trajectory must be");
   write("text.h5", "not HDF5 at all");
   EXPECT_EQ(refusal(path("text.h5")), path("text.h5") + ": is not an HDF5 file");
   write("empty.h5", "");
