@@ -85,9 +85,12 @@ Progress::Progress(std::string what, std::string unit, std::int64_t total)
 
 Progress::~Progress() {
   if (shown_ && terminal_) write_to_standard_error("\r\033[K");
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  say_detail(fmt::format("{}: {:.0f} of {} {} in {:.2f} s", what_, std::floor(done_), total_, unit_, elapsed));
 }
 
 void Progress::update_with_fraction(double done) {
+  done_ = done;
   if (verbosity() == Verbosity::quiet) return;
   const Clock::time_point now = Clock::now();
   // Lines in a log stay, so their intervals grow.

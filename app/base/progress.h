@@ -10,7 +10,7 @@
 namespace mercury {
 
 // Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals. Writes nothing
-// if the program is quiet (app/base/messages.h).
+// if the program is quiet (app/base/messages.h); if it is verbose, says at the end how long the task took.
 class Progress {
  public:
   // `what` names the task ("rendering"), `unit` what is counted ("frames").
@@ -31,6 +31,7 @@ class Progress {
   std::int64_t total_;
   bool terminal_;
   bool shown_ = false;
+  double done_ = 0;
   Clock::time_point start_, last_;
 };
 

@@ -62,7 +62,7 @@ RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
     throw InputError(folder.string(), "holds a run; --resume goes on with it, --force replaces it");
   std::vector<std::string> notes;
   const RunSettings settings = options.run.settings(notes);
-  for (const std::string& note : notes) say(note);
+  for (const std::string& note : notes) warn(note);
   // A device that is not there is noticed before a folder is made or replaced.
   if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
     make_backend(settings.evolution.configuration.device);
@@ -118,8 +118,8 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
   run.write_all();
   report(options, run, evolution);
   if (!done)
-    say(fmt::format("stopped in generation {}, which is lost; mercury evolve {} --resume goes on",
-                    evolution.next_generation(), options.folder));
+    warn(fmt::format("stopped in generation {}, which is lost; mercury evolve {} --resume goes on",
+                     evolution.next_generation(), options.folder));
   return done ? 0 : 1;
 }
 
@@ -160,7 +160,7 @@ int evolve_as_other_rank(const EvolveOptions& options, const CLI::App& command, 
   choose_gpu_of_rank(ranks, settings.configuration.device);
   const std::unique_ptr<GenomeSpace> space = make_genome_space(run->space);
   if (ranks.serve([&] { return make_assessor(settings); }, *space, interrupted)) return 0;
-  if (ranks.rank() == 1) say(fmt::format("rank 0 no longer answers; {} is whole, --resume goes on", options.folder));
+  if (ranks.rank() == 1) warn(fmt::format("rank 0 no longer answers; {} is whole, --resume goes on", options.folder));
   return 1;
 }
 
@@ -198,7 +198,7 @@ int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
                                                                    return !interrupted();
                                                                  });
   if (!file) {
-    say("stopped; the shard was not written");
+    warn("stopped; the shard was not written");
     return 1;
   }
   fmt::print("{}\n", file->string());

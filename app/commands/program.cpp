@@ -131,7 +131,8 @@ class Program {
     const auto children = command.get_subcommands([](CLI::App*) { return true; });
     if (children.empty())
       add(add_text(command, "--config", config_path_,
-                   "Read options from a TOML file; the command line overrides them (docs/command-line.md)", "FILE.toml"));
+                   "Read options from a TOML file; the command line overrides them (docs/command-line.md)",
+                   "FILE.toml"));
     for (CLI::App* child : children) add_general_options(*child);
   }
 
@@ -165,6 +166,7 @@ class Program {
     }
     set_verbosity(quiet_ ? Verbosity::quiet : verbose_ ? Verbosity::verbose : Verbosity::normal);
     if (body_) require_texts(*command);
+    if (config_) say_detail("options from " + config_path_);
   }
 
   // Prints help or version.

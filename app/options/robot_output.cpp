@@ -120,7 +120,7 @@ void RobotFiles::write(const Robot& robot) {
     throw InputError(file.string(), "exists already; use --force to replace it, or give another name");
   save_robot(file, robot);
   written_.insert(file);
-  fmt::print("{}\n", file.string());
+  fmt::print("{}\n", printable(file.string(), 10000));
 }
 
 RobotNames numbered_names(std::function<std::string(std::uint64_t index)> name_of, std::uint64_t count) {

@@ -43,8 +43,12 @@ toml::table parse_toml(const std::filesystem::path& path, std::string_view text)
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
+    // "Error while parsing array: encountered end-of-file"
+    std::string_view problem = error.description();
+    if (const std::size_t colon = problem.find(": "); problem.starts_with("Error while") && colon != problem.npos)
+      problem.remove_prefix(colon + 2);
     throw InputError(path.string() + ":" + std::to_string(error.source().begin.line),
-                     printable(error.description(), 300));
+                     "not TOML: " + printable(problem, 300));
   }
 }
 
