@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "--fps: a GIF shows at most 50 frames/s; give 50 or less, or another format"},
         BadInput{"NoSpeed",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--speed", "-2"},
-                 "--speed: -2 is not accepted; give a finite number > 0"},
+                 "--speed: -2 is not accepted; give 1e-06 to 1000000"},
         BadInput{"PictureOfNoMoment",
                  {"render", "--random", "voxel", "-o", "a.png"},
                  "-o: a.png is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder"},
@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "--color: pressure: land has no drag on faces; it applies to ocean"},
         BadInput{"ScaleUpsideDown",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--scale", "2,1"},
-                 "--scale: \"2,1\" is not accepted; give the lower end first"},
+                 "--scale: \"2,1\" is not accepted; give two finite numbers, the lower first"},
         BadInput{"UnknownThing",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
                  "--show: \"bones\" is not accepted; give some of "

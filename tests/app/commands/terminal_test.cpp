@@ -140,10 +140,10 @@ TEST_P(Signals, EndWith128AndTheirNumber) {
       {"render", path("a.json"), "--seconds", "1e5", "--size", "64x64", "--gl", "osmesa", "--device", "cpu", "-o",
        path("frames/")},
       {"evolve", path("run"), "--population", "8", "--generations", "100000", "--device", "cpu"},
-      {"new", "voxel", "-o", path("new/"), "--count", "1000000000"},
+      {"new", "voxel", "-o", path("new/"), "--count", "1000000"},
       {"new", "voxel", "-o", path("best/"), "--best-of", "1000000000", "--device", "cpu"},
-      {"mutate", path("a.json"), "-o", path("mutated/"), "--count", "1000000000"},
-      {"cross", path("a.json"), path("b.json"), "-o", path("crossed/"), "--count", "1000000000"}};
+      {"mutate", path("a.json"), "-o", path("mutated/"), "--count", "1000000"},
+      {"cross", path("a.json"), path("b.json"), "-o", path("crossed/"), "--count", "1000000"}};
   for (const std::vector<std::string>& arguments : long_runs)
     EXPECT_EQ(status_after_signal(arguments, GetParam()), 128 + GetParam()) << arguments[0] << " " << arguments[1];
 }
