@@ -96,7 +96,9 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
   }
   const TrajectoryReader& recording = *subject.recording;
   const double length = recording.time(recording.frames() - 1) - recording.time(0);
-  if (moment > length * (1 + 1e-9))
+  // The run may have gone on for less than a frame after the last one.
+  const double frame = static_cast<double>(recording.every()) * recording.configuration().dt;
+  if (moment >= length + frame)
     throw InputError("--still", fmt::format("{} is not accepted; the recording has {:.6g} s", moment, length));
 }
 

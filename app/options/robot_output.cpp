@@ -116,7 +116,7 @@ void RobotFiles::write(const Robot& robot) {
     return;
   }
   if (is_device_or_pipe(file)) return save_robot(file, robot, format_);
-  if (!may_replace_ && !written_.contains(file) && fs::exists(fs::symlink_status(file)))
+  if (!may_replace_ && !written_.contains(file) && fs::exists(file))
     throw InputError(file.string(), "exists already; use --force to replace it, or give another name");
   save_robot(file, robot);
   written_.insert(file);

@@ -73,7 +73,7 @@ TEST_F(Outputs, FullDeviceIsAFailureInOneLine) {
   const Outcome printed =
       run_program("sh", {"-c", "exec \"$0\" run \"$1\" --seconds 0.01 >/dev/full", MERCURY_PROGRAM, path("eel.json")});
   EXPECT_EQ(printed.status, 1);
-  EXPECT_EQ(printed.messages, "mercury: standard output cannot be written\n");
+  EXPECT_EQ(printed.messages, "mercury: standard output cannot be written: No space left on device\n");
 }
 
 TEST_F(Outputs, CsvGoesThroughAPipe) {

@@ -322,7 +322,7 @@ TEST_F(RefusedVideo, StillBeyondARecordingIsRefused) {
   };
   const Outcome beyond = still("0.6", "b.png");
   EXPECT_EQ(beyond.status, 2);
-  EXPECT_EQ(beyond.messages, "mercury: --still: 0.6 is not accepted; the recording has 0.5 s\n");
+  EXPECT_EQ(beyond.messages, "mercury: --still: 0.6 is not accepted; the recording has 0.495 s\n");
   EXPECT_EQ(still("0.5", "end.png").status, 0);
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.h5", "end.png"}));
 }
