@@ -111,7 +111,7 @@ TEST_F(RunPicture, ChampionsAreFilmedTogetherAndEachAlone) {
 TEST_F(RunPicture, OptionsChangeTheConfigurationOfTheRun) {
   make_run(path("swim"), small_run(), 1);
   EXPECT_THAT(render("swim", "a.gif", {"--seconds", "0.1", "--environment", "land"}).messages, HasSubstr("(land)"));
-  EXPECT_THAT(refusal("swim", "a.gif", {"--friction", "1"}),
+  EXPECT_THAT(refusal("swim", "b.gif", {"--friction", "1"}),
               HasSubstr("--friction: ocean-simple has no such parameter"));
 }
 
