@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/configuration.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/threads.h"
 
 namespace mercury {
 namespace {
@@ -118,6 +121,17 @@ Device device_named(std::string_view name) {
   }
   throw ParameterError("device",
                        "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
+}
+
+int max_threads() {
+  constexpr unsigned always = 256, most = 65536;
+  return static_cast<int>(std::clamp(4 * std::thread::hardware_concurrency(), always, most));
+}
+
+void require_possible_threads(const Device& device) {
+  if (device.threads >= 0 && device.threads <= max_threads()) return;
+  throw ParameterError("threads", std::to_string(device.threads) + " is not accepted; give 0 (all cores) to " +
+                                      std::to_string(max_threads()));
 }
 
 Vec3 gravity_of(const Environment& environment) {

@@ -5,7 +5,7 @@
 
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
-#include "sim/available_memory.h"
+#include "mercury/host_memory.h"
 #include "sim/devices.h"
 #include "sim/evaluator_parts.h"
 

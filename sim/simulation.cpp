@@ -13,6 +13,7 @@
 
 #include "mercury/error.h"
 #include "mercury/stopwatch.h"
+#include "mercury/work_counter.h"
 #include "sim/simulation_parts.h"
 
 namespace mercury {
@@ -37,9 +38,11 @@ bool is_sound(const Robot& robot) {
 }
 
 // Checks robots on all cores, and one that appears several times in a row only once. `first` = the index of the first.
-void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::size_t first) {
+void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::size_t first, const WorkWatch& watch) {
   std::atomic<std::size_t> bad = robots.size();
+  WorkCounter counter(watch, "checking robots", robots.size());
   oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+    counter.add_one();
     if ((i > 0 && robots[i] == robots[i - 1]) || is_sound(*robots[i])) return;
     for (std::size_t known = bad; i < known && !bad.compare_exchange_weak(known, i);) {
     }
@@ -66,10 +69,10 @@ void Simulation::Parts::require(std::size_t robot) const {
   if (robot >= size()) throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
 }
 
-void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> added) {
+void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> added, const WorkWatch& watch) {
   {
     const Stopwatch stopwatch(check_seconds);
-    validate_all(added, size());
+    validate_all(added, size(), watch);
   }
   for (const std::shared_ptr<const Robot>& robot : added) {
     robots.push_back(robot);
@@ -115,15 +118,17 @@ Simulation::Simulation(const Configuration& configuration, std::span<const Robot
                        std::unique_ptr<Backend> backend)
     : parts_(std::make_unique<Parts>(configuration, std::move(backend), copies_of(robots))) {}
 
-Simulation::Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots)
+Simulation::Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots,
+                       const WorkWatch& watch)
     : parts_(std::make_unique<Parts>(configuration, (validate(configuration), make_backend(configuration.device)),
-                                     robots)) {}
+                                     robots, watch)) {}
 
 Simulation::Parts::Parts(const Configuration& initial, std::unique_ptr<Backend> stepped_by,
-                         std::span<const std::shared_ptr<const Robot>> first_robots)
+                         std::span<const std::shared_ptr<const Robot>> first_robots, const WorkWatch& watch)
     : configuration(initial), clock{.dt = initial.dt}, backend(std::move(stepped_by)) {
   validate(configuration);
-  append(first_robots);
+  append(first_robots, watch);
+  if (watch) backend->set_watch(watch);
   backend->load(pointers, configuration);
   if (is_land(configuration.environment)) put_at_rest(0);
 }

@@ -40,7 +40,7 @@ struct Simulation::Parts {
 
   // Throws as Simulation's constructors do.
   Parts(const Configuration& initial, std::unique_ptr<Backend> stepped_by,
-        std::span<const std::shared_ptr<const Robot>> first_robots);
+        std::span<const std::shared_ptr<const Robot>> first_robots, const WorkWatch& watch = {});
 
   std::size_t size() const { return robots.size(); }
   std::size_t masses(std::size_t robot) const { return offsets[robot + 1] - offsets[robot]; }
@@ -50,7 +50,7 @@ struct Simulation::Parts {
   void require_material(std::size_t robot, MaterialId id) const;
 
   // Checks robots and takes them behind the others, without the backend. Throws InputError, and has no effect then.
-  void append(std::span<const std::shared_ptr<const Robot>> added);
+  void append(std::span<const std::shared_ptr<const Robot>> added, const WorkWatch& watch = {});
   // Forgets the robots from this index on, without the backend.
   void truncate(std::size_t size);
   // One per robot: how much higher it stands at rest than in its file, so that it is on the floor if there is one [m].

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <exception>
 #include <future>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "sim/devices.h"
@@ -118,6 +120,16 @@ class SplitBackend final : public Backend {
       longest.upload = std::max(longest.upload, times.upload);
     }
     return longest;
+  }
+
+  // Parts load at the same time, and the watch is called by one thread at a time.
+  void set_watch(const WorkWatch& watch) override {
+    const auto mutex = std::make_shared<std::mutex>();
+    for (const auto& part : parts_)
+      part->set_watch([watch, mutex](const char* what, std::size_t done, std::size_t total) {
+        const std::lock_guard lock(*mutex);
+        watch(what, done, total);
+      });
   }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {

@@ -9,6 +9,7 @@
 
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
+#include "mercury/threads.h"
 #include "python/src/arguments.h"
 
 namespace mercury::python {
@@ -39,6 +40,7 @@ Configuration configuration_of(nb::handle environment, const std::string& solver
                               .environment = environment_of(environment),
                               .device = device_named(nb::str(device).c_str())};
   configuration.device.threads = threads;
+  require_possible_threads(configuration.device);
   return configuration;
 }
 

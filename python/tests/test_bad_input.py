@@ -64,6 +64,7 @@ def test_values_that_break_a_rule_are_refused(robots):
         ({"device": "tpu"}, "cpu"),
         ({"device": 3}, "cpu"),
         ({"threads": -1}, "threads"),
+        ({"threads": 2**31 - 1}, "threads"),
     ]:
         with pytest.raises(mercurysim.InputError, match=message) as error:
             mercurysim.Batch(robots, **{"device": "cpu", **wrong})

@@ -16,6 +16,8 @@
 #include <unordered_set>
 
 #include "mercury/stopwatch.h"
+#include "mercury/threads.h"
+#include "mercury/work_counter.h"
 #include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/grouping/cost_model.h"
@@ -49,6 +51,8 @@ class CpuBackend final : public Backend {
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return busy_seconds_; }
   LoadTimes load_times() const override { return load_times_; }
+
+  void set_watch(const WorkWatch& watch) override { watch_ = watch; }
 
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     batches_.clear();
@@ -103,6 +107,7 @@ class CpuBackend final : public Backend {
 
   void step(const Clock& clock, std::int64_t steps) override {
     arena_.execute([&] { group_bodies(); });
+    watch_ = {};
     const auto start = std::chrono::steady_clock::now();
     std::atomic<std::size_t> broken_up = 0;
     arena_.execute([&] {
@@ -188,8 +193,8 @@ class CpuBackend final : public Backend {
 
  private:
   template <class Work>
-  void for_each_body(const Work& work, std::size_t first = 0) const {
-    arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), [&](std::size_t i) { work(i); }); });
+  void for_each_body(const Work& work) const {
+    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
   }
 
   void read_all(std::span<Vec3> out, Vec3 (Body::*value)(std::size_t) const) const {
@@ -206,15 +211,16 @@ class CpuBackend final : public Backend {
     const Stopwatch stopwatch(load_times_.schedule);
     const std::size_t first = bodies_.size();
     bodies_.resize(first + robots.size());
-    for_each_body(
-        [&](std::size_t i) {
-          const Robot& robot = *robots[i - first];
-          bodies_[i] = std::make_unique<Body>(make_body(robot, kernel_.lanes));
-          update_spring_parameters(*bodies_[i], configuration_);
-          const std::vector<Vec3> at_rest(robot.masses.size());
-          set_state(*bodies_[i], robot.masses, at_rest);
-        },
-        first);
+    WorkCounter counter(watch_, "arranging robots", robots.size());
+    const auto make = [&](std::size_t i) {
+      const Robot& robot = *robots[i - first];
+      bodies_[i] = std::make_unique<Body>(make_body(robot, kernel_.lanes));
+      update_spring_parameters(*bodies_[i], configuration_);
+      const std::vector<Vec3> at_rest(robot.masses.size());
+      set_state(*bodies_[i], robot.masses, at_rest);
+      counter.add_one();
+    };
+    arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), make); });
     if (batches_.empty()) return;
     for (std::size_t i = first; i < bodies_.size(); ++i) loose_.push_back(bodies_[i].get());
   }
@@ -229,7 +235,7 @@ class CpuBackend final : public Backend {
     if (batches_.empty()) {
       std::vector<Body*> all;
       for (const auto& body : bodies_) all.push_back(body.get());
-      batches_ = make_work_batches(all, threads, configuration_);
+      batches_ = make_work_batches(all, threads, configuration_, watch_);
     } else if (!loose_.empty()) {
       std::ranges::move(make_work_batches(loose_, 1, configuration_), std::back_inserter(batches_));
     }
@@ -263,6 +269,7 @@ class CpuBackend final : public Backend {
   }
 
   const Kernel kernel_;
+  WorkWatch watch_;  // until the first step
   std::optional<oneapi::tbb::global_control> allowance_;
   mutable oneapi::tbb::task_arena arena_;
   std::vector<std::unique_ptr<Body>> bodies_;
@@ -283,6 +290,7 @@ std::unique_ptr<Backend> make_cpu_backend(const Device& device) {
 }
 
 std::unique_ptr<Backend> cpu::make_backend(const Device& device, const Kernel& kernel) {
+  require_possible_threads(device);
   return std::make_unique<CpuBackend>(device, kernel);
 }
 

@@ -58,11 +58,13 @@ void CudaBackend::load(std::span<const Robot* const> robots, const Configuration
   owned_->classes = {};
   configure(configuration);
   add(robots, 0);
+  watch_ = {};
 }
 
 void CudaBackend::add(std::span<const Robot* const> robots, std::size_t first_new) {
   begin_exchange();
-  const std::vector<Place> places = add_robots(owned_->classes, robots.subspan(first_new), configuration_, load_times_);
+  const std::vector<Place> places =
+      add_robots(owned_->classes, robots.subspan(first_new), configuration_, load_times_, watch_);
   places_.insert(places_.end(), places.begin(), places.end());
   number_masses(robots);
   choose_launches();

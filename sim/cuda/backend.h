@@ -38,6 +38,7 @@ class CudaBackend final : public Backend {
   double spring_limit() const override;
   double busy_seconds() const override { return busy_seconds_; }
   LoadTimes load_times() const override { return load_times_; }
+  void set_watch(const WorkWatch& watch) override { watch_ = watch; }
 
   // Robots and settings (backend.cpp).
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override;
@@ -141,6 +142,7 @@ class CudaBackend final : public Backend {
   StepConstants constants_;
   double busy_seconds_ = 0;
   LoadTimes load_times_;
+  WorkWatch watch_;  // of load()
 };
 
 }  // namespace mercury::cuda

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "mercury/stopwatch.h"
+#include "mercury/work_counter.h"
 #include "sim/cuda/rest_lengths.h"
 
 namespace mercury::cuda {
@@ -32,8 +33,8 @@ struct NewRobot {
 
 class Intake {
  public:
-  Intake(SizeClasses& classes, std::span<const Robot* const> robots, LoadTimes& times)
-      : classes_(classes), times_(times), new_robots_(robots.size()), arrangements_(robots.size()),
+  Intake(SizeClasses& classes, std::span<const Robot* const> robots, LoadTimes& times, const WorkWatch& watch)
+      : classes_(classes), times_(times), watch_(watch), new_robots_(robots.size()), arrangements_(robots.size()),
         users_(robots.size()), order_(robots.size()) {
     const Stopwatch stopwatch(times_.schedule);
     const std::vector<std::uint32_t> first = first_of_topology(robots);
@@ -50,6 +51,7 @@ class Intake {
         const std::size_t last = end_of_portion(first);
         upload_portion(std::span(order_).subspan(first, last - first));
         first = last;
+        if (watch_) watch_("uploading robots", first, order_.size());
       }
       for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].publish(first_new_[c], configuration);
     } catch (...) {
@@ -111,8 +113,10 @@ class Intake {
       if (!arrangements_[new_robots_[i].first_of_topology]) wanted.push_back(new_robots_[i].first_of_topology);
     std::ranges::sort(wanted);
     wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+    WorkCounter counter(watch_, "arranging robots", wanted.size());
     oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t k) {
       arrangements_[wanted[k]] = std::make_unique<const Arrangement>(arrange(*new_robots_[wanted[k]].robot));
+      counter.add_one();
     });
   }
 
@@ -171,6 +175,7 @@ class Intake {
 
   SizeClasses& classes_;
   LoadTimes& times_;
+  const WorkWatch& watch_;
   PinnedBuffer memory_;  // the chunks of a portion, on their way
   std::vector<NewRobot> new_robots_;
   std::vector<std::unique_ptr<const Arrangement>> arrangements_;  // [new robot], at the first of each topology
@@ -194,8 +199,8 @@ void SizeClasses::free_empty() {
 }
 
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration, LoadTimes& times) {
-  Intake intake(classes, robots, times);
+                              const Configuration& configuration, LoadTimes& times, const WorkWatch& watch) {
+  Intake intake(classes, robots, times, watch);
   intake.upload(configuration);
   return intake.places();
 }

@@ -47,8 +47,8 @@ class SizeClasses {
 
 // Brings robots into places of `classes`, at rest in the positions of their files, with their own materials. Returns
 // the place of each, and adds to `times`. Throws DeviceError if the device has no room for them; the classes then are
-// as before.
+// as before. So they are after an exception of the watch.
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration, LoadTimes& times);
+                              const Configuration& configuration, LoadTimes& times, const WorkWatch& watch);
 
 }  // namespace mercury::cuda

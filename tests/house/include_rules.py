@@ -52,7 +52,7 @@ ALLOWED = {
 
 # The plain data of sim. It includes only itself, and robots/ includes nothing else of sim: it makes robots and does not
 # step them.
-PLAIN_DATA = {f"sim/include/mercury/{name}.h" for name in ("error", "host_device", "material", "robot", "vec3")}
+PLAIN_DATA = {f"sim/include/mercury/{name}.h" for name in ("error", "host_device", "material", "robot", "vec3", "work_counter", "work_watch")}
 
 # Headers that the build makes.
 GENERATED = {"app/base/version.h"}

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "mercury/backend.h"
 #include "mercury/error.h"
+#include "mercury/threads.h"
 
 namespace mercury {
 namespace {
@@ -120,6 +122,19 @@ TEST(Configuration, GravityAndStiffnessScaleAreThoseOfTheEnvironment) {
   EXPECT_EQ(stiffness_scale_of(Land{}), 200);
   EXPECT_EQ(stiffness_scale_of(Ocean{}), 1);
   EXPECT_EQ(stiffness_scale_of(OceanSimple{.stiffness_scale = 3}), 3);
+}
+
+TEST(Configuration, NumbersOfThreadsAreLimitedByTheMachine) {
+  EXPECT_GE(max_threads(), 256);
+  for (const int threads : {0, 1, 256, max_threads()})
+    EXPECT_EQ(message_of([&] { require_possible_threads({.threads = threads}); }), "") << threads;
+  const std::string accepted = " is not accepted; give 0 (all cores) to " + std::to_string(max_threads());
+  for (const int threads : {max_threads() + 1, std::numeric_limits<int>::max(), -1})
+    EXPECT_EQ(message_of([&] { require_possible_threads({.threads = threads}); }),
+              "threads: " + std::to_string(threads) + accepted);
+  EXPECT_EQ(message_of([] { make_backend({.kind = DeviceKind::cpu, .threads = std::numeric_limits<int>::max()}); }),
+            "threads: 2147483647" + accepted);
+  EXPECT_EQ(message_of(Configuration{.device = {.threads = 1 << 20}}), "");  // of a file from a larger machine
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/merged_topology.h"
 #include "sim/cpu/grouping/partition.h"
@@ -56,7 +57,7 @@ Patterns patterns_of(std::span<Body* const> bodies, std::span<const std::size_t>
 }
 
 std::vector<Group> groups_of_similar(std::span<Body* const> bodies, const Patterns& patterns,
-                                     std::span<const std::size_t> left, bool faces) {
+                                     std::span<const std::size_t> left, bool faces, const WorkWatch& watch) {
   Group candidates;
   std::ranges::copy_if(left, std::back_inserter(candidates), [&](std::size_t i) { return !patterns[i].empty(); });
   if (candidates.empty()) return {};
@@ -65,7 +66,7 @@ std::vector<Group> groups_of_similar(std::span<Body* const> bodies, const Patter
     robots.push_back({patterns[i], bodies[i]->robot->springs, {}});
     if (faces) robots.back().face_pairs = bodies[i]->face_pairs;
   }
-  std::vector<Group> groups = partition_by_similarity(robots, bodies[candidates.front()]->slots.lanes);
+  std::vector<Group> groups = partition_by_similarity(robots, bodies[candidates.front()]->slots.lanes, watch);
   for (Group& group : groups)
     for (std::size_t& robot : group) robot = candidates[robot];
   return groups;
@@ -164,7 +165,7 @@ bool is_faster_than_alone(std::span<Body* const> bodies, const GroupPlan& plan, 
 }  // namespace
 
 std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::size_t threads,
-                                            const Configuration& configuration) {
+                                            const Configuration& configuration, const WorkWatch& watch) {
   Group left;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (fits_in_group(*bodies[i])) left.push_back(i);
@@ -172,14 +173,16 @@ std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::
   std::vector<Group> groups = groups_of_same_topology(bodies, left);
   const std::size_t same = groups.size();
   const Patterns patterns = patterns_of(bodies, left, faces);
-  std::ranges::move(groups_of_similar(bodies, patterns, left, faces), std::back_inserter(groups));
+  std::ranges::move(groups_of_similar(bodies, patterns, left, faces, watch), std::back_inserter(groups));
   groups.resize(groups_worth_keeping(groups.size(), threads));
 
   std::vector<GroupPlan> plans(groups.size());
+  WorkCounter counter(watch, "planning groups", groups.size());
   oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
     plans[g] = g < same ? plan_same_topology(bodies, std::move(groups[g]))
                         : plan_similar(bodies, patterns, std::move(groups[g]));
     if (g >= same && !is_faster_than_alone(bodies, plans[g], faces)) plans[g] = {};
+    counter.add_one();
   });
   std::erase_if(plans, [](const GroupPlan& plan) { return plan.bodies.empty(); });
   return plans;

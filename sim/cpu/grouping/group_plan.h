@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "mercury/work_watch.h"
 #include "sim/cpu/layout/body.h"
 #include "sim/cpu/layout/topology.h"
 
@@ -31,6 +32,6 @@ struct GroupPlan {
 
 // Each body is in one plan at most; the others step alone.
 std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::size_t threads,
-                                            const Configuration& configuration);
+                                            const Configuration& configuration, const WorkWatch& watch = {});
 
 }  // namespace mercury::cpu

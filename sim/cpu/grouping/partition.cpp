@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mercury/work_counter.h"
 #include "sim/cpu/grouping/common_items.h"
 #include "sim/cpu/grouping/cost_model.h"
 
@@ -242,14 +243,16 @@ std::vector<Group> groups_of(std::span<const RobotItems> robots, std::span<const
 }  // namespace
 
 std::vector<std::vector<std::size_t>> partition_by_similarity(std::span<const RobotItems> robots,
-                                                              std::size_t group_size) {
+                                                              std::size_t group_size, const WorkWatch& watch) {
   Group by_size(robots.size());
   std::iota(by_size.begin(), by_size.end(), std::size_t{0});
   std::ranges::stable_sort(by_size, std::greater{}, [&](std::size_t i) { return robots[i].cells.size(); });
   std::vector<std::vector<Group>> parts((robots.size() + limits.robots_compared - 1) / limits.robots_compared);
+  WorkCounter counter(watch, "comparing robots", parts.size());
   oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
     const std::span<const std::size_t> members = std::span(by_size).subspan(p * limits.robots_compared);
     parts[p] = groups_of(robots, members.first(std::min(limits.robots_compared, members.size())), group_size);
+    counter.add_one();
   });
   std::vector<Group> groups;
   for (std::vector<Group>& part : parts) std::ranges::move(part, std::back_inserter(groups));

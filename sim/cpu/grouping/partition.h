@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "mercury/robot.h"
+#include "mercury/work_watch.h"
 #include "sim/cpu/layout/lattice_cells.h"
 #include "sim/physics/face_pairs.h"
 
@@ -30,6 +31,6 @@ struct RobotItems {
 // Groups of robots, by index. All have `group_size` members, except the last group of every
 // GroupingLimits::robots_compared robots.
 std::vector<std::vector<std::size_t>> partition_by_similarity(std::span<const RobotItems> robots,
-                                                              std::size_t group_size);
+                                                              std::size_t group_size, const WorkWatch& watch = {});
 
 }  // namespace mercury::cpu

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/group_plan.h"
 #include "sim/physics/environments.h"
@@ -43,12 +44,15 @@ std::size_t max_muscles_of(const Body& body) {
   return static_cast<std::size_t>(std::ranges::count(body.measures.used, true));
 }
 
-std::vector<LockstepGroup> make_groups(std::span<Body* const> bodies, std::vector<GroupPlan>& plans, bool contacts) {
+std::vector<LockstepGroup> make_groups(std::span<Body* const> bodies, std::vector<GroupPlan>& plans, bool contacts,
+                                       const WorkWatch& watch) {
   std::vector<LockstepGroup> groups(plans.size());
+  WorkCounter counter(watch, "grouping robots", plans.size());
   oneapi::tbb::parallel_for(std::size_t{0}, plans.size(), [&](std::size_t g) {
     std::vector<Body*> members;
     for (const std::size_t i : plans[g].bodies) members.push_back(bodies[i]);
     groups[g] = make_lockstep_group(std::move(members), std::move(plans[g].merged), contacts);
+    counter.add_one();
   });
   return groups;
 }
@@ -56,19 +60,21 @@ std::vector<LockstepGroup> make_groups(std::span<Body* const> bodies, std::vecto
 }  // namespace
 
 std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::size_t threads,
-                                         const Configuration& configuration) {
-  std::vector<GroupPlan> plans = plan_lockstep_groups(bodies, threads, configuration);
+                                         const Configuration& configuration, const WorkWatch& watch) {
+  std::vector<GroupPlan> plans = plan_lockstep_groups(bodies, threads, configuration, watch);
   const bool contacts = has_contacts(configuration.environment);
   std::vector<std::uint8_t> is_member(bodies.size());
   for (const GroupPlan& plan : plans)
     for (const std::size_t i : plan.bodies) is_member[i] = 1;
+  WorkCounter counter(watch, "scheduling springs", bodies.size());
   oneapi::tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     if (contacts) prepare_contacts(*bodies[i]);
     if (!is_member[i]) prepare_to_step_alone(*bodies[i]);
+    counter.add_one();
   });
 
   BatchFiller filler(std::max<std::size_t>(1, bodies.size() / (limits.batches_per_thread * threads)));
-  for (LockstepGroup& group : make_groups(bodies, plans, contacts)) {
+  for (LockstepGroup& group : make_groups(bodies, plans, contacts, watch)) {
     std::size_t muscles = 0;
     for (const Body* body : group.bodies) muscles += max_muscles_of(*body);
     const std::size_t bytes = footprint(*group.topology, group.lanes);

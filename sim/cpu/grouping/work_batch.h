@@ -11,6 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "mercury/work_watch.h"
 #include "sim/cpu/layout/lockstep_group.h"
 #include "sim/cpu/layout/muscles.h"
 
@@ -27,7 +28,7 @@ struct WorkBatch {
 // Distributes all bodies. The batches are valid until the bodies are configured again; after an explosion, or the end
 // of one, other groups may be faster. Uses all cores.
 std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::size_t threads,
-                                         const Configuration& configuration);
+                                         const Configuration& configuration, const WorkWatch& watch = {});
 
 // Takes these bodies out of their batches. The rest of their groups break up: their bodies are in no batch, either.
 // Returns those, without the ones that are taken.

@@ -28,6 +28,7 @@
 #include "mercury/robot.h"
 #include "mercury/telemetry.h"
 #include "mercury/vec3.h"
+#include "mercury/work_watch.h"
 
 namespace mercury {
 
@@ -82,6 +83,9 @@ class Backend {
   virtual std::size_t robots_at_once() const = 0;
   virtual double spring_limit() const = 0;  // [1/s], 0 = unknown
   virtual double busy_seconds() const = 0;  // [s]
+  // Watches load() and what the first step() prepares, then no more. An exception of the watch passes through them;
+  // the backend can then only be destroyed. The default ignores the watch.
+  virtual void set_watch(const WorkWatch& /*watch*/) {}
   // Of all robots so far, as far as the backend measures it; `check` is Simulation's.
   virtual LoadTimes load_times() const { return {}; }
 

@@ -19,6 +19,7 @@
 #include "mercury/state.h"
 #include "mercury/telemetry.h"
 #include "mercury/vec3.h"
+#include "mercury/work_watch.h"
 
 namespace mercury {
 
@@ -42,7 +43,9 @@ class Simulation {
   // DeviceError if the device does not exist.
   explicit Simulation(const Configuration& configuration = {}, std::span<const Robot> robots = {});
   // Shares the robots instead of copying them. One robot may appear many times; it is checked once. No pointer is null.
-  Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots);
+  // The watch sees how loading goes on, here and in the first step(); an exception of it passes through.
+  Simulation(const Configuration& configuration, std::span<const std::shared_ptr<const Robot>> robots,
+             const WorkWatch& watch = {});
   // Uses the given backend. The configuration's device has no effect.
   Simulation(const Configuration& configuration, std::span<const Robot> robots, std::unique_ptr<Backend> backend);
   ~Simulation();

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory that this process may still take, asked before it is taken: a process that takes too much is killed by the
+// kernel without a word.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace mercury {
+
+// Of the host [bytes]: the least of what Linux calls available, what the limits of the control groups (containers)
+// leave, and what the limits of the process (ulimit -v, ulimit -d) leave.
+std::size_t available_host_memory();
+
+// The same without a reserve of an eighth, at most 1 GiB, for what nobody has counted [bytes].
+std::size_t usable_host_memory();
+
+// "about 24 GB of memory are needed, 8.1 GB can be used; give up to 31000 robots". Without `fits`, it ends at the
+// semicolon.
+std::string memory_line(std::size_t needed, std::size_t usable, std::string_view fits = {});
+
+}  // namespace mercury
