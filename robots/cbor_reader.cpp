@@ -29,7 +29,8 @@ class Reader {
  public:
   Reader(std::string_view document, DocumentEvents& events) : document_(document), events_(events) {}
 
-  void run() {
+  // Reads one item; returns where it ends.
+  std::size_t run() {
     read_item();
     while (!open_.empty()) {
       Container& container = open_.back();
@@ -43,7 +44,7 @@ class Reader {
       if (container.is_map) read_key();
       read_item();
     }
-    if (at_ != document_.size()) fail(at_, "more follows the end of the document");
+    return at_;
   }
 
  private:
@@ -193,6 +194,25 @@ class Reader {
 
 }  // namespace
 
-void read_cbor(std::string_view document, DocumentEvents& events) { Reader(document, events).run(); }
+void read_cbor(std::string_view document, DocumentEvents& events) {
+  if (const std::size_t end = Reader(document, events).run(); end != document.size())
+    throw InputError("byte " + std::to_string(end), "more follows the end of the document");
+}
+
+std::size_t first_cbor_item(std::string_view documents) {
+  struct Nothing final : DocumentEvents {
+    void null() override {}
+    void boolean(bool) override {}
+    void number(const Number&) override {}
+    void text(std::string_view) override {}
+    void bytes(std::string_view) override {}
+    void begin_array(std::size_t) override {}
+    void end_array() override {}
+    void begin_object(std::size_t) override {}
+    void key(std::string_view) override {}
+    void end_object() override {}
+  } nothing;
+  return Reader(documents, nothing).run();
+}
 
 }  // namespace mercury

@@ -55,6 +55,12 @@ class DocumentEvents {
 void read_json(std::string_view document, DocumentEvents& events);
 void read_cbor(std::string_view document, DocumentEvents& events);
 
+// Where the first of several documents ends that follow each other [bytes]. For CBOR, throws InputError for one that
+// breaks off or is none. For JSON, where its brackets are closed; the end of the text if they are not. The document may
+// be broken in other ways.
+std::size_t first_cbor_item(std::string_view documents);
+std::size_t first_json_value(std::string_view documents);
+
 // Writes events as JSON text without spaces. Throws InputError for text that is not UTF-8, numbers that are not
 // finite, and bytes, which JSON lacks.
 class JsonWriter : public DocumentEvents {

@@ -169,13 +169,14 @@ const ParameterValue& value_of(const ParameterValues& values, const GeneratorPar
   return found == values.end() ? parameter.initial : found->second;
 }
 
-std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed) {
+std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed,
+                                      const WorkWatch& watch) {
   const Generator& generator = generator_named(request.kind);
   generator.validate(request.values);
   return make_all(
       request.kind, request.seed, request.count, request.first,
       [&](std::uint64_t index) { return generator.make(request.values, request.environment, request.seed, index); },
-      failed);
+      failed, watch);
 }
 
 void validate(const MutationRequest& request) {

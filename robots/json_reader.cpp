@@ -85,6 +85,25 @@ void read_json(std::string_view document, DocumentEvents& events) {
   Json::sax_parse(document, &adapter);
 }
 
+std::size_t first_json_value(std::string_view documents) {
+  std::size_t depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < documents.size(); ++i) {
+    const char letter = documents[i];
+    if (in_text) {
+      if (letter == '\\') ++i;
+      in_text = letter != '"';
+    } else if (letter == '"') {
+      in_text = true;
+    } else if (letter == '{' || letter == '[') {
+      ++depth;
+    } else if ((letter == '}' || letter == ']') && (depth == 0 || --depth == 0)) {
+      return i + 1;
+    }
+  }
+  return documents.size();
+}
+
 std::string json_text(std::string_view text) {
   try {
     return Json(text).dump();

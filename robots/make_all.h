@@ -14,28 +14,34 @@
 
 #include "mercury/error.h"
 #include "mercury/generator.h"
+#include "mercury/work_counter.h"
 
 namespace mercury {
 
 // make(index) for the indices first .. first + count - 1, in order. A robot for which it throws InputError is left out
-// and listed in `failed`; without `failed`, the first such error is thrown, with the robot's name before it.
+// and listed in `failed`; without `failed`, the first such error is thrown, with the robot's name before it. The watch
+// sees how many are made.
 template <class Make>
 std::vector<Robot> make_all(const std::string& kind, std::uint64_t seed, std::size_t count, std::uint64_t first,
-                            Make make, std::vector<FailedRobot>* failed) {
+                            Make make, std::vector<FailedRobot>* failed, const WorkWatch& watch = {}) {
   std::vector<Robot> robots(count);
   std::vector<FailedRobot> missing;
   std::mutex of_missing;
+  WorkCounter counter(watch, "making robots", count);
   // Pieces of one robot each: robots differ in work, and the smallest take a hundred times as long as a task costs.
   const oneapi::tbb::blocked_range<std::size_t> indices(0, count, 1);
   oneapi::tbb::parallel_for(
       indices,
       [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) try {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          try {
             robots[i] = make(first + i);
           } catch (const InputError& error) {
             const std::scoped_lock lock(of_missing);
             missing.push_back({first + i, error.what()});
           }
+          counter.add_one();
+        }
       },
       oneapi::tbb::simple_partitioner());
   if (missing.empty()) return robots;

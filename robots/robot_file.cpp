@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "mercury/error.h"
 #include "robots/robot_document.h"
@@ -61,6 +62,29 @@ Robot parse_robot(std::string_view document, RobotFormat format) {
   RobotReader reader;
   format == RobotFormat::json ? read_json(document, reader) : read_cbor(document, reader);
   return reader.take();
+}
+
+RobotDocuments::RobotDocuments(std::string_view text) : rest_(text), format_(RobotFormat::json) {
+  // JSON begins with ASCII or a byte order mark, a robot in CBOR with a map (0xa0 to 0xbf) or a tag (0xc0 to 0xdb).
+  const auto first = static_cast<unsigned char>(rest_.empty() ? 0 : rest_.front());
+  if (first >= 0x80 && first != 0xef) format_ = RobotFormat::cbor;
+}
+
+std::optional<Robot> RobotDocuments::next() {
+  if (format_ == RobotFormat::json) {
+    constexpr std::string_view space = " \t\r\n";
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(space), rest_.size()));
+  }
+  if (rest_.empty()) return std::nullopt;
+  ++number_;
+  const std::string_view all = std::exchange(rest_, {});
+  try {
+    const std::size_t end = format_ == RobotFormat::json ? first_json_value(all) : first_cbor_item(all);
+    rest_ = all.substr(end);
+    return parse_robot(all.substr(0, end), format_);
+  } catch (const InputError& error) {
+    throw InputError("document " + std::to_string(number_), error.what());
+  }
 }
 
 std::string serialize_robot(const Robot& robot, RobotFormat format) {

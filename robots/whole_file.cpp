@@ -10,6 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "mercury/error.h"
 
@@ -26,6 +27,7 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return descriptor_; }
   bool is_open() const { return descriptor_ >= 0; }
+  int release() { return std::exchange(descriptor_, -1); }
   // Some file systems report a full disk only now. Returns 0, or the error.
   int close() {
     const int result = ::close(descriptor_);
@@ -81,6 +83,17 @@ std::filesystem::path temporary_name(const std::filesystem::path& path, int atte
   return path.parent_path() / name.append("-").append(std::to_string(attempt)).append(".tmp");
 }
 
+// Opening a FIFO would block until someone writes.
+int open_regular_file(const std::filesystem::path& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open()) fail(path, errno);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) fail(path, errno);
+  if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "not a regular file");
+  return file.release();
+}
+
 }  // namespace
 
 void fail(const std::filesystem::path& path, int error) {
@@ -90,14 +103,12 @@ void fail(const std::filesystem::path& path, int error) {
   throw InputError(path.string(), reason);
 }
 
+void require_regular_file(const std::filesystem::path& path) { const Descriptor file(open_regular_file(path)); }
+
 std::string read_whole_file(const std::filesystem::path& path) {
-  // Opening a FIFO would block until someone writes.
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!file.is_open()) fail(path, errno);
+  const Descriptor file(open_regular_file(path));
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail(path, errno);
-  if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
-  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "not a regular file");
   std::string content(static_cast<std::size_t>(status.st_size) + 1, '\0');
   std::size_t size = 0;
   while (true) {

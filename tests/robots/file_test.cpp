@@ -158,6 +158,50 @@ TEST_F(RobotFiles, FoldersInsideFoldersAreReadOnRequest) {
   EXPECT_EQ(refusal, "a/empty: the folder and those in it hold no robot, neither *.json nor *.cbor");
 }
 
+TEST_F(RobotFiles, SeveralDocumentsAreToldApart) {
+  std::vector<Robot> robots;
+  for (const char* name : {"one", "two \" } ] {", "three"}) robots.push_back({.name = name, .masses = {{0, 0, 0}}});
+  const auto all_of = [](const std::string& text) {
+    std::vector<Robot> found;
+    RobotDocuments documents(text);
+    while (const std::optional<Robot> robot = documents.next()) found.push_back(*robot);
+    return found;
+  };
+  std::string lines, joined = "\n ", cbor;
+  for (const Robot& robot : robots) {
+    std::string document = serialize_robot(robot, RobotFormat::json);
+    joined += document.substr(0, document.size() - 1);  // no line between them
+    std::erase(document, '\n');
+    lines += document + "\r\n";
+    cbor += serialize_robot(robot, RobotFormat::cbor);
+  }
+  EXPECT_EQ(all_of(lines), robots);
+  EXPECT_EQ(all_of(joined), robots);
+  EXPECT_EQ(all_of(cbor), robots);
+  EXPECT_EQ(all_of("\xef\xbb\xbf" + lines), robots);  // a byte order mark
+  EXPECT_THAT(all_of(""), testing::IsEmpty());
+  EXPECT_THAT(all_of(" \n\n"), testing::IsEmpty());
+}
+
+TEST_F(RobotFiles, DocumentsBehindABadOneAreRead) {
+  const Robot robot{.name = "good", .masses = {{0, 0, 0}}};
+  const Robot bad{.name = "bad", .masses = {{0, 0, 0}, {1, 0, 0}}, .springs = {{0, 1, 1, 1}}};
+  for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
+    const std::string good = serialize_robot(robot, format);
+    std::string broken = serialize_robot(bad, format);
+    broken.replace(broken.find("springs"), 7, "sprongs");  // a part is missing
+    const std::string text = good + broken + good + good.substr(0, good.size() / 2);
+    RobotDocuments documents(text);
+    EXPECT_EQ(documents.next(), robot);
+    EXPECT_THAT(message_of([&] { documents.next(); }), testing::StartsWith("document 2: "));
+    EXPECT_EQ(documents.next(), robot);
+    EXPECT_THAT(message_of([&] { documents.next(); }), testing::StartsWith("document 4: "));
+    EXPECT_EQ(documents.next(), std::nullopt);
+  }
+  RobotDocuments nonsense("]]] {}");
+  EXPECT_THAT(message_of([&] { nonsense.next(); }), testing::StartsWith("document 1: "));
+}
+
 TEST_F(RobotFiles, WhatCannotBeReadIsNamed) {
   const auto load = [&](const char* name) { return message_of([&] { load_robots(std::vector{folder / name}); }); };
   fs::create_directory(folder / "empty");

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "mercury/robot.h"
+#include "mercury/work_watch.h"
 
 namespace mercury {
 
@@ -141,7 +142,9 @@ struct FailedRobot {
 
 // The robots, in order, made on all cores. A robot that cannot be made is left out and listed in `failed`; without
 // `failed`, the first such error is thrown. Throws ParameterError for an unknown kind or values that cannot be used.
-std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed = nullptr);
+// The watch sees how many are made.
+std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed = nullptr,
+                                      const WorkWatch& watch = {});
 
 // A changed copy of a robot that one of the generators made, named `name`. Throws InputError if none did.
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name);

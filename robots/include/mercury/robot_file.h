@@ -2,7 +2,9 @@
 // Robots as files: JSON (*.json) and the same document as CBOR (*.cbor).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +25,22 @@ RobotFormat robot_format_of(const std::filesystem::path& path);
 // "line 3, column 7: not valid JSON: invalid literal". Memory grows with what the document holds, not with the sizes
 // that it announces, so a hostile file cannot exhaust it.
 Robot parse_robot(std::string_view document, RobotFormat format);
+
+// The robots of a text that holds several documents, one after the other: JSON with or without lines between them, or
+// CBOR (RFC 8742). The first byte shows which. Refers to the text.
+class RobotDocuments {
+ public:
+  explicit RobotDocuments(std::string_view text);
+  // The next robot; none at the end. Throws InputError as parse_robot, with the number of the document before the
+  // message ("document 3: /springs/7: ..."). The next call goes on behind a document that cannot be used; where its end
+  // cannot be found either, there is no next one.
+  std::optional<Robot> next();
+
+ private:
+  std::string_view rest_;
+  RobotFormat format_;
+  std::size_t number_ = 0;  // of documents so far
+};
 
 // The document of a robot. Every float reads back bit for bit. Throws InputError if validate() refuses the robot, its
 // origin is not a JSON object, or a text is not UTF-8.
