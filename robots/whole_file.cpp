@@ -103,8 +103,6 @@ void fail(const std::filesystem::path& path, int error) {
   throw InputError(path.string(), reason);
 }
 
-void require_regular_file(const std::filesystem::path& path) { const Descriptor file(open_regular_file(path)); }
-
 std::string read_whole_file(const std::filesystem::path& path) {
   const Descriptor file(open_regular_file(path));
   struct stat status {};

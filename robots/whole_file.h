@@ -12,10 +12,6 @@ namespace mercury {
 // (a full disk, no memory, a device that fails).
 [[noreturn]] void fail(const std::filesystem::path& path, int error);
 
-// Throws InputError for what cannot be read or is not a regular file, and std::runtime_error as fail(). Libraries that
-// open files themselves would wait for ever for a FIFO that nobody writes.
-void require_regular_file(const std::filesystem::path& path);
-
 // The content of a file. Throws InputError("eel.json: No such file or directory") for a file that cannot be read or is
 // not a regular file.
 std::string read_whole_file(const std::filesystem::path& path);

@@ -5,16 +5,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/base/interrupt.h"
 #include "app/base/messages.h"
+#include "app/base/progress.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
+#include "app/options/robot_memory.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
+#include "mercury/host_memory.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
@@ -53,8 +60,9 @@ constexpr std::int64_t sweep_steps = 1000;  // per call in a sweep
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Boxes without air, with a random material per voxel.
+// Boxes without air, with a random material per voxel. Throws Interrupted after Ctrl-C.
 std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& options, std::size_t count) {
+  constexpr std::size_t at_once = 128;
   RandomVoxelOptions voxel;
   voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
   voxel.air = 0;
@@ -62,34 +70,71 @@ std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& option
   voxel.mirror = Mirror::none;
   voxel.frequencies = 5;
   std::vector<std::shared_ptr<const Robot>> robots;
-  for (Robot& robot : random_voxel_robots(voxel, options.seed, count))
-    robots.push_back(std::make_shared<const Robot>(std::move(robot)));
+  const WorkWatch watch = shown_work();
+  while (robots.size() < count) {
+    for (Robot& robot :
+         random_voxel_robots(voxel, options.seed, std::min(at_once, count - robots.size()), robots.size()))
+      robots.push_back(std::make_shared<const Robot>(std::move(robot)));
+    watch("making robots", robots.size(), count);
+  }
   return robots;
 }
 
-// Chooses a number of robots that keeps the device busy: several times what it steps at once.
-std::size_t choose_count(const BenchOptions& options, const Configuration& configuration) {
-  if (options.count > 0) return options.count;
-  const auto one = make_robots(options, 1).front();
-  constexpr double springs_wanted = 7.5e6;
-  const Simulation probe(configuration, std::vector(512, one));
-  const std::size_t at_once = std::max<std::size_t>(1, probe.robots_at_once());
-  if (configuration.device.kind == DeviceKind::cpu || probe.spring_limit() == 0) return 4 * at_once;
-  const double rounds = springs_wanted / static_cast<double>(one->springs.size() * at_once);
-  return at_once * static_cast<std::size_t>(std::max(2.0, std::round(rounds)));
+// What one robot of the batch takes of the host's memory [bytes].
+std::size_t bytes_per_robot(const Robot& robot, bool on_cpu) {
+  const auto content = static_cast<double>(content_bytes(robot));
+  return on_cpu ? simulated_memory.per_robot + static_cast<std::size_t>(simulated_memory.per_content * content)
+                : static_cast<std::size_t>(1.1 * content);
 }
 
-// Warms up, then steps until at least `least_seconds` of device time are measured.
+// What all need to know of the device before robots are made.
+struct Probe {
+  std::size_t count = 0;      // robots to measure without --sweep
+  std::size_t per_robot = 0;  // [bytes]
+  bool on_cpu = false;
+};
+
+// Chooses a number of robots that keeps the device busy: several times what it steps at once.
+Probe probe(const BenchOptions& options, const Configuration& configuration) {
+  const auto one = make_robots(options, 1).front();
+  constexpr double springs_wanted = 7.5e6;
+  const Simulation simulation(configuration, std::vector(512, one), shown_work());
+  const std::size_t at_once = std::max<std::size_t>(1, simulation.robots_at_once());
+  Probe result{.count = options.count, .on_cpu = simulation.device_name().starts_with("CPU")};
+  result.per_robot = bytes_per_robot(*one, result.on_cpu);
+  if (result.count > 0) return result;
+  const double rounds = springs_wanted / static_cast<double>(one->springs.size() * at_once);
+  result.count = result.on_cpu ? 4 * at_once : at_once * static_cast<std::size_t>(std::max(2.0, std::round(rounds)));
+  return result;
+}
+
+// Makes this number of steps in calls of less than a second. Returns how many it made: fewer only after Ctrl-C.
+std::int64_t advance(Simulation& simulation, std::int64_t steps, double seconds_per_step) {
+  constexpr double longest = 0.2;  // [s]
+  const auto portion = static_cast<std::int64_t>(std::clamp(longest / seconds_per_step, 1.0, 1e9));
+  std::int64_t made = 0;
+  for (; made < steps && !interrupted(); made += std::min(portion, steps - made))
+    simulation.step(std::min(portion, steps - made));
+  return made;
+}
+
+// Warms up, then steps until at least `least_seconds` of device time are measured, or until Ctrl-C. Throws Interrupted
+// if nothing has been measured by then.
 Measurement measure(const BenchOptions& options, const Configuration& configuration, std::size_t count) {
   Measurement result;
   double start = now();
   const auto robots = make_robots(options, count);
   result.making = now() - start;
   start = now();
-  Simulation simulation(configuration, robots);
+  Simulation simulation(configuration, robots, shown_work());
   simulation.step(1);
   result.loading = now() - start;
-  simulation.step(steps_hashed - 1);
+  constexpr std::int64_t first_steps = 4;  // show how long a step takes
+  double before = simulation.busy_seconds();
+  simulation.step(first_steps);
+  double seconds_per_step = (simulation.busy_seconds() - before) / first_steps;
+  advance(simulation, steps_hashed - 1 - first_steps, seconds_per_step);
+  throw_if_interrupted();
   result.hash = simulation.hash(0);
   result.robots = count;
   result.masses = simulation.mass_count();
@@ -99,19 +144,22 @@ Measurement measure(const BenchOptions& options, const Configuration& configurat
   result.configuration = configuration;
 
   std::int64_t steps = options.sweep ? sweep_steps : 10;
-  double before = simulation.busy_seconds();
-  while (result.seconds < options.least_seconds) {
-    simulation.step(steps);
+  before = simulation.busy_seconds();
+  Progress progress("measuring", "ms", static_cast<std::int64_t>(1000 * options.least_seconds));
+  while (result.seconds < options.least_seconds && !interrupted()) {
+    const std::int64_t made = advance(simulation, steps, seconds_per_step);
     const double after = simulation.busy_seconds();
     result.seconds += after - before;
-    result.steps += steps;
+    result.steps += made;
     result.longest_call = std::max(result.longest_call, steps);
     before = after;
-    if (options.sweep) continue;
-    const double seconds_per_step = result.seconds / static_cast<double>(result.steps);
-    steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / seconds_per_step), std::int64_t{1},
-                       std::int64_t{1000000});
+    progress.update(static_cast<std::int64_t>(1000 * std::min(result.seconds, options.least_seconds)));
+    seconds_per_step = result.seconds / static_cast<double>(std::max<std::int64_t>(1, result.steps));
+    if (!options.sweep)
+      steps = std::clamp(static_cast<std::int64_t>(0.5 * options.least_seconds / seconds_per_step), std::int64_t{1},
+                         std::int64_t{1000000});
   }
+  if (result.steps == 0) throw Interrupted();
   return result;
 }
 
@@ -163,21 +211,67 @@ std::string csv_row(const Measurement& m) {
                      m.springs_per_second());
 }
 
-// Measures 1, 2, 4, ... robots until the memory of the device is full (paper, figure 4).
-std::vector<Measurement> sweep(const BenchOptions& options, const Configuration& configuration) {
-  std::vector<Measurement> all;
-  const std::size_t most = options.count > 0 ? options.count : std::size_t{1} << 20;
-  for (std::size_t count = 1; count <= most; count *= 2) {
-    try {
-      all.push_back(measure(options, configuration, count));
-    } catch (const DeviceError& error) {
-      if (all.empty()) throw;
-      warn(fmt::format("the sweep stops before {} robots: {}", count, error.what()));
-      break;
-    }
-    say(fmt::format("{:>8} robots  {:.3e} springs/s", count, all.back().springs_per_second()));
+// Takes measurements as they come: rows of CSV go out at once, so that they are there whatever happens later.
+class Results {
+ public:
+  explicit Results(const BenchOptions& options)
+      : options_(options), prints_rows_(is_standard_output(options.csv) || (options.sweep && !options.json)) {
+    if (prints_rows_) print(csv_head);
   }
-  return all;
+
+  void add(const Measurement& measurement) {
+    all_.push_back(measurement);
+    csv_ += csv_row(measurement);
+    if (prints_rows_) print(csv_row(measurement));
+    std::error_code ignored;
+    const bool is_special =
+        std::filesystem::exists(options_.csv, ignored) && !std::filesystem::is_regular_file(options_.csv, ignored);
+    if (writes_file() && !is_special) write_results(options_.csv, csv_);
+  }
+
+  // Prints what the rows did not.
+  void finish() const {
+    if (!prints_rows_ && options_.json) {
+      nlohmann::ordered_json json = nlohmann::ordered_json::array();
+      for (const Measurement& m : all_) json.push_back(json_of(m));
+      print((options_.sweep ? json : json.front()).dump(2) + "\n");
+    } else if (!prints_rows_) {
+      print(table_of(all_.front()));
+    }
+    if (writes_file()) write_results(options_.csv, csv_);
+  }
+
+  bool empty() const { return all_.empty(); }
+
+ private:
+  static void print(const std::string& text) {
+    fmt::print("{}", text);
+    std::fflush(stdout);
+  }
+  bool writes_file() const { return !options_.csv.empty() && !is_standard_output(options_.csv); }
+
+  const BenchOptions& options_;
+  bool prints_rows_;
+  std::vector<Measurement> all_;
+  std::string csv_ = csv_head;
+};
+
+// Measures 1, 2, 4, ... robots until the memory of the device is full (paper, figure 4), or a quarter of a CPU's.
+void sweep(const BenchOptions& options, const Configuration& configuration, const Probe& probed, Results& results) {
+  const std::size_t most = options.count > 0 ? options.count : std::size_t{1} << 20;
+  const std::size_t usable = usable_host_memory() / (probed.on_cpu ? 4 : 1);
+  for (std::size_t count = 1; count <= most && !interrupted(); count *= 2) try {
+      if (!results.empty() && count * probed.per_robot > usable)
+        throw DeviceError(memory_line(count * probed.per_robot, usable));
+      const Measurement measured = measure(options, configuration, count);
+      results.add(measured);
+      say(fmt::format("{:>8} robots  {:.3e} springs/s", count, measured.springs_per_second()));
+    } catch (const DeviceError& error) {
+      if (results.empty()) throw;
+      return warn(fmt::format("the sweep stops before {} robots: {}", count, error.what()));
+    } catch (const Interrupted&) {
+      return;
+    }
 }
 
 int bench(const BenchOptions& options) {
@@ -187,24 +281,19 @@ int bench(const BenchOptions& options) {
   if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
   outputs.check();
   outputs.make_folders();
-  const std::vector<Measurement> all =
-      options.sweep ? sweep(options, configuration)
-                    : std::vector{measure(options, configuration, choose_count(options, configuration))};
-  std::string csv = csv_head;
-  for (const Measurement& m : all) csv += csv_row(m);
-  if (is_standard_output(options.csv)) {
-    fmt::print("{}", csv);
-  } else if (options.json) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (const Measurement& m : all) json.push_back(json_of(m));
-    fmt::print("{}\n", (options.sweep ? json : json.front()).dump(2));
-  } else if (options.sweep) {
-    fmt::print("{}", csv);
+  Results results(options);
+  const Probe probed = probe(options, configuration);
+  if (options.sweep) {
+    sweep(options, configuration, probed, results);
   } else {
-    fmt::print("{}", table_of(all.front()));
+    const std::size_t usable = usable_host_memory(), needed = probed.count * probed.per_robot;
+    if (needed > usable)
+      throw InputError("--count", memory_line(needed, usable, fmt::format("up to {}", usable / probed.per_robot)));
+    results.add(measure(options, configuration, probed.count));
   }
-  if (!options.csv.empty() && !is_standard_output(options.csv)) write_results(options.csv, csv);
-  return 0;
+  if (results.empty()) throw_if_interrupted();
+  results.finish();
+  return interrupted() ? 1 : 0;
 }
 
 }  // namespace
@@ -220,8 +309,9 @@ void add_bench_command(CLI::App& program, const Choose& choose) {
   add_number(*command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->add_flag("--sweep", options->sweep,
-                    "Measure 1, 2, 4, ... robots, until the memory is full or --count is reached");
+  command->add_flag(
+      "--sweep", options->sweep,
+      "Measure 1, 2, 4, ... robots, until a GPU is full, a quarter of a CPU's memory, or --count is reached");
   add_text(*command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)",
            "FILE");
   options->output.add_force_to(*command);

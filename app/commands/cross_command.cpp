@@ -8,6 +8,7 @@
 #include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
 #include "app/options/option_values.h"
+#include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"
 #include "mercury/generator.h"
 
@@ -15,13 +16,13 @@ namespace mercury {
 namespace {
 
 struct CrossOptions {
-  std::vector<std::string> paths;
+  RobotInputs robots;
   RobotOutput output;
   std::string name;
 };
 
 int cross(const CrossOptions& options) {
-  const std::vector<Robot> parents = load_parents(options.paths, "crossed");
+  const std::vector<Robot> parents = load_parents(options.robots, "crossed");
   if (parents.size() != 2)
     throw InputError("ROBOTS", fmt::format("{} robots are not accepted; give the files of two", parents.size()));
   const Robot &a = parents[0], &b = parents[1];
@@ -30,7 +31,7 @@ int cross(const CrossOptions& options) {
     return (options.name.empty() ? a.name + "-x" : options.name + "-") + std::to_string(index);
   };
   const RobotOutput& output = options.output;
-  RobotFiles files = output.open(output.count(), numbered_names(name_of, output.count()), paths_of(options.paths));
+  RobotFiles files = output.open(output.count(), numbered_names(name_of, output.count()), options.robots.paths());
   if (output.dry_run())
     return print_dry_run(
         "cross", {{"parents", size_text(parents)},
@@ -50,7 +51,7 @@ int cross(const CrossOptions& options) {
 void add_cross_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<CrossOptions>();
   CLI::App* command = program.add_subcommand("cross", "Make children of two robots of one kind");
-  command->add_option("ROBOTS", options->paths, "Two robot files (.json, .cbor)")->type_name("PATH");
+  options->robots.add_to(*command, "Two robot files (.json, .cbor)");
   options->output.add_to(*command, "How many children (default 1)");
   add_text(*command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)",
            "NAME");
@@ -63,7 +64,7 @@ void add_cross_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury cross paddler.json wriggler.json -o child.json\n"
       "  mercury cross paddler.json wriggler.json -o children/ --count 20 --seed 3");
-  command->callback([options, choose] { choose([options] { return cross(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(cross(*options)); }); });
 }
 
 }  // namespace mercury

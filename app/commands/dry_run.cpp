@@ -49,6 +49,12 @@ std::string size_text(std::span<const Robot> robots) {
   return text_of(size);
 }
 
+std::string size_text(std::span<const std::shared_ptr<const Robot>> robots) {
+  Size size;
+  for (const auto& robot : robots) size.add(*robot);
+  return text_of(size);
+}
+
 std::string size_text(const RobotSequence& robots) {
   const std::size_t files = robots.files.size(), random = robots.count - files, made = std::min(random, most_made);
   Size size, sample;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@ std::string count_text(std::int64_t count, const std::string& one, const std::st
 // "about". Throws InputError as the source does.
 std::string size_text(const RobotSequence& robots);
 std::string size_text(std::span<const Robot> robots);
+std::string size_text(std::span<const std::shared_ptr<const Robot>> robots);
 
 // "10 s: 10000 steps of 0.001 s"
 std::string time_text(const Configuration& configuration, std::int64_t steps);

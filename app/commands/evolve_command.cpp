@@ -302,7 +302,9 @@ void add_evolve_command(CLI::App& program, const Choose& choose) {
       "  mercury evolve map --from cppn:6x4x4 --axis masses:20:120 --axis muscle_share\n"
       "  mercury evolve swim --resume --generations 200\n"
       "  mpirun -n 8 mercury evolve swim --from voxel:6x4x4 --population 4096");
-  command->callback([options, choose, command] { choose([options, command] { return evolve(*options, *command); }); });
+  command->callback([options, choose, command] {
+    choose([options, command] { return options->run.status(evolve(*options, *command)); });
+  });
 }
 
 }  // namespace mercury

@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
+#include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
@@ -15,7 +16,7 @@ namespace mercury {
 namespace {
 
 struct GrowOptions {
-  std::vector<std::string> paths;
+  RobotInputs robots;
   RobotOutput output;
 };
 
@@ -30,7 +31,7 @@ std::set<std::string> names_of(const std::vector<Robot>& robots) {
 
 // Robots may be grown in place: they are read before they are written.
 int grow(const GrowOptions& options) {
-  const std::vector<Robot> robots = load_parents(options.paths, "grown");
+  const std::vector<Robot> robots = load_parents(options.robots, "grown");
   const std::set<std::string> names = names_of(robots);
   RobotFiles files =
       options.output.open(robots.size(), [&](std::string_view name) { return names.contains(std::string(name)); });
@@ -45,7 +46,7 @@ int grow(const GrowOptions& options) {
 void add_grow_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<GrowOptions>();
   CLI::App* command = program.add_subcommand("grow", "Grow robots again from their origin, which may be edited");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  options->robots.add_to(*command);
   options->output.add_files_to(*command);
   command->footer(
       "Masses, springs and faces are made again from the origin in the file: the voxels of a grid, the weights of a\n"
@@ -54,7 +55,7 @@ void add_grow_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury grow edited.json -o edited.json --force\n"
       "  mercury grow edited/ -o grown/");
-  command->callback([options, choose] { choose([options] { return grow(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(grow(*options)); }); });
 }
 
 }  // namespace mercury

@@ -12,13 +12,13 @@
 #include "app/commands/description.h"
 #include "app/commands/machine.h"
 #include "app/options/option_values.h"
+#include "app/options/robot_inputs.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
-#include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
 #include "mercury/simulation.h"
 
@@ -26,7 +26,7 @@ namespace mercury {
 namespace {
 
 struct InfoOptions {
-  std::vector<std::string> paths;
+  RobotInputs robots;
   std::string ffmpeg;
 };
 
@@ -156,14 +156,14 @@ void describe(const TrajectoryReader& trajectory) {
 }
 
 int info(const InfoOptions& options) {
-  if (options.paths.empty()) return describe_machine(options.ffmpeg);
-  for (const std::filesystem::path path : options.paths) {
+  if (options.robots.empty()) return describe_machine(options.ffmpeg);
+  for (const std::filesystem::path& path : options.robots.paths()) {
     if (is_readable_trajectory_name(path)) {
       describe(TrajectoryReader(path));
     } else if (is_run_folder(path)) {
       describe(RunHistory(path));
     } else {
-      for (const Robot& robot : load_robots(std::span(&path, 1))) describe(robot);
+      for (const RobotFromFile& loaded : options.robots.load({path})) describe(loaded.robot);
     }
   }
   return 0;
@@ -175,13 +175,11 @@ void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
-  command
-      ->add_option("ROBOTS", options->paths,
-                   "Robot files (.json, .cbor), folders of them, recordings (.h5), runs of mercury evolve")
-      ->type_name("PATH");
+  options->robots.add_to(*command,
+                         "Robot files (.json, .cbor), folders of them, recordings (.h5), runs of mercury evolve");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
-  command->callback([options, choose] { choose([options] { return info(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(info(*options)); }); });
 }
 
 }  // namespace mercury

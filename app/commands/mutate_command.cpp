@@ -9,6 +9,7 @@
 #include "app/commands/dry_run.h"
 #include "app/commands/offspring.h"
 #include "app/options/option_values.h"
+#include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"
 #include "mercury/generator.h"
 
@@ -16,7 +17,7 @@ namespace mercury {
 namespace {
 
 struct MutateOptions {
-  std::vector<std::string> paths;
+  RobotInputs robots;
   RobotOutput output;
   MutationRequest mutation;
   std::string name;
@@ -26,7 +27,7 @@ int mutate(const MutateOptions& options) {
   validate(options.mutation);
   if (options.mutation.strength == 0 && options.mutation.muscles == 0)
     throw InputError("--strength, --muscles", "both are 0, which changes nothing; give one of them above 0");
-  const std::vector<Robot> parents = load_parents(options.paths, "mutated");
+  const std::vector<Robot> parents = load_parents(options.robots, "mutated");
   const std::uint64_t each = options.output.count();
   if (each > std::numeric_limits<std::uint64_t>::max() / parents.size())
     throw InputError("--count", fmt::format("{} is not accepted; give fewer", each));
@@ -35,7 +36,7 @@ int mutate(const MutateOptions& options) {
     return (options.name.empty() ? parent.name + "-m" : options.name + "-") + std::to_string(index);
   };
   const std::uint64_t count = each * parents.size();
-  RobotFiles files = options.output.open(count, numbered_names(name_of, count), paths_of(options.paths));
+  RobotFiles files = options.output.open(count, numbered_names(name_of, count), options.robots.paths());
   if (options.output.dry_run())
     return print_dry_run(
         "mutate",
@@ -56,7 +57,7 @@ int mutate(const MutateOptions& options) {
 void add_mutate_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<MutateOptions>();
   CLI::App* command = program.add_subcommand("mutate", "Make changed copies of robots");
-  command->add_option("ROBOTS", options->paths, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  options->robots.add_to(*command);
   options->output.add_to(*command, "Children of each robot (default 1)");
   add_number(*command, "--strength", options->mutation.strength,
              "How much bodies change: 1 = a little, as in a search (default 1); 0 = not at all", "X");
@@ -71,7 +72,7 @@ void add_mutate_command(CLI::App& program, const Choose& choose) {
       "  mercury mutate eel.json -o children/ --count 20 --seed 3\n"
       "  mercury mutate eel.json -o late.json --strength 0 --muscles 1\n"
       "  mercury mutate best/ -o generation-2/ --count 8 --strength 2 --muscles 0.5");
-  command->callback([options, choose] { choose([options] { return mutate(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(mutate(*options)); }); });
 }
 
 }  // namespace mercury

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <unordered_set>
 
 #include "app/base/interrupt.h"
@@ -14,7 +13,6 @@
 #include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"
-#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -30,11 +28,9 @@ std::uint64_t seed_of_draw(std::uint64_t seed, std::uint64_t index, std::uint64_
 
 }  // namespace
 
-std::vector<Robot> load_parents(const std::vector<std::string>& paths, const char* verb) {
-  const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
+std::vector<Robot> load_parents(const RobotInputs& files, const char* verb) {
   if (files.empty()) throw InputError("no robots given; name files or folders");
-  std::vector<Robot> parents = load_robots(files);
-  for (const Robot& parent : parents) {
+  return robots_of(files.load([verb](const Robot& parent) {
     const Generator* generator = generator_of(parent);
     if (!generator)
       throw InputError(parent.name,
@@ -44,8 +40,7 @@ std::vector<Robot> load_parents(const std::vector<std::string>& paths, const cha
     } catch (const InputError& error) {
       throw InputError(parent.name, error.what());
     }
-  }
-  return parents;
+  }));
 }
 
 int write_children(const RobotOutput& output, RobotFiles files, std::uint64_t count, const std::vector<Robot>& parents,

@@ -3,23 +3,19 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"
 #include "mercury/robot.h"
 
 namespace mercury {
 
-// The robots of files and folders that a generator made. Throws InputError for one that cannot be grown again, with
-// `verb` in the message: "eel: cannot be mutated, ...".
-std::vector<Robot> load_parents(const std::vector<std::string>& paths, const char* verb);
-
-inline std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& names) {
-  return {names.begin(), names.end()};
-}
+// The robots of files and folders that a generator made. One that cannot be grown again is as a file that cannot be
+// used, with `verb` in the message: "eel: cannot be mutated, ...".
+std::vector<Robot> load_parents(const RobotInputs& files, const char* verb);
 
 // Makes the index-th child from a seed. Throws InputError if it cannot be made.
 using MakeChild = std::function<Robot(std::uint64_t index, std::uint64_t seed)>;

@@ -49,7 +49,7 @@ std::vector<Output> outputs_of(const RenderOptions& options, std::vector<Clip> c
     for (std::size_t i = 0; i < clip.robots.size(); ++i) {
       Clip alone{.title = clip.title, .zoom = clip.zoom};
       if (!clip.captions.empty()) alone.captions.push_back(clip.captions[i]);
-      const std::string name = names.of(clip.robots[i]);
+      const std::string name = names.of(*clip.robots[i]);
       alone.robots.push_back(std::move(clip.robots[i]));
       outputs.push_back({.name = name, .clips = {std::move(alone)}});
     }
@@ -141,7 +141,7 @@ int describe_work(const RenderOptions& options, const RenderTask& task, const st
   std::size_t clips = 0;
   for (const Output& output : outputs) clips += output.clips.size();
   Intentions intentions;
-  std::vector<Robot> robots;
+  std::vector<std::shared_ptr<const Robot>> robots;
   for (const Output& output : outputs)
     for (const Clip& clip : output.clips) robots.insert(robots.end(), clip.robots.begin(), clip.robots.end());
   if (subject.recording) {
@@ -211,7 +211,8 @@ void add_render_command(CLI::App& program, const Choose& choose) {
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
-  command->callback([options, choose] { choose([options] { return render_robots(*options); }); });
+  command->callback(
+      [options, choose] { choose([options] { return options->robots.status(render_robots(*options)); }); });
 }
 
 }  // namespace mercury

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "app/base/work_progress.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -24,8 +26,9 @@ Subject robots_of(const RenderOptions& options) {
   options.simulation.configuration();  // errors in options come before those in files
   Subject subject;
   Clip& clip = subject.clips.emplace_back();
-  clip.robots = options.robots.load();
-  subject.configuration = options.simulation.configuration(clip.robots, subject.notes);
+  LoadedRobots loaded = options.robots.load(drawn_memory);
+  clip.robots = std::move(loaded.robots);
+  subject.configuration = options.simulation.configuration(loaded.environments, subject.notes);
   subject.seconds = options.simulation.seconds();
   return subject;
 }
@@ -105,7 +108,7 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
 }  // namespace
 
 Simulation Subject::simulation_of(const Clip& clip) const {
-  return recording ? playback(recording) : Simulation(configuration, clip.robots);
+  return recording ? playback(recording) : Simulation(configuration, clip.robots, shown_work());
 }
 
 void check_options(RenderOptions& options) {

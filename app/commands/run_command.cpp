@@ -12,6 +12,7 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
 #include "app/commands/dry_run.h"
@@ -215,9 +216,9 @@ void print_notes(const std::vector<std::string>& notes) {
 
 // A recording needs all robots in one simulation.
 int run_recorded(const RunOptions& options, std::int64_t steps) {
-  const std::vector<Robot> robots = options.robots.load();
+  const LoadedRobots loaded = options.robots.load(recorded_memory);
   std::vector<std::string> notes;
-  Simulation simulation(options.simulation.configuration(robots, notes), robots);
+  Simulation simulation(options.simulation.configuration(loaded.environments, notes), loaded.robots, shown_work());
   print_notes(notes);
   print_notes(simulation.notes());
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation, steps);
@@ -271,7 +272,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "  mercury run eel.json --record eel.h5 --every 10\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
-  command->callback([options, choose] { choose([options] { return run(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(run(*options)); }); });
 }
 
 }  // namespace mercury

@@ -64,7 +64,7 @@ std::vector<std::uint64_t> steps_of(const RunHistory& run, std::vector<std::uint
 }
 
 void add(Clip& clip, const RunHistory& run, std::uint64_t id, std::string caption) {
-  clip.robots.push_back(run.grow(id));
+  clip.robots.push_back(std::make_shared<const Robot>(run.grow(id)));
   clip.captions.push_back(std::move(caption));
 }
 
@@ -72,7 +72,7 @@ void add(Clip& clip, const RunHistory& run, std::uint64_t id, std::string captio
 void show_at_one_scale(std::vector<Clip>& clips) {
   constexpr float room = 0.7f;
   std::vector<float> radii;
-  for (const Clip& clip : clips) radii.push_back(rest_bounds(clip.robots.front()).radius());
+  for (const Clip& clip : clips) radii.push_back(rest_bounds(*clip.robots.front()).radius());
   const float largest = *std::ranges::max_element(radii);
   for (std::size_t i = 0; i < clips.size() && largest > 0; ++i) clips[i].zoom = room * radii[i] / largest;
 }
@@ -126,7 +126,7 @@ RunFilm film_of_lineage(const RunHistory& run, std::uint64_t id, std::size_t mos
 RunFilm film_of_map(const RunHistory& run) {
   const RunBoard map = board_of(run);
   Clip clip;
-  for (const std::uint64_t id : map.robots) clip.robots.push_back(run.grow(id));
+  for (const std::uint64_t id : map.robots) clip.robots.push_back(std::make_shared<const Robot>(run.grow(id)));
   clip.title =
       fmt::format("{}\ngeneration {}: {} of {}, the best {}", name_of_run(run), run.generations().back().number,
                   map.robots.size(), count_text(map.board->values.size(), "cell", "cells"),

@@ -16,7 +16,7 @@ namespace mercury {
 
 // Robots that are filmed together.
 struct Clip {
-  std::vector<Robot> robots;
+  std::vector<std::shared_ptr<const Robot>> robots;
   std::vector<std::string> captions;  // one per robot; empty = their names
   std::string title;                  // in the upper left corner; further lines are smaller
   float zoom = 1;                     // of the camera

@@ -18,6 +18,8 @@
 #include "app/window/toolkit/embedded.h"
 #include "app/window/viewer.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
+#include "mercury/origin.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {
@@ -99,10 +101,17 @@ int view(const ViewCommandOptions& options) {
   }
   // Read the files here to report errors before the window opens, and to choose the environment of the robots. The
   // window reads them again.
-  const std::vector<Robot> robots = options.robots.load_files();
-  if (!robots.empty()) viewer.configuration = options.simulation.configuration(robots, viewer.notes);
-  viewer.files = options.robots.files();
   viewer.generations = options.robots.random();
+  require_memory_for(viewer.generations, drawn_memory, usable_host_memory());
+  std::vector<std::string> environments;
+  for (RobotFromFile& loaded : options.robots.load_files()) {
+    environments.push_back(environment_of(loaded.robot));
+    if (loaded.file == standard_input)
+      viewer.robots.push_back(std::move(loaded.robot));
+    else
+      viewer.files.push_back(std::move(loaded.file));
+  }
+  if (!environments.empty()) viewer.configuration = options.simulation.configuration(environments, viewer.notes);
   return window::run_viewer(std::move(viewer));
 }
 
@@ -135,7 +144,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
       "  mercury view my-robots --environment land\n"
       "  mercury view --random voxel:12 --seed 3 --color strain\n"
       "  mercury view swim                 (a run)");
-  command->callback([options, choose] { choose([options] { return view(*options); }); });
+  command->callback([options, choose] { choose([options] { return options->robots.status(view(*options)); }); });
 }
 
 }  // namespace mercury

@@ -13,7 +13,6 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
-#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -72,6 +71,7 @@ void EvolutionOptions::add_to(CLI::App& command) {
         names_of_kinds())
       ->type_name("KIND[:SIZE]|PATH...")
       ->group(search_group);
+  founder_files_.add_options_to(command);
   add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
       ->group(search_group);
   add_value(command, "--algorithm", algorithm_,
@@ -147,13 +147,14 @@ GenomeSpaceRequest EvolutionOptions::space(std::vector<std::string>& paths) cons
 std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& paths) const {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path path : paths) {
-    if (!std::filesystem::exists(path))
+    if (path != standard_input && !std::filesystem::exists(path))
       throw InputError("--from", fmt::format("\"{}\" is neither a file or folder nor a kind of robot ({})",
                                              path.string(), generator_kinds()));
     files.push_back(is_run_folder(path) ? path / "best" : path);
   }
-  if (files.empty()) return {};
-  return load_robots(files);
+  std::vector<Robot> founders = robots_of(founder_files_.load(files));
+  if (founders.empty() && !files.empty()) throw InputError("--from", "no robot is left: none of the files can be used");
+  return founders;
 }
 
 AlgorithmSettings EvolutionOptions::algorithm() const {

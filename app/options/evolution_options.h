@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/options/generator_options.h"
+#include "app/options/robot_inputs.h"
 #include "app/options/simulation_options.h"
 #include "mercury/run_folder.h"
 
@@ -24,6 +25,9 @@ class EvolutionOptions {
   // InputError or ParameterError for options that cannot be used.
   RunSettings settings(std::vector<std::string>& notes) const;
 
+  // The exit status of a command that ended with `status`: 1 instead of 0 if robots to start from were left out.
+  int status(int status) const { return founder_files_.status(status); }
+
   // What may change when a run goes on: throws InputError for any other option that was given.
   void require_only_what_may_change(const CLI::App& command) const;
   std::optional<int> generations() const { return generations_; }
@@ -36,6 +40,7 @@ class EvolutionOptions {
   void set_size(GenomeSpaceRequest& space, const std::string& size) const;
   AlgorithmSettings algorithm() const;
 
+  RobotInputs founder_files_;
   std::vector<std::string> from_;  // "voxel:6x4x4", or files and folders
   GeneratorOptions generators_;
   SimulationOptions simulation_;

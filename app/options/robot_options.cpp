@@ -4,34 +4,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <memory>
+#include <utility>
 
-#include "app/base/messages.h"
+#include "app/base/work_progress.h"
 #include "app/options/option_values.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 #include "mercury/origin.h"
-#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
 
 constexpr std::size_t most_robots = 1'000'000;
 
-std::vector<Robot> random_robots(const RandomRobots& request) {
-  std::vector<FailedRobot> failed;
-  std::vector<Robot> robots = make_random_robots(request, &failed);
-  if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
-  for (const FailedRobot& robot : failed)
-    warn(fmt::format("{}-{}-{} was left out: {}", request.kind, request.seed, robot.index, robot.reason));
-  return robots;
-}
-
 }  // namespace
 
 void RobotOptions::add_to(CLI::App& command) {
-  command.add_option("ROBOTS", paths_, "Robot files (.json, .cbor) and folders of them")->type_name("PATH");
+  files_.add_to(command);
   CLI::Option* random = command.add_option(
       "--random", random_,
       fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
@@ -44,9 +36,10 @@ void RobotOptions::add_to(CLI::App& command) {
 
 std::optional<std::filesystem::path> RobotOptions::alone(bool (*is_such)(const std::filesystem::path&),
                                                          const char* why) const {
-  const auto found = std::find_if(paths_.begin(), paths_.end(), [&](const auto& path) { return is_such(path); });
-  if (found == paths_.end()) return std::nullopt;
-  if (paths_.size() > 1 || !random_.empty()) throw InputError(*found, why);
+  const std::vector<std::filesystem::path> paths = files();
+  const auto found = std::ranges::find_if(paths, is_such);
+  if (found == paths.end()) return std::nullopt;
+  if (paths.size() > 1 || !random_.empty()) throw InputError(found->string(), why);
   return *found;
 }
 
@@ -62,26 +55,41 @@ void RobotOptions::require_robots() const {
   if (empty()) throw InputError("no robots given; name files or folders, or use --random " + generator_kinds(":12"));
 }
 
-std::vector<Robot> RobotOptions::load() const {
-  require_robots();
-  std::vector<Robot> robots = load_files();
-  for (const RandomRobots& request : random()) {
-    std::vector<Robot> more = random_robots(request);
-    robots.insert(robots.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  }
+std::vector<Robot> RobotOptions::random_robots(const RandomRobots& request) const {
+  std::vector<FailedRobot> failed;
+  std::vector<Robot> robots = make_random_robots(request, &failed, shown_work());
+  if (robots.empty()) throw InputError("--random", "none could be grown: " + failed.front().reason);
+  for (const FailedRobot& robot : failed)
+    files_.leave_out(fmt::format("{}-{}-{} was left out: {}", request.kind, request.seed, robot.index, robot.reason));
   return robots;
+}
+
+LoadedRobots RobotOptions::load(const MemoryUse& use) const {
+  require_robots();
+  const std::vector<RandomRobots> requests = random();
+  LoadedRobots all;
+  const auto add = [&](Robot& robot) { all.robots.push_back(std::make_shared<const Robot>(std::move(robot))); };
+  for (RobotFromFile& loaded : load_files()) {
+    all.files.push_back(std::move(loaded.file));
+    all.environments.push_back(environment_of(loaded.robot));
+    add(loaded.robot);
+  }
+  require_memory_for(requests, use, usable_host_memory());
+  for (const RandomRobots& request : requests) {
+    all.environments.push_back(generator_named(request.kind).environment);
+    for (Robot& robot : random_robots(request)) add(robot);
+  }
+  return all;
 }
 
 RobotSequence RobotOptions::sequence() const {
   require_robots();
   RobotSequence sequence{.random = random()};
-  require_robot_files();
   std::vector<std::shared_ptr<const Robot>> files;
-  sequence.files = robot_files(this->files());
-  for (const auto& file : sequence.files) {
-    Robot robot = load_robot(file);
-    sequence.environments.push_back(environment_of(robot));
-    files.push_back(std::make_shared<const Robot>(std::move(robot)));
+  for (RobotFromFile& loaded : load_files()) {
+    sequence.files.push_back(std::move(loaded.file));
+    sequence.environments.push_back(environment_of(loaded.robot));
+    files.push_back(std::make_shared<const Robot>(std::move(loaded.robot)));
   }
   std::vector<std::size_t> first{files.size()};  // of each request, then the end
   for (const RandomRobots& request : sequence.random) {
@@ -109,9 +117,9 @@ void RobotOptions::require_robot_files() const {
     throw InputError(file->string(), "is a repro; mercury run and mercury view show it, here give robots");
 }
 
-std::vector<Robot> RobotOptions::load_files() const {
+std::vector<RobotFromFile> RobotOptions::load_files() const {
   require_robot_files();
-  return load_robots(files());
+  return files_.load();
 }
 
 std::vector<RandomRobots> RobotOptions::random() const {

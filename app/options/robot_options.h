@@ -6,11 +6,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/options/generator_options.h"
+#include "app/options/robot_inputs.h"
+#include "app/options/robot_memory.h"
 #include "mercury/evaluator.h"
 #include "mercury/robot.h"
 
@@ -26,14 +29,21 @@ struct RobotSequence {
   std::vector<std::string> environments;
 };
 
+// Robots that are there.
+struct LoadedRobots {
+  std::vector<std::shared_ptr<const Robot>> robots;
+  std::vector<std::filesystem::path> files;  // of the first robots, one each
+  std::vector<std::string> environments;     // as in RobotSequence
+};
+
 class RobotOptions {
  public:
   // Adds the options to a command. The object must outlive it.
   void add_to(CLI::App& command);
 
-  // Reads the files and makes the random robots, files first. Throws InputError when there are none, or one cannot be
-  // used.
-  std::vector<Robot> load() const;
+  // Reads the files and makes the random robots, files first. Shows the progress. Throws InputError when there are
+  // none, one cannot be used, or they would not fit into memory with what the command does; Interrupted after Ctrl-C.
+  LoadedRobots load(const MemoryUse& use) const;
   // The robots of load(), in the same order. Those of files are read at once, with the same errors; random robots are
   // made by the source. A random robot that load() leaves out has its place in the sequence.
   RobotSequence sequence() const;
@@ -48,12 +58,16 @@ class RobotOptions {
   // given with it.
   std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
 
-  // The same in parts: the robots of the files, the files' names, and the random robots to make.
-  std::vector<Robot> load_files() const;
-  std::vector<std::filesystem::path> files() const { return {paths_.begin(), paths_.end()}; }
+  // The same in parts: the robots of the files, the files and folders as the user gave them, and the random robots to
+  // make.
+  std::vector<RobotFromFile> load_files() const;
+  std::vector<std::filesystem::path> files() const { return files_.paths(); }
   std::vector<RandomRobots> random() const;
 
-  bool empty() const { return paths_.empty() && random_.empty(); }
+  bool empty() const { return files_.empty() && random_.empty(); }
+
+  // The exit status of a command that ended with `status`: 1 instead of 0 if robots were left out.
+  int status(int status) const { return files_.status(status); }
 
   // The seed of the random robots; none if there are no random robots.
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
@@ -61,9 +75,10 @@ class RobotOptions {
  private:
   void require_robots() const;
   void require_robot_files() const;
+  std::vector<Robot> random_robots(const RandomRobots& request) const;
   RandomRobots random_from(const std::string& request) const;
 
-  std::vector<std::string> paths_;   // files and folders
+  RobotInputs files_;
   std::vector<std::string> random_;  // "voxel:12"
   std::uint64_t seed_ = 1;
   GeneratorOptions generators_;

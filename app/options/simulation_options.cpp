@@ -14,6 +14,7 @@
 #include "app/options/option_values.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "mercury/threads.h"
 
 namespace mercury {
 namespace {
@@ -168,6 +169,7 @@ Configuration SimulationOptions::configuration_in(std::string_view environment) 
   configuration.environment = environment_named(environment);
   set_parameters(configuration.environment);
   validate(configuration);
+  require_possible_threads(configuration.device);
   return configuration;
 }
 
@@ -183,6 +185,7 @@ Configuration SimulationOptions::configuration_over(const Configuration& base) c
     configuration.environment = environment_named(*environment_);
   set_parameters(configuration.environment);
   validate(configuration);
+  require_possible_threads(configuration.device);
   return configuration;
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/base/version.h"
+#include "app/base/work_progress.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
@@ -116,8 +117,11 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   velocities_.resize(frames_per_block_ * offsets_.back());
   guarded([&] {
     write_header(header);
-    for (std::size_t i = 0; i < robots.size(); ++i)
+    const WorkWatch watch = shown_work();
+    for (std::size_t i = 0; i < robots.size(); ++i) {
       write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
+      watch("writing robots", i + 1, robots.size());
+    }
   });
   last_commit_ = last_flush_ = clock_();
 }

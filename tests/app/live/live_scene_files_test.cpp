@@ -62,7 +62,9 @@ class LiveFiles : public test::FolderTest {
     simulation.add_to(app);
     view.add_to(app);
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-    return {robots.load(), simulation.configuration(), view.settings()};
+    std::vector<Robot> copies;
+    for (const auto& robot : robots.load({}).robots) copies.push_back(*robot);
+    return {std::move(copies), simulation.configuration(), view.settings()};
   }
 };
 

@@ -33,13 +33,16 @@ TEST_F(RobotOptionsTest, SequenceMakesTheRobotsThatLoadReturns) {
   save_robot(path("pair.json"), robot);
   const RobotOptions& options =
       parsed({path("pair.json"), "--random", "voxel:3:7:40", "--random", "shell:2", "--seed", "5"});
-  const std::vector<Robot> expected = options.load();
+  const LoadedRobots loaded = options.load({});
+  const auto& expected = loaded.robots;
   ASSERT_EQ(expected.size(), 6u);
   const RobotSequence sequence = options.sequence();
   ASSERT_EQ(sequence.count, expected.size());
-  for (std::size_t i = expected.size(); i-- > 0;) EXPECT_EQ(*sequence.source(i), expected[i]);
+  for (std::size_t i = expected.size(); i-- > 0;) EXPECT_EQ(*sequence.source(i), *expected[i]);
   EXPECT_EQ(sequence.source(6), nullptr);
   EXPECT_EQ(sequence.files, std::vector<std::filesystem::path>{path("pair.json")});
+  EXPECT_EQ(loaded.files, sequence.files);
+  EXPECT_EQ(loaded.environments, sequence.environments);
   EXPECT_EQ(sequence.environments, (std::vector<std::string>{"land", "", "ocean"}));
 }
 

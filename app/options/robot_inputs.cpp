@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/options/robot_inputs.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "app/base/interrupt.h"
+#include "app/base/messages.h"
+#include "app/base/progress.h"
+#include "mercury/error.h"
+#include "mercury/robot_file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Everything up to the end of standard input. Throws Interrupted after Ctrl-C.
+std::string read_standard_input() {
+  constexpr int period = 100;  // between two looks at interrupted() [ms]
+  constexpr std::size_t piece = std::size_t{1} << 18;
+  std::string content;
+  while (true) {
+    throw_if_interrupted();
+    pollfd ready{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (::poll(&ready, 1, period) == 0) continue;
+    const std::size_t size = content.size();
+    content.resize(size + piece);
+    const ssize_t got = ::read(STDIN_FILENO, content.data() + size, piece);
+    content.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return content;
+    if (got < 0 && errno != EINTR && errno != EAGAIN)
+      throw InputError(standard_input, std::string("standard input cannot be read: ") + std::strerror(errno));
+  }
+}
+
+}  // namespace
+
+void RobotInputs::add_to(CLI::App& command, const std::string& description) {
+  command.add_option("ROBOTS", paths_, description + "; - reads robots from standard input")->type_name("PATH");
+  add_options_to(command);
+}
+
+void RobotInputs::add_options_to(CLI::App& command) {
+  command.add_flag("--recursive", recursive_, "Also read the folders inside folders")->group("Robots");
+  command.add_flag("--keep-going", keep_going_, "Report files that cannot be used, and go on (exit status 1)")
+      ->group("Robots");
+}
+
+void RobotInputs::leave_out(const std::string& reason) const {
+  ++left_out_;
+  warn(reason);
+}
+
+void RobotInputs::keep_going_after(const std::string& error) const {
+  if (!keep_going_) throw InputError(error);
+  leave_out("left out: " + error);
+}
+
+std::vector<fs::path> RobotInputs::listed(const std::vector<fs::path>& paths) const {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) try {
+      const std::vector<fs::path> found =
+          path == standard_input ? std::vector{path} : robot_files(std::span(&path, 1), recursive_);
+      files.insert(files.end(), found.begin(), found.end());
+    } catch (const InputError& error) {
+      keep_going_after(error.what());
+    }
+  return files;
+}
+
+void RobotInputs::load_standard_input(std::vector<RobotFromFile>& robots,
+                                      const std::function<void(const Robot&)>& accept) const {
+  const std::string content = read_standard_input();
+  RobotDocuments documents(content);
+  const std::size_t before = robots.size(), left_out = left_out_;
+  for (bool more = true; more;) try {
+      throw_if_interrupted();
+      std::optional<Robot> robot = documents.next();
+      more = robot.has_value();
+      if (!more) break;
+      if (robot->name.empty()) robot->name = fmt::format("robot-{}", robots.size() - before + 1);
+      if (accept) accept(*robot);
+      robots.push_back({standard_input, *std::move(robot)});
+    } catch (const InputError& error) {
+      keep_going_after(std::string("standard input: ") + error.what());
+    }
+  if (robots.size() == before && left_out_ == left_out) throw InputError("standard input", "holds no robot");
+}
+
+std::vector<RobotFromFile> RobotInputs::load(const std::vector<fs::path>& paths,
+                                             const std::function<void(const Robot&)>& accept) const {
+  const std::vector<fs::path> files = listed(paths);
+  std::vector<RobotFromFile> robots;
+  robots.reserve(files.size());
+  Progress progress("reading robots", "files", static_cast<std::int64_t>(files.size()));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    throw_if_interrupted();
+    try {
+      if (files[i] == standard_input) {
+        load_standard_input(robots, accept);
+      } else {
+        Robot robot = load_robot(files[i]);
+        if (accept) accept(robot);
+        robots.push_back({files[i], std::move(robot)});
+      }
+    } catch (const InputError& error) {
+      keep_going_after(error.what());
+    }
+    progress.update(static_cast<std::int64_t>(i + 1));
+  }
+  return robots;
+}
+
+std::vector<RobotFromFile> RobotInputs::load(const std::function<void(const Robot&)>& accept) const {
+  std::vector<RobotFromFile> robots = load(paths(), accept);
+  if (robots.empty() && !empty()) throw InputError("no robot is left: none of the files can be used");
+  return robots;
+}
+
+std::vector<Robot> robots_of(std::vector<RobotFromFile> loaded) {
+  std::vector<Robot> robots;
+  robots.reserve(loaded.size());
+  for (RobotFromFile& one : loaded) robots.push_back(std::move(one.robot));
+  return robots;
+}
+
+}  // namespace mercury

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// How commands read robots: files, folders, standard input, and what they refuse before it costs memory.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Inputs : public FolderTest {
+ protected:
+  Inputs() {
+    for (const char* name : {"r", "r/inner"}) std::filesystem::create_directory(path(name));
+    for (std::uint64_t i = 0; i < 3; ++i)
+      save_robot(path(i < 2 ? "r/" + std::to_string(i) + ".JSON" : "r/inner/2.cbor"), random_voxel_robot({}, 7, i));
+  }
+
+  static std::vector<std::string> names_in(const Outcome& outcome) {
+    std::vector<std::string> names;
+    for (const auto& robot : nlohmann::json::parse(outcome.output)["robots"]) names.push_back(robot["name"]);
+    return names;
+  }
+  static Outcome with_input(const std::vector<std::string>& arguments, const std::string& input) {
+    ChildProcess child(MERCURY_PROGRAM, arguments);
+    child.write(std::span(reinterpret_cast<const std::uint8_t*>(input.data()), input.size()));
+    return outcome_of(child);
+  }
+  // With limited address space [kB].
+  static Outcome limited(long kilobytes, const std::string& arguments) {
+    return run_program("/bin/sh",
+                       {"-c", "ulimit -v " + std::to_string(kilobytes) + " && exec " MERCURY_PROGRAM " " + arguments});
+  }
+  const std::vector<std::string> brief_{"--device", "cpu", "--seconds", "0.01", "--json"};
+  std::vector<std::string> run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), brief_.begin(), brief_.end());
+    return arguments;
+  }
+};
+
+TEST_F(Inputs, FoldersInsideFoldersAreReadWithRecursive) {
+  EXPECT_THAT(names_in(mercury(run({path("r")}))), ElementsAre("voxel-7-0", "voxel-7-1"));
+  EXPECT_THAT(names_in(mercury(run({path("r"), "--recursive"}))), ElementsAre("voxel-7-0", "voxel-7-1", "voxel-7-2"));
+}
+
+TEST_F(Inputs, StandardInputHoldsRobots) {
+  const std::string json = read("r/0.JSON") + read("r/1.JSON"), cbor = read("r/inner/2.cbor");
+  EXPECT_THAT(names_in(with_input(run({"-"}), json)), ElementsAre("voxel-7-0", "voxel-7-1"));
+  EXPECT_THAT(names_in(with_input(run({"-", path("r/0.JSON")}), cbor)), ElementsAre("voxel-7-2", "voxel-7-0"));
+  const Outcome none = with_input(run({"-"}), "\n");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.messages, "mercury: standard input: holds no robot\n");
+  const Outcome bad = with_input(run({"-"}), json + "{}");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.messages, StartsWith("mercury: standard input: document 3: "));
+  EXPECT_EQ(with_input({"grow", "-", "-o", path("grown")}, json).status, 0);
+  EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json", "voxel-7-1.json"));
+}
+
+TEST_F(Inputs, BadFilesAreLeftOutWithKeepGoing) {
+  write("r/1.JSON", "{}");
+  const std::string bad = path("r/1.JSON");
+  for (const std::vector<std::string>& command : {run({path("r")}),
+                                                  {"info", path("r")},
+                                                  {"grow", path("r"), "-o", path("grown")},
+                                                  {"mutate", path("r"), "-o", path("mutants")},
+                                                  {"evolve", path("run"), "--from", path("r"), "--population", "4",
+                                                   "--generations", "1", "--seconds", "0.01", "--device", "cpu"}}) {
+    const Outcome stopped = mercury(command);
+    EXPECT_EQ(stopped.status, 2) << command[0];
+    EXPECT_THAT(stopped.messages, StartsWith("mercury: " + bad + ": ")) << command[0];
+    std::vector<std::string> going = command;
+    going.emplace_back("--keep-going");
+    const Outcome kept = mercury(going);
+    EXPECT_EQ(kept.status, 1) << command[0] << kept.messages;
+    EXPECT_THAT(kept.messages, HasSubstr("mercury: left out: " + bad + ": ")) << command[0];
+  }
+  EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json"));
+  const Outcome none = mercury(run({bad, "--keep-going"}));
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.messages, HasSubstr("mercury: no robot is left"));
+}
+
+TEST_F(Inputs, PipesAreRefusedWithoutWaiting) {
+  for (const char* name : {"p.json", "p.h5", "p.repro"}) {
+    ASSERT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
+    for (const char* command : {"info", "run"}) {
+      const Outcome outcome = mercury({command, path(name)});
+      EXPECT_EQ(outcome.status, 2) << command << name;
+      EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path(name) + ": "));
+    }
+  }
+  const Outcome render = mercury({"render", path("p.h5"), "-o", path("a.png"), "--still", "0"});
+  EXPECT_EQ(render.status, 2);
+  EXPECT_THAT(render.messages, StartsWith("mercury: " + path("p.h5") + ": "));
+  EXPECT_THAT(render.messages, HasSubstr("not a regular file"));
+}
+
+TEST_F(Inputs, NumbersOfThreadsThatMakeNoSenseAreRefused) {
+  for (const char* command : {"run", "bench"})
+    for (const char* threads : {"2147483647", "100000", "-1"}) {
+      std::vector<std::string> arguments{command, "--threads", threads, "--device", "cpu"};
+      if (std::string(command) == "run") arguments.push_back(path("r"));
+      const Outcome outcome = mercury(arguments);
+      EXPECT_EQ(outcome.status, 2) << command;
+      EXPECT_THAT(outcome.messages,
+                  StartsWith("mercury: --threads: " + std::string(threads) + " is not accepted; give 0"));
+    }
+  write("t.toml", "threads = 100000\n");
+  const Outcome file = mercury(run({path("r"), "--config", path("t.toml")}));
+  EXPECT_EQ(file.status, 2);
+  EXPECT_THAT(file.messages, HasSubstr("threads: 100000 is not accepted; give 0"));
+}
+
+#ifndef MERCURY_SANITIZED  // sanitizers map more address space than any limit leaves
+TEST_F(Inputs, RobotsThatDoNotFitIntoMemoryAreRefused) {
+  for (const std::string command : {"run --record r.h5", "render -o a.png --still 0"}) {
+    const Outcome outcome = limited(4'000'000, command + " --device cpu --random voxel:200000");
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_THAT(outcome.messages, testing::MatchesRegex("mercury: --random: about [0-9.]+ GB of memory are needed, "
+                                                        "[0-9.]+ .B can be used; give up to [0-9]+ robots\n"));
+  }
+  EXPECT_EQ(limited(4'000'000, "bench --device cpu --count 100000").status, 2);
+}
+
+TEST_F(Inputs, ASweepStopsBeforeTheMemoryIsFull) {
+  const Outcome outcome =
+      limited(1'000'000, "bench --sweep --device cpu --threads 2 --least-seconds 0.001 --csv " + path("s.csv"));
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("the sweep stops before "));
+  EXPECT_THAT(read("s.csv"), StartsWith("device,"));
+  EXPECT_EQ(outcome.output, read("s.csv"));
+}
+
+// Whatever is short, the program ends with one line and no signal.
+TEST_F(Inputs, NetworksGrowOrNotInLittleMemory) {
+  for (long kilobytes = 150'000; kilobytes <= 600'000; kilobytes += 50'000) {
+    const Outcome outcome = limited(kilobytes, "new nn --points 4096 --force -o " + path("a.json"));
+    EXPECT_THAT(outcome.status, testing::AnyOf(0, 1, 127)) << kilobytes << ": " << outcome.messages;
+  }
+}
+#endif
+
+// Rows are in the file as they are measured; Ctrl-C keeps them.
+TEST_F(Inputs, ASweepThatIsStoppedKeepsItsRows) {
+  ChildProcess child(MERCURY_PROGRAM, {"bench", "--sweep", "--device", "cpu", "--size", "3x3x3", "--least-seconds",
+                                       "0.2", "--csv", path("s.csv")});
+  while (!std::filesystem::exists(path("s.csv")) && child.running()) {
+  }
+  child.signal(SIGINT);
+  const Outcome outcome = outcome_of(child);
+  EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.messages;
+  EXPECT_EQ(outcome.output, read("s.csv"));
+  EXPECT_GE(std::ranges::count(outcome.output, '\n'), 2);
+}
+
+}  // namespace
+}  // namespace mercury::test
