@@ -67,7 +67,9 @@ TEST(HostMemory, TheLimitsOfTheProcessCount) {
     const std::size_t left = left_by_process_limits();
     setrlimit(resource, &before);
     EXPECT_LT(left, huge) << resource;
-    if (resource == RLIMIT_DATA) EXPECT_GT(left, huge - (rlim_t{1} << 45));
+    if (resource == RLIMIT_DATA) {
+      EXPECT_GT(left, huge - (rlim_t{1} << 45));
+    }
     EXPECT_LE(available_host_memory(), left_by_process_limits());
   }
   EXPECT_LE(usable_host_memory(), available_host_memory());

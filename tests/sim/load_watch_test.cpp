@@ -40,7 +40,7 @@ TEST_P(LoadWatch, SeesAllPartsOfLoading) {
   watched.step(50);
   alone.step(50);
   EXPECT_EQ(watched.hashes(), alone.hashes());
-  if (device().kind == DeviceKind::cpu) EXPECT_TRUE(most.contains("grouping robots"));
+  EXPECT_EQ(most.contains("grouping robots"), device().kind == DeviceKind::cpu);
   const auto seen = most;
   watched.add(*robots_[0]);
   watched.step(1);
