@@ -26,7 +26,8 @@ class Inputs : public FolderTest {
 
   static std::vector<std::string> names_in(const Outcome& outcome) {
     std::vector<std::string> names;
-    for (const auto& robot : nlohmann::json::parse(outcome.output)["robots"]) names.push_back(robot["name"]);
+    const auto json = nlohmann::json::parse(outcome.output);
+    for (const auto& robot : json["robots"]) names.push_back(robot["name"]);
     return names;
   }
   static Outcome with_input(const std::vector<std::string>& arguments, const std::string& input) {
