@@ -18,13 +18,8 @@
 namespace mercury {
 namespace {
 
-constexpr double sample_period = 0.05;  // of the telemetry [s]
 constexpr std::chrono::milliseconds watch_period(100);
 constexpr std::size_t most_waiting = 128;  // evaluations
-
-std::int64_t steps_in(double seconds, const Configuration& configuration) {
-  return static_cast<std::int64_t>(std::llround(seconds / configuration.dt));
-}
 
 // The robots of all trials: those of candidate 0, then those of candidate 1, ... Each candidate is grown once.
 class Cast {
@@ -63,11 +58,11 @@ class Cast {
 // Adds the trials of one candidate up.
 class Tally {
  public:
-  Tally(const Configuration& configuration, const TrialSettings& settings, std::span<const Objective> objectives)
-      : configuration_(configuration), settings_(settings), objectives_(objectives) {}
+  Tally(const EvaluationRequest& request, const TrialSettings& settings, std::span<const Objective> objectives)
+      : request_(request), settings_(settings), objectives_(objectives) {}
 
   void add(const Evaluation& evaluation) {
-    assessment_.fate = worse(assessment_.fate, fate_of(evaluation));
+    assessment_.fate = worse(assessment_.fate, fate_of(evaluation, request_, settings_.strain_limit));
     ++trials_;
     if (!evaluation.failure.empty()) {
       if (assessment_.problem.empty()) assessment_.problem = evaluation.failure;
@@ -75,7 +70,7 @@ class Tally {
     }
     add_hash(evaluation.hash);
     const std::vector<double> values =
-        quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = configuration_});
+        quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request_.configuration});
     values_.resize(values.size());
     for (std::size_t q = 0; q < values.size(); ++q) values_[q] += values[q];
     scores_.resize(objectives_.size());
@@ -98,13 +93,6 @@ class Tally {
   }
 
  private:
-  Fate fate_of(const Evaluation& evaluation) const {
-    if (!evaluation.failure.empty()) return Fate::failed;
-    if (evaluation.end.exploded) return Fate::exploded;
-    if (!(evaluation.largest_strain <= settings_.strain_limit)) return Fate::overstretched;
-    const std::int64_t steps = steps_in(settings_.seconds, configuration_) - steps_in(settings_.settle, configuration_);
-    return evaluation.steps < steps ? Fate::stopped : Fate::sound;
-  }
   static Fate worse(Fate a, Fate b) { return std::max(a, b); }
 
   void add_hash(std::uint64_t hash) {
@@ -113,7 +101,7 @@ class Tally {
       assessment_.hash = (assessment_.hash ^ (hash >> (8 * byte) & 0xff)) * 0x100000001b3u;
   }
 
-  const Configuration& configuration_;
+  const EvaluationRequest& request_;
   const TrialSettings& settings_;
   const std::span<const Objective> objectives_;
   Assessment assessment_{.fate = Fate::sound, .hash = 0xcbf29ce484222325u};
@@ -132,12 +120,7 @@ class LocalAssessor : public Assessor {
     const auto trials = static_cast<std::size_t>(settings_.trials);
     const std::size_t all = candidates.size() * trials;
     Cast cast(candidates, settings_, seed_);
-    EvaluationRequest request{
-        .configuration = configuration_,
-        .settling = steps_in(settings_.settle, configuration_),
-        .steps = steps_in(settings_.seconds, configuration_) - steps_in(settings_.settle, configuration_),
-        .sample_every = std::max<std::int64_t>(1, steps_in(sample_period, configuration_)),
-        .hashes = true};
+    EvaluationRequest request = trial_request(settings_, configuration_);
     std::vector<std::vector<double>> interim_scores(candidates.size());
     if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
       for (std::size_t check = 1; check <= racing_checks; ++check)
@@ -157,7 +140,7 @@ class LocalAssessor : public Assessor {
     std::size_t assessed = 0;
     const auto assess_waiting = [&] {
       oneapi::tbb::parallel_for(std::size_t{0}, waiting.size() / trials, [&](std::size_t k) {
-        Tally tally(configuration_, settings_, objectives_);
+        Tally tally(request, settings_, objectives_);
         for (std::size_t t = 0; t < trials; ++t) tally.add(waiting[k * trials + t]);
         assessments[assessed + k] = tally.result(std::move(interim_scores[assessed + k]));
       });
@@ -191,6 +174,23 @@ class LocalAssessor : public Assessor {
 };
 
 }  // namespace
+
+EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration) {
+  const auto steps_in = [&](double seconds) { return std::int64_t{std::llround(seconds / configuration.dt)}; };
+  const std::int64_t settling = steps_in(settings.settle);
+  return {.configuration = configuration,
+          .settling = settling,
+          .steps = steps_in(settings.seconds) - settling,
+          .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
+          .hashes = true};
+}
+
+Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, double strain_limit) {
+  if (!evaluation.failure.empty()) return Fate::failed;
+  if (evaluation.end.exploded) return Fate::exploded;
+  if (!(evaluation.largest_strain <= strain_limit)) return Fate::overstretched;
+  return evaluation.steps < request.steps ? Fate::stopped : Fate::sound;
+}
 
 std::unique_ptr<Assessor> make_local_assessor(const Configuration& configuration, const TrialSettings& trials,
                                               std::vector<Objective> objectives, std::uint64_t seed) {

@@ -10,8 +10,8 @@
 
 #include "mercury/evaluator.h"
 #include "mercury/simulation.h"
+#include "mercury/trial_measures.h"
 #include "sim/evaluator_clock.h"
-#include "sim/evaluator_measures.h"
 #include "sim/evaluator_portion.h"
 
 namespace mercury {

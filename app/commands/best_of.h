@@ -4,31 +4,43 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "app/commands/robot_results.h"
 #include "app/options/robot_output.h"
+#include "mercury/assessor.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
 
 namespace mercury {
 
 struct Contest {
-  std::uint64_t candidates = 0;  // number of robots to try
-  Configuration configuration;   // of the trial
-  std::int64_t steps = 0;        // length of the trial
-  std::int64_t settling = 0;     // of these, at the start; they do not count for the distance
+  std::string kind;              // of the robots' generator
+  std::uint64_t seed = 1;        // of the robots
+  std::uint64_t candidates = 0;  // number of robots to try, from index 0 on
+  Configuration configuration;   // of the trials
+  TrialSettings trials;          // what counts
+  // Receives the result of each candidate, by index. Optional.
+  std::function<void(const RobotResult&)> watch;
 };
 
 struct Winner {
   std::shared_ptr<const Robot> robot;
-  double distance;  // of the centre of mass from where it was after settling; on land along the ground [m]
+  RobotResult result;
 };
 
-// Returns the `count` robots of a seed that move farthest, the best first; equal ones are ordered by index. Robots that
-// cannot be made or that explode are left out. Returns fewer robots if too few are left or the user interrupts. The
-// result does not depend on how many robots are simulated at once.
-std::vector<Winner> best_of(const Contest& contest, const MakeRobot& make, std::uint64_t seed, std::uint64_t count);
+struct ContestResult {
+  std::vector<Winner> winners;          // the best first; equal ones are ordered by index
+  std::map<Fate, std::uint64_t> fates;  // how many candidates ended how
+  bool interrupted = false;             // by the user: candidates are missing, or were stopped
+  std::uint64_t tried() const;          // candidates whose trial is complete
+};
+
+// Keeps the `count` robots that move farthest. Only sound ones count, so none that cannot be made, explodes or is
+// strained beyond the limit. If the user interrupts, these are the best of those that were tried. The result does not
+// depend on how many robots are simulated at once.
+ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count);
 
 }  // namespace mercury

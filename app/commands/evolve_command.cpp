@@ -95,6 +95,11 @@ void report(const EvolveOptions& options, const RunFolder& run, const Evolution&
   const std::vector<std::string>& objectives = evolution.settings().objectives;
   fmt::print("{}: generation {}, {} robots\n", options.folder, evolution.next_generation() - 1,
              run.history().individuals().size());
+  const Fate fate = best.assessment.fate;
+  if (fate != Fate::sound && fate != Fate::stopped) {
+    fmt::print("no robot is sound; the first one is {}\n", name_of(fate));
+    return;
+  }
   for (std::size_t i = 0; i < objectives.size(); ++i)
     fmt::print("best: {} = {:.6g}\n", objectives[i], best.assessment.scores.at(i));
   fmt::print("born in generation {} as number {}; see {}\n", best.generation, best.id,

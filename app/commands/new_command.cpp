@@ -2,18 +2,21 @@
 // mercury new: robot files.
 #include <fmt/format.h>
 
-#include <cmath>
+#include <exception>
 #include <memory>
+#include <string>
+#include <utility>
 
-#include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/commands/best_of.h"
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
+#include "app/commands/results_file.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
+#include "app/options/trial_options.h"
 
 namespace mercury {
 namespace {
@@ -22,14 +25,15 @@ namespace {
 struct NewOptions {
   RobotOutput output;
   std::uint64_t best_of = 0;  // 0 = no search
-  double settle = 0;          // [s]
+  std::string csv;            // of the candidates; empty = none
+  TrialSettings trials;
   SimulationOptions simulation;
 
   void add_to(CLI::App& command) {
     output.add_to(command);
     add_number(command, "--best-of", best_of, "Simulate N robots and keep the --count that get farthest", "N");
-    add_number(command, "--settle", settle,
-               "With --best-of: count distances from this time on, after robots have fallen (default 0)", "S");
+    add_text(command, "--csv", csv, "With --best-of: write a line per candidate to this file, in their order", "FILE");
+    add_trial_options(command, trials);
     simulation.add_to(command);
   }
 };
@@ -48,35 +52,87 @@ int describe_work(const NewOptions& options, const std::string& kind) {
        {"simulate", search ? time_text(options.simulation.configuration(), options.simulation.steps()) : ""},
        {"on", search ? device_text(options.simulation.configuration().device) : ""},
        {"keep", search ? fmt::format("the {} that get farthest", output.count()) : ""},
-       {"write", output.description()}});
+       {"write", output.description()},
+       {"results", options.csv}});
+}
+
+// Throws InputError for options that do not go together.
+TrialSettings trials_of(const NewOptions& options) {
+  if (options.best_of < options.output.count())
+    throw InputError("--best-of", fmt::format("{} is not accepted; give at least --count, {}", options.best_of,
+                                              options.output.count()));
+  TrialSettings trials = options.trials;
+  trials.seconds = options.simulation.seconds();
+  validate(trials);
+  return trials;
+}
+
+void require_no_search_options(const NewOptions& options) {
+  const TrialSettings usual;
+  for (const auto& [option, is_given] : {std::pair{"--csv", !options.csv.empty()},
+                                         {"--settle", options.trials.settle != usual.settle},
+                                         {"--strain-limit", options.trials.strain_limit != usual.strain_limit}})
+    if (is_given) throw InputError(option, "goes with --best-of N");
+}
+
+// "312 exploded, 4 overstretched"
+std::string fates_text(const ContestResult& found) {
+  std::string text;
+  for (const auto& [fate, number] : found.fates)
+    if (fate != Fate::sound) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", number, name_of(fate));
+  return text;
+}
+
+void report(const ContestResult& found, const NewOptions& options) {
+  for (const Winner& winner : found.winners)
+    say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.result.distance));
+  if (found.interrupted)
+    warn(fmt::format("stopped after {} of {} candidates; {}", found.tried(), options.best_of,
+                     found.winners.empty() ? "nothing was written" : "the best of these are written"));
+  else if (found.winners.size() < options.output.count())
+    warn(fmt::format("only {} of {} candidates are sound: {}", found.winners.size(), options.best_of,
+                     fates_text(found)));
+}
+
+// A search may take hours. So everything is attempted that can save a part of its result: first what is printed, then
+// each file, even if the one before could not be written.
+void publish(const ContestResult& found, const NewOptions& options, RobotFiles files, const std::string& csv) {
+  std::exception_ptr problem;
+  const auto attempt = [&](const auto& write) {
+    try {
+      write();
+    } catch (...) {
+      if (!problem) problem = std::current_exception();
+    }
+  };
+  report(found, options);
+  if (!options.csv.empty()) attempt([&] { write_results(options.csv, csv); });
+  for (const Winner& winner : found.winners) attempt([&] { files.write(*winner.robot); });
+  if (problem) std::rethrow_exception(problem);
 }
 
 int keep_best(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
+  std::string csv = csv_heading();
+  Contest contest{.kind = kind,
+                  .seed = options.output.seed(),
+                  .candidates = options.best_of,
+                  .configuration = options.simulation.configuration(),
+                  .trials = trials_of(options)};
+  if (!options.csv.empty()) {
+    if (is_standard_output(options.csv))
+      throw InputError("--csv", "the names of the robots' files go to standard output; give a file");
+    OutputFiles outputs = options.output.other_outputs();
+    outputs.add_stream("--csv", options.csv);
+    outputs.check();
+    if (!options.output.dry_run()) outputs.make_folders();
+    contest.watch = [&csv](const RobotResult& robot) { csv += csv_line(robot); };
+  }
   const RobotOutput& output = options.output;
-  if (options.best_of < output.count())
-    throw InputError("--best-of",
-                     fmt::format("{} is not accepted; give at least --count, {}", options.best_of, output.count()));
-  if (!(options.settle >= 0 && options.settle <= options.simulation.seconds()))
-    throw InputError("--settle", fmt::format("{} is not accepted; give 0 to --seconds, {} s", options.settle,
-                                             options.simulation.seconds()));
-  const Contest contest{.candidates = options.best_of,
-                        .configuration = options.simulation.configuration(),
-                        .steps = options.simulation.steps(),
-                        .settling = std::llround(options.settle / options.simulation.configuration().dt)};
   RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), options.best_of));
   if (output.dry_run()) return describe_work(options, kind);
-  const std::vector<Winner> winners = best_of(contest, make, output.seed(), output.count());
-  if (interrupted()) {
-    say("stopped; nothing was written");
-    return 1;
-  }
-  for (const Winner& winner : winners) {
-    files.write(*winner.robot);
-    say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.distance));
-  }
-  if (winners.size() < output.count())
-    warn(fmt::format("only {} robots could be made and did not explode", winners.size()));
-  return winners.size() < output.count() ? 1 : 0;
+  const ContestResult found = best_of(contest, make, options.output.count());
+  publish(found, options, std::move(files), csv);
+  return found.interrupted || found.winners.size() < options.output.count() ? 1 : 0;
 }
 
 // The environment that the robots are made for or tried in; their origin names it. Empty if the user named none.
@@ -87,6 +143,7 @@ std::string environment_for(const NewOptions& options) {
 
 int make_files(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
   if (options.best_of > 0) return keep_best(options, kind, make);
+  require_no_search_options(options);
   const RobotOutput& output = options.output;
   RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), output.count()));
   return output.dry_run() ? describe_work(options, kind) : write_robots(output, std::move(files), make);

@@ -2,98 +2,200 @@
 #include "app/commands/run_evaluation.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/base/stepping.h"
 #include "app/commands/evaluation_results.h"
 #include "mercury/clock.h"
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
+#include "mercury/trial_measures.h"
 
 namespace mercury {
 namespace {
 
-RobotResult result_of(const Evaluation& robot, double seconds) {
-  return {.name = robot.robot->name,
-          .masses = robot.robot->masses.size(),
-          .springs = robot.robot->springs.size(),
-          .displacement = length(robot.end.center_of_mass - robot.start.center_of_mass),
-          .mean_speed = seconds > 0 ? robot.path / seconds : 0,
-          .largest_strain = robot.largest_strain,
-          .strained_share = robot.strained_share,
-          .exploded = robot.end.exploded,
-          .exploded_at = robot.end.exploded_at,
-          .culprit_spring = robot.end.culprit_spring,
-          .hash = robot.hash};
-}
-
-// Robots that could not be made, request by request.
-class Failures {
+// Steps a simulation to a step, with those who take part. Returns false once the user interrupts.
+class Advance {
  public:
-  explicit Failures(const RobotSequence& robots) : robots_(robots), failed_(robots.random.size()) {}
+  Advance(Simulation& simulation, const StepObservers& observers, std::int64_t end)
+      : simulation_(simulation), observers_(observers), stepper_(simulation), first_(simulation.steps()),
+        progress_("simulating", "steps", end - first_) {}
 
-  void add(const Evaluation& robot) {
-    std::size_t first = robots_.count;
-    for (std::size_t i = robots_.random.size(); i-- > 0;) {
-      first -= robots_.random[i].count;
-      if (robot.index < first) continue;
-      failed_[i].push_back({robots_.random[i].first + (robot.index - first), robot.failure});
-      return;
+  bool to(std::int64_t target) {
+    const auto& [recorder, changes] = observers_;
+    while (simulation_.steps() < target) {
+      if (changes) changes->apply(simulation_);
+      std::int64_t stop = changes ? std::min(target, changes->next_step()) : target;
+      if (recorder) stop = std::min(stop, recorder->next_step());
+      if (!stepper_.advance_to(stop)) return false;
+      if (recorder) recorder->observe();
+      progress_.update(simulation_.steps() - first_);
     }
-    throw InputError(robot.robot ? robot.robot->name : "robot " + std::to_string(robot.index), robot.failure);
+    return true;
   }
 
-  void report() const {
-    for (std::size_t i = 0; i < failed_.size(); ++i) {
-      const RandomRobots& request = robots_.random[i];
-      if (failed_[i].size() == request.count)
-        throw InputError("--random", "none could be grown: " + failed_[i].front().reason);
-      for (const FailedRobot& robot : failed_[i])
-        warn(fmt::format("{}-{}-{} was left out: {}", request.kind, request.seed, robot.index, robot.reason));
-    }
-  }
+  double wall_seconds() const { return stepper_.wall_seconds(); }
 
  private:
-  const RobotSequence& robots_;
-  std::vector<std::vector<FailedRobot>> failed_;  // per request
+  Simulation& simulation_;
+  const StepObservers observers_;
+  Stepper stepper_;
+  const std::int64_t first_;
+  Progress progress_;
 };
+
+// What an Evaluator would yield for each robot of a simulation after these steps of the trial.
+std::vector<Evaluation> evaluations_of(const Simulation& simulation, std::span<const TrialMeasures> measures,
+                                       std::int64_t steps) {
+  const std::vector<std::uint64_t> hashes = simulation.hashes();
+  std::vector<Evaluation> evaluations(measures.size());
+  for (std::size_t i = 0; i < evaluations.size(); ++i) {
+    Evaluation& evaluation = evaluations[i];
+    evaluation.index = i;
+    evaluation.robot = {std::shared_ptr<const Robot>(), &simulation.robot(i)};  // the simulation owns it
+    evaluation.steps = steps;
+    evaluation.hash = hashes[i];
+    measures[i].write(evaluation);
+  }
+  return evaluations;
+}
+
+void report_failure(const RobotResult& robot) {
+  const auto& [index, name, file, random] = robot.identity;
+  warn(fmt::format("{} was left out: {}", file.empty() ? name : file, robot.failure));
+}
+
+// Names robots that could not be made. Throws InputError if they are all robots of a request.
+void report_failures(const RobotSequence& robots, std::span<const RobotResult> results) {
+  std::vector<const RobotResult*> failed;
+  for (const RobotResult& robot : results)
+    if (!robot.was_stepped()) failed.push_back(&robot);
+  std::size_t first = robots.count;
+  for (std::size_t i = robots.random.size(); i-- > 0;) {
+    const std::size_t end = std::exchange(first, first - robots.random[i].count);
+    const auto is_of_request = [&](const RobotResult* robot) {
+      return robot->identity.index >= first && robot->identity.index < end;
+    };
+    if (static_cast<std::size_t>(std::ranges::count_if(failed, is_of_request)) == end - first)
+      throw InputError("--random", "none could be grown: " + (*std::ranges::find_if(failed, is_of_request))->failure);
+  }
+  for (const RobotResult* robot : failed) report_failure(*robot);
+}
 
 }  // namespace
 
-RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, std::int64_t steps) {
-  const std::int64_t period = std::max<std::int64_t>(1, std::llround(sample_period / configuration.dt));
-  Evaluator evaluator({.configuration = configuration, .steps = steps, .sample_every = period, .hashes = true},
-                      robots.source, robots.count);
-  RunReport report{.configuration = configuration, .device = {}, .steps = steps};
-  Failures failures(robots);
-  std::size_t failed = 0;
+RobotIdentity identity_of(const RobotSequence& robots, std::size_t index) {
+  if (index < robots.files.size()) return {.index = index, .name = "", .file = robots.files[index].string()};
+  std::size_t first = robots.files.size();
+  for (const RandomRobots& request : robots.random) {
+    if (index < first + request.count) return identity_of(request, request.first + (index - first), index);
+    first += request.count;
+  }
+  return {.index = index};
+}
+
+RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials) {
+  const EvaluationRequest request = trial_request(trials, configuration);
+  Evaluator evaluator(request, robots.source, robots.count);
+  RunReport report{.configuration = configuration, .settle = trials.settle};
+  std::optional<std::int64_t> reached;  // steps of the trial
+  const auto take = [&](const Evaluation& robot) {
+    if (robot.failure.empty()) {
+      const bool has_settled = robot.steps > 0 || request.settling == 0 || request.steps == 0;
+      if (!has_settled || (reached && robot.steps != *reached)) return;
+      reached = robot.steps;
+    }
+    report.robots.push_back(result_of(identity_of(robots, robot.index), robot, request, trials.strain_limit));
+  };
   bool stopped = false;
   {
     Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count));
-    stopped = !take_results(evaluator, progress, steps, [&](const Evaluation& robot) {
-      if (!robot.failure.empty()) {
-        ++failed;
-        return failures.add(robot);
-      }
-      if (report.robots.empty()) report.steps = robot.steps;
-      if (robot.steps == report.steps)
-        report.robots.push_back(result_of(robot, time_of({.dt = configuration.dt, .step = robot.steps})));
-    });
+    stopped = !take_results(evaluator, progress, request.settling + request.steps, take);
   }
-  report.missing = robots.count - failed - report.robots.size();
-  if (stopped && report.robots.empty()) report.steps = 0;
-  report.interrupted = stopped && (report.missing > 0 || report.steps < steps);
-  if (!report.interrupted) failures.report();
+  report.missing = robots.count - report.robots.size();
+  report.interrupted = stopped && (report.missing > 0 || reached.value_or(0) < request.steps);
+  if (!report.interrupted) report_failures(robots, report.robots);
+  report.steps = reached ? request.settling + *reached : 0;
   report.seconds = time_of({.dt = configuration.dt, .step = report.steps});
   report.device = evaluator.device_name();
   report.notes = evaluator.notes();
   report.wall_seconds = evaluator.progress().stepping;
   return report;
+}
+
+RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
+                   const StepObservers& observers) {
+  const EvaluationRequest request = trial_request(trials, simulation.configuration());
+  const std::int64_t start = simulation.steps() + request.settling, end = start + request.steps;
+  Advance advance(simulation, observers, end);
+  RunReport report{.settle = trials.settle, .interrupted = !advance.to(start)};
+  if (!report.interrupted) {
+    std::vector<TrialMeasures> measures;
+    for (const Telemetry& telemetry : simulation.telemetry()) measures.emplace_back(telemetry);
+    for (std::int64_t sampled = start; !report.interrupted && sampled < end; sampled = simulation.steps()) {
+      report.interrupted = !advance.to(std::min(end, sampled + request.sample_every));
+      const double seconds = simulation.configuration().dt * static_cast<double>(simulation.steps() - sampled);
+      const std::vector<Telemetry> now = simulation.telemetry();
+      if (seconds > 0)
+        for (std::size_t i = 0; i < now.size(); ++i) measures[i].add(now[i], seconds);
+    }
+    for (const Evaluation& robot : evaluations_of(simulation, measures, simulation.steps() - start))
+      report.robots.push_back(result_of(std::move(identities[robot.index]), robot, request, trials.strain_limit));
+  }
+  report.missing = simulation.size() - report.robots.size();
+  report.configuration = simulation.configuration();
+  report.device = simulation.device_name();
+  report.steps = simulation.steps();
+  report.seconds = simulation.time();
+  report.wall_seconds = advance.wall_seconds();
+  report.notes = simulation.notes();
+  return report;
+}
+
+GatheredRobots gather(const RobotSequence& robots) {
+  require_memory_for(robots.random, recorded_memory, usable_host_memory());
+  constexpr std::size_t portion = 512;
+  std::vector<std::shared_ptr<const Robot>> made(robots.count);
+  std::vector<std::string> failures(robots.count);
+  {
+    Progress progress("making", "robots", static_cast<std::int64_t>(robots.count));
+    for (std::size_t first = 0; first < robots.count; first += portion) {
+      throw_if_interrupted();
+      progress.update(static_cast<std::int64_t>(first));
+      oneapi::tbb::parallel_for(first, std::min(first + portion, robots.count), [&](std::size_t i) {
+        try {
+          made[i] = robots.source(i);
+        } catch (const InputError& error) {
+          failures[i] = error.what();
+        }
+      });
+    }
+  }
+  GatheredRobots gathered;
+  for (std::size_t i = 0; i < robots.count; ++i) {
+    if (made[i]) {
+      gathered.robots.push_back(std::move(made[i]));
+      gathered.identities.push_back(identity_of(robots, i));
+    } else {
+      gathered.failed.push_back({.identity = identity_of(robots, i), .failure = failures[i]});
+    }
+  }
+  report_failures(robots, gathered.failed);
+  return gathered;
+}
+
+void add_failed(RunReport& report, std::vector<RobotResult> failed) {
+  std::ranges::move(failed, std::back_inserter(report.robots));
+  std::ranges::sort(report.robots, {}, [](const RobotResult& robot) { return robot.identity.index; });
 }
 
 }  // namespace mercury

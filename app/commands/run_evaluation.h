@@ -1,20 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-// mercury run by an evaluator: any number of robots in bounded memory.
+// mercury run, in two ways with the same results: by an evaluator, which takes any number of robots in bounded memory,
+// and in one simulation, which a recording and a repro need.
 #pragma once
 
-#include <cstdint>
+#include <memory>
+#include <vector>
 
+#include "app/commands/run_report.h"
 #include "app/options/robot_options.h"
-#include "app/recording/report.h"
+#include "app/recording/recorder.h"
+#include "app/recording/repro.h"
+#include "mercury/assessor.h"
 #include "mercury/configuration.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 
-inline constexpr double sample_period = 0.1;  // time between two samples of the telemetry [s]
+// Who the robot of a sequence is. Until the robot is there, its name is that of a random robot, or empty.
+RobotIdentity identity_of(const RobotSequence& robots, std::size_t index);
 
 // Simulates the robots, with a progress bar. If the user interrupts, the report holds those robots that
-// have made all steps; if there is none yet, those that have come as far as the first. Robots that could not be made
-// are reported on standard error and left out. Throws InputError if none of a request could be made.
-RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, std::int64_t steps);
+// have made all steps; if there is none yet, those that have come as far as the first. Robots that cannot be made are
+// in the report, too. Throws InputError if all robots of a request cannot be made.
+RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials);
+
+// All robots of a sequence at once.
+struct GatheredRobots {
+  std::vector<std::shared_ptr<const Robot>> robots;
+  std::vector<RobotIdentity> identities;  // of these
+  std::vector<RobotResult> failed;        // those that cannot be made
+};
+
+// Makes the random robots on all cores. Reports as evaluate(). Throws InputError if they would not fit into memory with
+// a recording, and Interrupted.
+GatheredRobots gather(const RobotSequence& robots);
+
+// Who takes part in the steps of a simulation.
+struct StepObservers {
+  Recorder* recorder = nullptr;
+  ReproChanges* changes = nullptr;
+};
+
+// Simulates the robots of a simulation, `identities`, from where it stands, as one trial. If the user interrupts while
+// they settle, the report holds no robot.
+RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
+                   const StepObservers& observers);
+
+// Puts robots that could not be made in their places.
+void add_failed(RunReport& report, std::vector<RobotResult> failed);
 
 }  // namespace mercury

@@ -116,6 +116,7 @@ void print_quantities(const Individual& individual) {
   const std::span<const double> values = individual.assessment.values;
   for (std::size_t q = 0; q < std::min(values.size(), quantities().size()); ++q) {
     const Quantity& quantity = quantities()[q];
+    if (!counts(quantity, individual.assessment.fate)) continue;
     const std::string item = fmt::format("{} {}{}{}", quantity.name, number_text(values[q]),
                                          quantity.unit.empty() ? "" : " ", quantity.unit);
     if (!text.empty() && text.size() + item.size() + 2 > width) {

@@ -7,8 +7,8 @@
 #include <exception>
 #include <map>
 
+#include "app/base/csv.h"
 #include "app/live/live_scene_parts.h"
-#include "app/recording/report.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -17,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
-
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 }  // namespace
 
@@ -89,7 +87,7 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
   std::vector<std::string> lines;
   for (auto& [time, row] : rows) {
     row = lines.size();
-    lines.push_back(number(time));
+    lines.push_back(csv_number(time));
   }
   for (const Series& series : all) {
     std::vector<bool> filled(lines.size());
@@ -112,13 +110,16 @@ std::string LiveScene::ranking_csv() const {
       "name,distance [m],mean speed [m/s],speed [m/s],kinetic energy [J],elastic energy [J],largest strain,exploded at "
       "[s]\n";
   std::vector<RankingRow> rows = ranking();
-  std::ranges::stable_sort(rows, std::greater<>(), &RankingRow::distance);
+  std::ranges::stable_sort(rows,
+                           [](const auto& a, const auto& b) { return ranks_before(a, b, a.distance, b.distance); });
   for (const RankingRow& row : rows) {
     const DocumentRobot* robot = parts_->document.find(row.robot);
     if (!robot) continue;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(robot->body.name), row.distance, row.mean_speed,
-                        row.speed, row.kinetic_energy, row.elastic_energy, row.largest_strain,
-                        row.exploded ? number(row.exploded_at) : "");
+    text += csv_field(robot->body.name);
+    for (const double figure :
+         {row.distance, row.mean_speed, row.speed, row.kinetic_energy, row.elastic_energy, row.largest_strain})
+      text.append(1, ',').append(row.counts() ? csv_number(figure) : "");
+    text.append(1, ',').append(row.exploded ? csv_number(row.exploded_at) : "").append(1, '\n');
   }
   return text;
 }

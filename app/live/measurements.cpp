@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "mercury/distance.h"
+
 namespace mercury {
 namespace {
 
@@ -37,6 +39,11 @@ void keep_every_second(std::vector<T>& values, std::size_t first) {
 
 std::span<const MeasureName> measures() { return names; }
 
+bool ranks_before(const RankingRow& a, const RankingRow& b, double figure_a, double figure_b, bool ascending) {
+  if (a.counts() != b.counts()) return a.counts();
+  return a.counts() && (ascending ? figure_a < figure_b : figure_b < figure_a);
+}
+
 float Sample::of(Measure measure) const {
   switch (measure) {
     case Measure::speed:
@@ -55,13 +62,14 @@ float Sample::of(Measure measure) const {
 
 Measurements::Measurements(std::size_t capacity) : capacity_(std::max<std::size_t>(4, capacity + capacity % 2)) {}
 
-void Measurements::restart(const LiveRobots& robots, double time, std::int64_t step, double dt,
+void Measurements::restart(const LiveRobots& robots, double time, std::int64_t step, const Configuration& configuration,
                            std::span<const Telemetry> telemetry) {
   const std::lock_guard lock(mutex_);
+  environment_ = configuration.environment;
   order_.clear();
   tracks_.clear();
   times_.clear();
-  interval_ = std::max<std::int64_t>(1, std::llround(sample_period / dt));
+  interval_ = std::max<std::int64_t>(1, std::llround(sample_period / configuration.dt));
   first_interval_ = interval_;
   next_ = step;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -73,8 +81,10 @@ void Measurements::restart(const LiveRobots& robots, double time, std::int64_t s
   }
 }
 
-void Measurements::set_robots(const LiveRobots& robots, double time, std::span<const Telemetry> telemetry) {
+void Measurements::set_robots(const LiveRobots& robots, double time, const Environment& environment,
+                              std::span<const Telemetry> telemetry) {
   const std::lock_guard lock(mutex_);
+  environment_ = environment;
   order_.clear();
   std::map<RobotId, Track> tracks;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -105,7 +115,7 @@ void Measurements::note(Track& track, const Telemetry& telemetry, double time) c
   row.largest_strain = track.largest_strain;
   row.exploded = telemetry.exploded;
   row.exploded_at = telemetry.exploded_at;
-  row.distance = finite(length(telemetry.center_of_mass - track.start));
+  row.distance = finite(distance_between(track.start, telemetry.center_of_mass, environment_));
   row.mean_speed = time > track.start_time ? row.distance / (time - track.start_time) : 0;
   row.speed = telemetry.exploded ? 0 : finite(length(telemetry.velocity));
   row.kinetic_energy = telemetry.exploded ? 0 : finite(telemetry.kinetic_energy);

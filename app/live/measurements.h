@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/live/snapshot.h"
+#include "mercury/configuration.h"
 
 namespace mercury {
 
@@ -41,14 +42,21 @@ struct Series {
 // One robot in the ranking.
 struct RankingRow {
   RobotId robot = 0;
-  double distance = 0;                            // of the centre of mass from its start [m]
+  double distance = 0;                            // of the centre of mass from its start, distance_between() [m]
   double mean_speed = 0;                          // distance divided by the time since the start [m/s]
   double speed = 0;                               // now [m/s]
   double kinetic_energy = 0, elastic_energy = 0;  // now [J]
   double largest_strain = 0;                      // so far [1]
   bool exploded = false;
   double exploded_at = 0;  // [s]
+
+  // Whether the figures mean anything: those of an exploded robot do not.
+  bool counts() const { return !exploded; }
 };
+
+// Robots whose figures count come first, then those with more of a figure. `ascending`: with less of it; exploded
+// robots stay last.
+bool ranks_before(const RankingRow& a, const RankingRow& b, double figure_a, double figure_b, bool ascending = false);
 
 // Takes a sample of all robots at a fixed interval of steps. When the buffers are full, drops every second sample and
 // doubles the interval:
@@ -63,11 +71,12 @@ class Measurements {
   // `capacity`: samples per robot, at least 4.
   explicit Measurements(std::size_t capacity = 1024);
 
-  // Forgets everything: time starts again, at `time` and `step`. dt [s] is the time step; one telemetry per robot.
-  void restart(const LiveRobots& robots, double time, std::int64_t step, double dt,
+  // Forgets everything: time starts again, at `time` and `step`. One telemetry per robot.
+  void restart(const LiveRobots& robots, double time, std::int64_t step, const Configuration& configuration,
                std::span<const Telemetry> telemetry);
   // Call it after robots were added or removed. The series of the others continue.
-  void set_robots(const LiveRobots& robots, double time, std::span<const Telemetry> telemetry);
+  void set_robots(const LiveRobots& robots, double time, const Environment& environment,
+                  std::span<const Telemetry> telemetry);
   // The step at which the next sample is due.
   std::int64_t next_step() const;
   // Takes a sample if one is due at this step, and updates the ranking.
@@ -78,7 +87,8 @@ class Measurements {
 
   // The series of one robot; empty if it is unknown.
   Series series(RobotId robot) const;
-  // One row per robot, in the order of the robots, from the last observe().
+  // One row per robot, in the order of the robots, from the last observe(). Distances are those of the environment of
+  // the last restart() or set_robots().
   std::vector<RankingRow> ranking() const;
 
  private:
@@ -94,6 +104,7 @@ class Measurements {
   void thin();
 
   mutable std::mutex mutex_;
+  Environment environment_;
   const std::size_t capacity_;  // even, so that the remaining samples are evenly spaced
   std::vector<RobotId> order_;
   std::map<RobotId, Track> tracks_;

@@ -93,7 +93,7 @@ void Physics::Parts::restart() {
   if (replayed_repro) begin_replay();
   telemetry = simulation.telemetry();
   const double time = simulation.time();
-  measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration().dt, telemetry);
+  measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration(), telemetry);
   measurements.observe(time, simulation.steps(), telemetry);
 }
 
@@ -115,9 +115,9 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   }
   telemetry = simulation.telemetry();
   if (first || (dt_changed && simulation.steps() == 0))
-    measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration.dt, telemetry);
+    measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration, telemetry);
   else
-    measurements.set_robots(*population.robots(), simulation.time(), telemetry);
+    measurements.set_robots(*population.robots(), simulation.time(), configuration.environment, telemetry);
   if (first) measurements.observe(simulation.time(), simulation.steps(), telemetry);
   if (!changed) return moved;
   std::erase_if(exploded, [&](RobotId id) { return !population.robots()->index_of(id); });
@@ -138,7 +138,7 @@ void Physics::Parts::start_over() {
   replay_log.restart();
   replayed_repro.reset();
   ++resets;
-  measurements.restart(*population.robots(), 0, 0, simulation.configuration().dt, telemetry);
+  measurements.restart(*population.robots(), 0, 0, simulation.configuration(), telemetry);
 }
 
 // Observes the details of the view that exist in this environment.

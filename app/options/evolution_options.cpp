@@ -10,6 +10,7 @@
 
 #include "app/base/version.h"
 #include "app/options/option_values.h"
+#include "app/options/trial_options.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
@@ -18,7 +19,6 @@ namespace mercury {
 namespace {
 
 constexpr const char* search_group = "Search";
-constexpr const char* trial_group = "Trials";
 
 std::vector<std::string> names_of_algorithms() {
   std::vector<std::string> names;
@@ -105,15 +105,13 @@ void EvolutionOptions::add_to(CLI::App& command) {
 
   TrialSettings& trials = given_.trials;
   const auto trial = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
-    add_number(command, name, value, help, form)->group(trial_group);
+    add_number(command, name, value, help, form)->group(trial_options_group);
   };
-  trial("--settle", trials.settle, "Measure from this time on, after robots have fallen (default 0)", "S");
+  add_trial_options(command, trials);
   trial("--trials", trials.trials, "Trials per robot, started at different moments of its movement (default 1)", "N");
   trial("--noise", trials.noise, "Standard deviation of stiffness and amplitude between trials (default 0)", "0..1");
   trial("--damage", trials.damage, "Share of the voxels that are missing in a trial (default 0)", "0..1");
-  trial("--strain-limit", trials.strain_limit,
-        fmt::format("Robots with a spring strained more get the worst score (default {})", trials.strain_limit), "X");
-  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")->group(trial_group);
+  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")->group(trial_options_group);
   simulation_.add_to(command);
   generators_.add_to(command);
 }

@@ -68,6 +68,8 @@ class RobotOutput {
   std::uint64_t count() const { return count_; }
   std::uint64_t seed() const { return seed_; }
   bool dry_run() const { return output_.dry_run(); }
+  // Checks further outputs of the command by the same rules.
+  OutputFiles other_outputs() const { return output_.files(); }
 
   // Checks the file or folder for this number of robots, see OutputFiles; `inputs` are read and must not be written.
   // Makes missing folders, unless it is a dry run. Throws InputError if --count cannot be used, or -o.

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "app/scene/eigen_vec3.h"
+#include "mercury/distance.h"
 #include "mercury/origin.h"
 
 namespace mercury {
@@ -203,7 +204,7 @@ void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
 
 void GroupScene::restart(std::span<const Telemetry> telemetry) {
   trails_.clear();
-  for (const Telemetry& robot : telemetry) trails_.push_back({.start = eigen(robot.center_of_mass)});
+  for (const Telemetry& robot : telemetry) trails_.push_back({.start = robot.center_of_mass});
 }
 
 void GroupScene::add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
@@ -266,7 +267,9 @@ void GroupScene::lengthen_paths(std::span<const Telemetry> telemetry) {
 void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   std::vector<float> distances;
   for (std::size_t i = 0; i < trails_.size(); ++i)
-    distances.push_back(telemetry[i].exploded ? -1 : (eigen(telemetry[i].center_of_mass) - trails_[i].start).norm());
+    distances.push_back(telemetry[i].exploded ? -1
+                                              : static_cast<float>(distance_between(
+                                                    trails_[i].start, telemetry[i].center_of_mass, environment_)));
   // No ranks before a robot has moved.
   const bool ranked = trails_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
   labels_.clear();

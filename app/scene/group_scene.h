@@ -34,8 +34,8 @@ Group group_of(const Simulation& simulation);
 
 // The path of a robot's centre of mass.
 struct Trail {
-  Eigen::Vector3f start{0, 0, 0};  // [m]
-  std::vector<float> points;       // 3 each
+  Vec3 start;                 // center of mass [m]
+  std::vector<float> points;  // 3 each
 };
 
 // Owns the data of a render::Scene and updates it. Uses no OpenGL.

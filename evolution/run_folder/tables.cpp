@@ -69,6 +69,13 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
+void add_quantities(Csv& csv, const Assessment& assessment) {
+  for (std::size_t q = 0; q < quantities().size(); ++q) {
+    const bool has_value = q < assessment.values.size() && counts(quantities()[q], assessment.fate);
+    csv.cell(has_value ? shortest_text(assessment.values[q]) : std::string());
+  }
+}
+
 // Numbers that an individual may lack.
 void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
@@ -94,7 +101,7 @@ void write_lineage(const RunHistory& run) {
     csv.cell(individual.seed).cell(name_of(assessment.fate));
     add_cells(csv, assessment.scores, objectives);
     csv.cell(hexadecimal(assessment.hash));
-    add_cells(csv, assessment.values, quantities().size());
+    add_quantities(csv, assessment);
     csv.end_line();
   }
   write_whole_file(run.folder() / lineage_name, csv.text());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "evolution/selection/body.h"
+#include "mercury/distance.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/quantity.h"
 
@@ -19,9 +19,9 @@ Vec3 displacement(const Trial& trial) {
 }
 
 double distance(const Trial& trial) {
-  const Vec3 d = displacement(trial);
-  const double x = d.x, y = d.y, z = std::holds_alternative<Land>(trial.configuration.environment) ? 0 : d.z;
-  return std::sqrt(x * x + y * y + z * z);
+  const Evaluation& evaluation = trial.evaluation;
+  return distance_between(evaluation.start.center_of_mass, evaluation.end.center_of_mass,
+                          trial.configuration.environment);
 }
 
 template <float Vec3::*axis>

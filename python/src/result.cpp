@@ -20,14 +20,18 @@ double quantity(const Result& self, const Quantity& quantity) {
   return quantity.value({*self.evaluation.robot, self.evaluation, *self.configuration});
 }
 
+// How far an exploded robot was thrown means nothing, so it must not win.
+bool has_figures(const Result& self) { return was_stepped(self) && !self.evaluation.end.exploded; }
+
 double distance(const Result& self) {
-  return was_stepped(self) ? quantity(self, quantities()[*find_quantity("distance")]) : 0;
+  return has_figures(self) ? quantity(self, quantities()[*find_quantity("distance")]) : 0;
 }
 
 nb::dict all_quantities(const Result& self) {
   nb::dict values;
   if (!was_stepped(self)) return values;
-  for (const Quantity& each : quantities()) values[nb::str(each.name.data(), each.name.size())] = quantity(self, each);
+  for (const Quantity& each : quantities())
+    if (has_figures(self) || each.of_body) values[nb::str(each.name.data(), each.name.size())] = quantity(self, each);
   return values;
 }
 
@@ -72,7 +76,8 @@ void bind_result(nb::module_& module) {
       .def_prop_ro(
           "end", [](const Result& self) { return record(self.evaluation.end); }, "Telemetry at the end, as `start`.")
       .def_prop_ro("distance", &distance,
-                   "How far the center of mass went from start to end; on land along the ground [m].")
+                   "How far the center of mass went from start to end; on land along the ground [m]. 0 if the robot "
+                   "exploded, so\nthat it never leads a ranking.")
       .def_prop_ro("path", value_of(&Evaluation::path),
                    "Length of the path of the center of mass, from sample to sample [m].")
       .def_prop_ro("work", value_of(&Evaluation::work), "That the muscles did, from sample to sample [J].")
@@ -84,9 +89,10 @@ void bind_result(nb::module_& module) {
       .def_prop_ro(
           "exploded", [](const Result& self) { return self.evaluation.end.exploded; },
           "Whether the robot left the finite and was frozen.")
-      .def_prop_ro("quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),
-                   "All quantities that `mercury evolve` knows, by name: speed, efficiency, body_lengths, ... Empty if "
-                   "the robot\ncould not be stepped.")
+      .def_prop_ro(
+          "quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),
+          "All quantities that `mercury evolve` knows, by name: speed, efficiency, body_lengths, ... Of a robot "
+          "that\nexploded only those of its body; empty if the robot could not be stepped.")
       .def_prop_ro(
           "hash",
           [](const Result& self) {

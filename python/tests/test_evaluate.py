@@ -54,6 +54,18 @@ def test_results_are_those_of_a_batch(robots, device):
         assert result.quantities["seconds"] == pytest.approx(SECONDS)
 
 
+def test_an_exploded_robot_never_leads(device):
+    # A spring of 50 N/m between two masses of 1 kg is unstable from dt = 0.2 s on.
+    pair = mercurysim.Robot([[0, 0, 0], [1, 0, 0]], [[0, 1, 1, 1]], np.zeros((0, 3)), name="pair")
+    loose = mercurysim.Robot([[0, 0, 0], [1, 0, 0]], np.zeros((0, 3)), np.zeros((0, 3)), name="loose")
+    exploded, sound = evaluate([pair, loose], device, seconds=200, dt=1.0)
+    assert exploded.exploded and not sound.exploded
+    assert exploded.distance == 0
+    assert exploded.quantities["masses"] == 2
+    assert not {"distance", "speed", "work", "strain"} & exploded.quantities.keys()
+    assert {"distance", "speed", "work", "strain"} <= sound.quantities.keys()
+
+
 def test_distance_on_land_is_along_the_ground(robots):
     for result in evaluate(robots[:2], environment=mercurysim.Land(), dt=5e-4):
         moved = (result.end["center_of_mass"] - result.start["center_of_mass"]).astype(float)

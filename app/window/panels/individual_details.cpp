@@ -70,6 +70,7 @@ void show_individual(const Individual& individual, const EvolutionSettings& sett
   if (!assessment.values.empty() && ImGui::BeginTable("quantities", 4, ImGuiTableFlags_SizingFixedFit)) {
     for (std::size_t i = 0; i < assessment.values.size() && i < quantities().size(); ++i) {
       const Quantity& quantity = quantities()[i];
+      if (!counts(quantity, assessment.fate)) continue;
       const bool is_score = std::ranges::find(settings.objectives, quantity.name) != settings.objectives.end();
       if (!is_score)
         entry(std::string(quantity.name), fmt::format("{} {}", score_text(assessment.values[i]), quantity.unit));

@@ -41,7 +41,9 @@ void RankingPanel::draw(PanelContext& context) {
         draw_row(context, i, rows[static_cast<std::size_t>(i)]);
     ImGui::EndTable();
   }
-  note("distance in m, speeds in m/s, energy in J; click a heading to sort");
+  const bool any_exploded = std::ranges::any_of(rows, [](const Row& row) { return row.values.exploded; });
+  note(any_exploded ? "distance in m, speeds in m/s, energy in J; - = exploded; click a heading to sort"
+                    : "distance in m, speeds in m/s, energy in J; click a heading to sort");
   if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
     save_csv(context, "ranking", [&context] { return context.scene.ranking_csv(); });
   context.log.item("ranking.csv");
@@ -75,8 +77,7 @@ void RankingPanel::sort(std::vector<Row>& rows) const {
   std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) {
     if (column_ == 0) return ascending_ ? a.name < b.name : b.name < a.name;
     const auto index = static_cast<std::size_t>(std::clamp(column_, 1, 5) - 1);
-    const double x = numbers_of(a.values)[index], y = numbers_of(b.values)[index];
-    return ascending_ ? x < y : y < x;
+    return ranks_before(a.values, b.values, numbers_of(a.values)[index], numbers_of(b.values)[index], ascending_);
   });
 }
 
@@ -101,7 +102,7 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   if (index < 20) context.log.item(fmt::format("ranking.{}", index));
   for (const double number : numbers_of(row.values)) {
     ImGui::TableNextColumn();
-    right_aligned(fmt::format("{:.3g}", number));
+    right_aligned(row.values.counts() ? fmt::format("{:.3g}", number) : "-");
   }
   ImGui::PopID();
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mercury/configuration.h"
+#include "mercury/evaluator.h"
 #include "mercury/individual.h"
 #include "mercury/objective.h"
 #include "mercury/parameters.h"
@@ -28,6 +29,18 @@ struct TrialSettings {
   bool racing = false;      // stop robots that are clearly behind
   friend bool operator==(const TrialSettings&, const TrialSettings&) = default;
 };
+
+// Throws ParameterError for settings out of range. A trial of 0 s is accepted.
+void validate(const TrialSettings& settings);
+
+// Between two samples of a trial. Paths, work and strains depend on it [s].
+inline constexpr double trial_sample_period = 0.05;
+
+// What an Evaluator does for a trial of one robot: it settles, is stepped and sampled.
+EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration);
+
+// How that trial ended: `evaluation` is its result.
+Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, double strain_limit);
 
 // Racing looks at the scores after equal parts of the trial, at as many checks.
 inline constexpr std::size_t racing_checks = 3;

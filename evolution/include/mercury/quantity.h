@@ -11,6 +11,7 @@
 
 #include "mercury/configuration.h"
 #include "mercury/evaluator.h"
+#include "mercury/individual.h"
 #include "mercury/robot.h"
 
 namespace mercury {
@@ -36,6 +37,12 @@ std::span<const Quantity> quantities();
 
 // Index in quantities(); nothing if there is none of that name.
 std::optional<std::size_t> find_quantity(std::string_view name);
+
+// Whether a quantity means something after trials that ended so. What an exploded robot measured does not, except of
+// its body.
+inline bool counts(const Quantity& quantity, Fate fate) {
+  return quantity.of_body || (fate != Fate::exploded && fate != Fate::failed);
+}
 
 // The values of all quantities after one trial.
 std::vector<double> quantities_of(const Trial& trial);

@@ -2,6 +2,9 @@
 // mercury new: robot files.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <thread>
+
 #include "mercury/origin.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
@@ -59,11 +62,61 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
   const auto report =
       nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
   std::vector<std::pair<double, std::string>> ranking;
-  for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["displacement"].get<double>(), robot["name"]);
+  for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["distance"].get<double>(), robot["name"]);
   std::sort(ranking.begin(), ranking.end());
   std::vector<std::string> best{ranking[0].second + ".json", ranking[1].second + ".json"};
   std::sort(best.begin(), best.end());
   EXPECT_EQ(listing("best"), best);
+}
+
+// The file has the lines that `run` writes for the same robots.
+TEST_F(NewCommand, BestOfWritesEveryCandidate) {
+  const std::vector<std::string> trial{"--seed", "2", "--seconds", "0.3", "--environment", "land", "--settle", "0.1"};
+  std::vector<std::string> search{"new", "voxel", "-o", path("best/"), "--best-of", "6", "--csv", path("a.csv")};
+  std::vector<std::string> run{"run", "--random", "voxel:6", "--csv", path("b.csv")};
+  for (auto* command : {&search, &run}) {
+    command->insert(command->end(), trial.begin(), trial.end());
+    const Outcome outcome = mercury(*command);
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  }
+  EXPECT_EQ(read("a.csv"), read("b.csv"));
+  const std::string csv = read("a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
+}
+
+// A search that is stopped writes the best robots so far: those of its CSV that went farthest.
+TEST_F(NewCommand, InterruptedSearchKeepsTheBest) {
+  ChildProcess child(MERCURY_PROGRAM, {"new", "voxel", "-o", path("best/"), "--count", "2", "--best-of", "1000000",
+                                       "--seconds", "0.1", "--device", "cpu", "--csv", path("a.csv")});
+  while (child.messages().empty()) std::this_thread::yield();  // progress: some candidates are there
+  child.signal(SIGINT);
+  const Outcome outcome = outcome_of(child);
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.messages,
+              testing::ContainsRegex("mercury: stopped after [0-9]+ of 1000000 candidates; the best of "
+                                     "these are written\n"));
+  std::vector<std::pair<double, std::string>> sound;
+  std::istringstream csv(read("a.csv"));
+  for (std::string line; std::getline(csv, line);) {
+    std::vector<std::string> fields;
+    std::string field;
+    for (std::istringstream rest(line); std::getline(rest, field, ',');) fields.push_back(field);
+    if (fields.at(4) == "sound") sound.emplace_back(-std::stod(fields.at(8)), fields.at(1));
+  }
+  ASSERT_GE(sound.size(), 2u);
+  std::ranges::stable_sort(sound, {}, [](const auto& robot) { return robot.first; });
+  std::vector<std::string> best{sound[0].second + ".json", sound[1].second + ".json"};
+  std::ranges::sort(best);
+  EXPECT_EQ(listing("best"), best);
+}
+
+// What cannot be written is reported after everything else is.
+TEST_F(NewCommand, AFailingCsvLosesNoRobot) {
+  const Outcome outcome =
+      mercury({"new", "voxel", "-o", path("best/"), "--best-of", "3", "--seconds", "0.1", "--csv", "/dev/full"});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_THAT(outcome.messages, testing::HasSubstr("/dev/full"));
+  EXPECT_EQ(listing("best").size(), 1u);
 }
 
 TEST_F(NewCommand, RobotsNameTheEnvironmentOfTheirTrial) {
@@ -99,7 +152,13 @@ TEST_F(NewCommand, InvalidInputIsReported) {
   EXPECT_EQ(message({"-o", path("r"), "--count", "5", "--best-of", "3"}),
             "mercury: --best-of: 3 is not accepted; give at least --count, 5\n");
   EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--seconds", "2", "--settle", "3"}),
-            "mercury: --settle: 3 is not accepted; give 0 to --seconds, 2 s\n");
+            "mercury: --settle: 3 is not accepted; give 0 s or more, and less than the 2 s of --seconds\n");
+  EXPECT_EQ(message({"-o", path("r"), "--csv", path("a.csv")}), "mercury: --csv: goes with --best-of N\n");
+  EXPECT_EQ(message({"-o", path("r"), "--settle", "1"}), "mercury: --settle: goes with --best-of N\n");
+  EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--strain-limit", "0"}),
+            "mercury: --strain-limit: 0 is not accepted; give a number > 0\n");
+  EXPECT_EQ(message({"-o", path("r"), "--best-of", "3", "--csv", "-"}),
+            "mercury: --csv: the names of the robots' files go to standard output; give a file\n");
   EXPECT_EQ(message({}), "mercury: --output is required; see mercury new voxel --help\n");
   EXPECT_EQ(listing(), std::vector<std::string>{"file"});
 }

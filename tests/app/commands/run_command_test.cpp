@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury run: its reports, and results that do not depend on threads or on other robots.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 #include "tests/app/program.h"
@@ -43,7 +45,7 @@ TEST_F(RunCommand, JsonHoldsConfigurationAndEachRobot) {
     EXPECT_GT(robot["springs"], 0);
     // Muscles act from the first step on. A path is at least as long as the distance between its ends.
     EXPECT_GT(robot["largest_strain"], 0.0);
-    EXPECT_GE(robot["mean_speed"].get<double>() * 0.5, robot["displacement"].get<double>() * (1 - 1e-6));
+    EXPECT_GE(robot["mean_speed"].get<double>() * 0.5, robot["distance"].get<double>() * (1 - 1e-6));
     EXPECT_EQ(robot["exploded"], false);
     EXPECT_EQ(robot["hash"].get<std::string>().size(), 16u);
   }
@@ -103,11 +105,87 @@ TEST_F(RunCommand, DifferentRunsHaveDifferentHashes) {
 
 // A body falls from rest through vacuum (density 0) for 0.5 s. Without drag and damping, its centre of mass follows
 // x = g t^2 / 2.
-TEST_F(RunCommand, DisplacementIsThatOfAFallingBody) {
+TEST_F(RunCommand, DistanceIsThatOfAFallingBody) {
   const json report = run_json({"--random", "voxel:1", "--seconds", "0.5", "--density", "0", "--damping", "0",
                                 "--gravity", "2", "--dt", "0.0005"});
-  EXPECT_NEAR(report["robots"][0]["displacement"], 0.5 * 2 * 0.25, 0.001);
-  EXPECT_NEAR(report["robots"][0]["mean_speed"], 0.5, 0.002);
+  const json& robot = report["robots"][0];
+  EXPECT_NEAR(robot["distance"], 0.5 * 2 * 0.25, 0.001);
+  EXPECT_NEAR(robot["start_z"].get<double>() - robot["end_z"].get<double>(), 0.5 * 2 * 0.25, 0.001);
+  EXPECT_NEAR(robot["mean_speed"], 0.5, 0.002);
+}
+
+// Before muscles act, a body on land that rests on nothing falls like a stone: by g t^2 / 2. Along the ground it gets
+// nowhere.
+TEST_F(RunCommand, AFallOnLandIsNoDistance) {
+  write("drop.json", R"({"format": "mercury-robot", "version": 1, "name": "drop", "faces": [],
+    "masses": [[0,0,0],[0,0,9],[0.1,0,9],[0,0.1,9],[0,0,9.1]],
+    "springs": [[1,2,21],[1,3,21],[1,4,21],[2,3,21],[2,4,21],[3,4,21]]})");
+  // Four of five masses are in the air. The one on the ground stays there.
+  const json robot = run_json(
+      {path("drop.json"), "--environment", "land", "--damping", "0", "--dt", "0.0005", "--seconds", "1"})["robots"][0];
+  const double fall = 0.8 * 0.5 * 9.81;
+  EXPECT_NEAR(robot["start_z"].get<double>() - robot["end_z"].get<double>(), fall, 0.01);
+  EXPECT_NEAR(robot["distance"], 0, 1e-4);
+  EXPECT_NEAR(robot["mean_speed"], fall, 0.01);  // its path has that length
+  EXPECT_NEAR(robot["highest"], robot["start_z"], 1e-6);
+}
+
+TEST_F(RunCommand, NothingIsMeasuredWhileRobotsSettle) {
+  const std::vector<std::string> run{"--random", "voxel:3", "--environment", "land", "--dt", "0.002"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), run.begin(), run.end());
+    return run_json(more);
+  };
+  const json whole = with({"--seconds", "1"}), settling = with({"--seconds", "0.5"}),
+             rest = with({"--seconds", "1", "--settle", "0.5"});
+  EXPECT_EQ(rest["settle"], 0.5);
+  EXPECT_EQ(rest["steps"], 500);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rest["robots"][i]["hash"], whole["robots"][i]["hash"]);
+    const auto at = [&](const json& report, const char* name) { return report["robots"][i][name].get<double>(); };
+    for (const char axis : {'x', 'y', 'z'})
+      EXPECT_EQ(at(rest, fmt::format("start_{}", axis).c_str()), at(settling, fmt::format("end_{}", axis).c_str()));
+    EXPECT_NEAR(at(rest, "distance"),
+                std::hypot(at(whole, "end_x") - at(settling, "end_x"), at(whole, "end_y") - at(settling, "end_y")),
+                1e-6);
+    EXPECT_NEAR(at(rest, "work"), at(whole, "work") - at(settling, "work"), 1e-6);  // sums of the same samples
+  }
+}
+
+TEST_F(RunCommand, SettlingTakesAPartOfTheTime) {
+  for (const auto& [settle, said] : {std::pair{"-1", "-1"}, {"nan", "nan"}, {"2", "2"}, {"1", "1"}, {"inf", "inf"}}) {
+    const Outcome outcome = mercury({"run", "--random", "voxel:1", "--seconds", "1", "--settle", settle});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.messages,
+              fmt::format("mercury: --settle: {} is not accepted; give 0 s or more, and less than the "
+                          "1 s of --seconds\n",
+                          said));
+  }
+}
+
+// Names need not be unique; the index and the file, or the request, are.
+TEST_F(RunCommand, ResultsNameTheFileAndTheRequestOfEachRobot) {
+  std::filesystem::create_directory(path("a"));
+  for (const char* file : {"a/one.json", "two.json"})
+    write(file, R"({"format": "mercury-robot", "version": 1, "name": "twin", "masses": [[0,0,0],[1,0,0]],
+                    "springs": [[0,1,21]], "faces": []})");
+  const std::vector<std::string> arguments{path("a"),      path("two.json"), "--random",
+                                           "voxel:2:7:40", "--seconds",      "0.01"};
+  const json robots = run_json(arguments)["robots"];
+  ASSERT_EQ(robots.size(), 4u);
+  const json files{path("a/one.json"), path("two.json"), nullptr, nullptr},
+      random{nullptr, nullptr, "voxel:1:7:40", "voxel:1:7:41"}, names{"twin", "twin", "voxel-7-40", "voxel-7-41"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(robots[i]["index"], i);
+    EXPECT_EQ(robots[i]["name"], names[i]);
+    EXPECT_EQ(robots[i]["file"], files[i]);
+    EXPECT_EQ(robots[i]["random"], random[i]);
+  }
+  // Each alone is the same robot.
+  EXPECT_EQ(run_json({"--random", "voxel:1:7:41", "--seconds", "0.01"})["robots"][0]["hash"], robots[3]["hash"]);
+  std::vector<std::string> table{"run"};
+  table.insert(table.end(), arguments.begin(), arguments.end());
+  EXPECT_THAT(mercury(table).output, testing::AllOf(HasSubstr("/a/one.json)"), HasSubstr("/two.json)")));
 }
 
 TEST_F(RunCommand, TableShowsEachRobot) {
@@ -115,7 +193,7 @@ TEST_F(RunCommand, TableShowsEachRobot) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-0"));
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-1"));
-  EXPECT_THAT(outcome.output, HasSubstr("moved [m]"));
+  EXPECT_THAT(outcome.output, HasSubstr("distance [m]"));
   EXPECT_THAT(outcome.output, HasSubstr("strain [%]  > 50 [%]"));
   EXPECT_EQ(outcome.messages, "");
 }
@@ -126,16 +204,26 @@ TEST_F(RunCommand, CsvHasALinePerRobot) {
   ASSERT_EQ(outcome.status, 0);
   const json report = run_json(robots);
   std::istringstream csv(read("a.csv"));
-  std::string header, line;
-  std::getline(csv, header);
-  const char* const columns =
-      "name,masses,springs,displacement,mean_speed,largest_strain,strained_share,exploded,exploded_at,"
-      "first_bad_spring,hash";  // columns
-  EXPECT_EQ(header, columns);
-  for (const json& robot : report["robots"]) {
+  // A column for each member of the objects, with the same values.
+  const auto fields_of = [&] {
+    std::string line, field;
     std::getline(csv, line);
-    EXPECT_EQ(line.substr(0, line.find(',')), robot["name"].get<std::string>());
-    EXPECT_EQ(line.substr(line.rfind(',') + 1), robot["hash"].get<std::string>());
+    std::vector<std::string> fields;
+    for (std::istringstream rest(line + ","); std::getline(rest, field, ',');) fields.push_back(field);
+    return fields;
+  };
+  const std::vector<std::string> columns = fields_of();
+  for (const json& robot : report["robots"]) {
+    const std::vector<std::string> fields = fields_of();
+    ASSERT_EQ(fields.size(), columns.size());
+    EXPECT_EQ(robot.size(), columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const json& value = robot.at(columns[i]);
+      if (value.is_number_float())
+        EXPECT_EQ(std::stod(fields[i]), value.get<double>()) << columns[i];
+      else
+        EXPECT_EQ(fields[i], value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump());
+    }
   }
   EXPECT_EQ(listing(), std::vector<std::string>{"a.csv"});
 }
@@ -203,11 +291,58 @@ TEST_F(RunCommand, ExplodedRobotsAreReportedAndFailOnlyWithStrict) {
   EXPECT_EQ(robot["exploded"], true);
   EXPECT_GT(robot["exploded_at"], 0.0);
   EXPECT_EQ(robot["first_bad_spring"], 0);
+  EXPECT_EQ(robot["fate"], "exploded");
+  EXPECT_EQ(robot["start_x"], 0.5);
+  // What depends on how far it got means nothing.
+  for (const char* figure :
+       {"distance", "end_x", "end_y", "end_z", "mean_speed", "work", "highest", "largest_strain", "strained_share"})
+    EXPECT_TRUE(robot[figure].is_null()) << figure;
 
   std::vector<std::string> strict = unstable;
   strict.push_back("--strict");
   EXPECT_EQ(mercury(strict).status, 1);
   EXPECT_EQ(mercury({"run", path("pair.json"), "--dt", "0.01", "--seconds", "2", "--strict"}).status, 0);
+}
+
+// Robots of a limit below the strain that they have all are overstretched, and their figures stay.
+TEST_F(RunCommand, StrainLimitMarksRobots) {
+  const std::vector<std::string> run{"--random", "voxel:2", "--seconds", "0.5"};
+  std::vector<std::string> limited = run;
+  limited.insert(limited.end(), {"--strain-limit", "1e-6"});
+  const json sound = run_json(run)["robots"], marked = run_json(limited)["robots"];
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(sound[i]["fate"], "sound");
+    EXPECT_EQ(marked[i]["fate"], "overstretched");
+    EXPECT_EQ(marked[i]["distance"], sound[i]["distance"]);
+  }
+}
+
+TEST_F(RunCommand, CsvAndJsonDoNotShareStandardOutput) {
+  const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--json", "--csv", "-"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.messages, "mercury: --csv: - and --json both mean standard output; give --csv a file\n");
+}
+
+// The results are worth more than where they go.
+TEST_F(RunCommand, ABrokenStandardOutputLosesNoCsv) {
+  const std::string command =
+      std::string(MERCURY_PROGRAM) + " run --random voxel:2 --seconds 0.01 --csv " + path("a.csv") + " > /dev/full";
+  const Outcome outcome = run_program("sh", {"-c", command});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("standard output cannot be written"));
+  const std::string csv = read("a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+}
+
+TEST_F(RunCommand, ACsvThatFailsLosesNoTable) {
+  for (const bool as_json : {false, true}) {
+    std::vector<std::string> arguments{"run", "--random", "voxel:2", "--seconds", "0.01", "--csv", "/dev/full"};
+    if (as_json) arguments.push_back("--json");
+    const Outcome outcome = mercury(arguments);
+    EXPECT_NE(outcome.status, 0);
+    EXPECT_THAT(outcome.messages, HasSubstr("/dev/full"));
+    EXPECT_THAT(outcome.output, HasSubstr("voxel-1-1"));
+  }
 }
 
 TEST_F(RunCommand, InterruptedRunReportsItsResults) {

@@ -80,7 +80,7 @@ std::vector<Telemetry> first_of(const std::vector<Telemetry>& telemetry) { retur
 
 TEST(Measurements, SamplesOfLongRunsAreFewAndEvenlySpaced) {
   Measurements measurements(16);
-  measurements.restart(two_robots(), 0, 0, 1e-3, moving(0));
+  measurements.restart(two_robots(), 0, 0, {}, moving(0));
   for (std::int64_t step = 0; step <= 100'000; step = measurements.next_step())
     measurements.observe(1e-3 * static_cast<double>(step), step, moving(1e-3 * static_cast<double>(step)));
   const Series series = measurements.series(9);
@@ -101,13 +101,13 @@ TEST(Measurements, RobotAddedLaterHasItsOwnStartAndSamples) {
     Measurements measurements(8);
     const LiveRobots both = two_robots();
     const LiveRobots first{.robots = {both.robots[0]}, .mass_offsets = {0, 1}};
-    measurements.restart(first, 0, 0, 1e-3, first_of(moving(0)));
+    measurements.restart(first, 0, 0, {}, first_of(moving(0)));
     std::int64_t step = 0;
     const auto time = [&] { return 1e-3 * static_cast<double>(step); };
     for (; step < added_at; step = measurements.next_step())
       measurements.observe(time(), step, first_of(moving(time())));
     const double came = time();
-    measurements.set_robots(both, came, moving(came));
+    measurements.set_robots(both, came, Ocean{}, moving(came));
     for (; step < 3000; step = measurements.next_step()) measurements.observe(time(), step, moving(time()));
     const Series series = measurements.series(9);
     ASSERT_EQ(series.times.size(), series.samples.size());
@@ -117,6 +117,32 @@ TEST(Measurements, RobotAddedLaterHasItsOwnStartAndSamples) {
       EXPECT_NEAR(series.samples[i].distance, 2 * (series.times[i] - came), 1e-4) << added_at;
     EXPECT_NEAR(measurements.series(4).samples.back().distance, measurements.series(4).times.back(), 1e-4);
     EXPECT_TRUE(measurements.series(5).times.empty());
+  }
+}
+
+TEST(Measurements, DistancesOnLandAreAlongTheGround) {
+  for (const bool on_land : {false, true}) {
+    Measurements measurements;
+    Configuration configuration;
+    if (on_land) configuration.environment = Land{};
+    std::vector<Telemetry> telemetry(2);
+    measurements.restart(two_robots(), 0, 0, configuration, telemetry);
+    telemetry[0].center_of_mass = {3, 4, -12};  // 5 along the ground, 13 through space
+    measurements.observe(1, 1000, telemetry);
+    EXPECT_DOUBLE_EQ(measurements.ranking()[0].distance, on_land ? 5 : 13);
+  }
+}
+
+// Whatever the figure and the direction of the order.
+TEST(Measurements, ExplodedRobotsRankLast) {
+  const RankingRow slow{.distance = 1}, fast{.distance = 2}, exploded{.distance = 8.1, .exploded = true};
+  for (const bool ascending : {false, true}) {
+    std::vector<RankingRow> rows{exploded, slow, exploded, fast};
+    std::ranges::stable_sort(
+        rows, [&](const auto& a, const auto& b) { return ranks_before(a, b, a.distance, b.distance, ascending); });
+    EXPECT_EQ(rows[0].distance, ascending ? 1 : 2);
+    EXPECT_EQ(rows[1].distance, ascending ? 2 : 1);
+    EXPECT_TRUE(rows[2].exploded && rows[3].exploded);
   }
 }
 

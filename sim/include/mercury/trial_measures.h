@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of one robot during its trial, sample by sample.
+// What is measured of one robot during its trial, sample by sample. An Evaluator does it for its robots; a program that
+// steps a simulation itself gets the same values from the same samples.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +27,7 @@ class TrialMeasures {
     last_ = now;
   }
 
+  // Writes all that derives from the samples; the rest of the result stays as it is.
   void write(Evaluation& result) const {
     result.start = start_;
     result.end = last_;

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "app/base/messages.h"
+#include "app/base/progress.h"
+#include "app/base/version.h"
+#include "app/recording/configuration_json.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t longest_label = 80;
+
+// What the table calls each robot: its name, with its file where another robot has the same name.
+std::vector<std::string> labels_of(const std::vector<RobotResult>& robots) {
+  std::map<std::string_view, int> uses;
+  for (const RobotResult& robot : robots) ++uses[robot.identity.name];
+  std::vector<std::string> labels;
+  for (const auto& [index, name, file, random] : std::views::transform(robots, &RobotResult::identity))
+    labels.push_back(
+        printable(uses[name] > 1 && !file.empty() ? fmt::format("{} ({})", name, file) : name, longest_label));
+  return labels;
+}
+
+std::string figure(double value, int width, int digits) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, digits) : fmt::format("{:>{}}", "-", width);
+}
+
+std::string state_of(const RobotResult& robot) {
+  if (!robot.was_stepped()) return "left out: " + robot.failure;
+  if (!robot.exploded()) return robot.fate == Fate::sound ? "ok" : std::string(name_of(robot.fate));
+  std::string text = fmt::format("exploded at {:.3g} s", robot.exploded_at);
+  if (robot.culprit_spring != no_spring) text += fmt::format(", spring {}", robot.culprit_spring);
+  return text;
+}
+
+std::string row_of(const RobotResult& robot, const std::string& label, std::size_t width) {
+  const auto count = [&](std::size_t number) { return robot.was_stepped() ? fmt::to_string(number) : "-"; };
+  return fmt::format("{:>5}  {:<{}}  {:>6}  {:>7}  {}  {}  {}  {}  {}  {}  {:<16}  {}\n", robot.identity.index, label,
+                     width, count(robot.masses), count(robot.springs), figure(robot.distance, 12, 4),
+                     figure(robot.mean_speed, 11, 4), figure(robot.work, 9, 3), figure(robot.highest, 11, 3),
+                     figure(100 * robot.largest_strain, 10, 2), figure(100 * robot.strained_share, 8, 2),
+                     robot.was_stepped() ? fmt::format("{:016x}", robot.hash) : "-", state_of(robot));
+}
+
+}  // namespace
+
+std::size_t RunReport::count(Fate fate) const {
+  return static_cast<std::size_t>(std::ranges::count(robots, fate, &RobotResult::fate));
+}
+
+std::size_t RunReport::springs() const {
+  std::size_t sum = 0;
+  for (const RobotResult& robot : robots) sum += robot.springs;
+  return sum;
+}
+
+double RunReport::springs_per_second() const {
+  return wall_seconds > 0 ? static_cast<double>(springs()) * static_cast<double>(steps) / wall_seconds : 0;
+}
+
+std::string table_of(const RunReport& report) {
+  const Configuration& configuration = report.configuration;
+  const std::vector<std::string> labels = labels_of(report.robots);
+  std::size_t width = 5;
+  for (const std::string& label : labels) width = std::max(width, label.size());
+  std::string text =
+      fmt::format("{}, {}, {} solver, dt {} s, {} steps = {:.6g} s", report.device, name_of(configuration.environment),
+                  name_of(configuration.solver), configuration.dt, report.steps, report.seconds);
+  if (report.settle > 0) text += fmt::format(", measured after {:.6g} s", report.settle);
+  text += fmt::format("\n\n{:>5}  {:<{}}  {:>6}  {:>7}  {:>12}  {:>11}  {:>9}  {:>11}  {:>10}  {:>8}  {:<16}  {}\n",
+                      "index", "robot", width, "masses", "springs", "distance [m]", "speed [m/s]", "work [J]",
+                      "highest [m]", "strain [%]", "> 50 [%]", "hash", "state");
+  for (std::size_t i = 0; i < labels.size(); ++i) text += row_of(report.robots[i], labels[i], width);
+  const std::size_t stepped = report.robots.size() - report.count(Fate::failed);
+  text +=
+      fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", stepped, stepped == 1 ? "" : "s",
+                  report.springs(), report.wall_seconds, with_magnitude(report.springs_per_second()));
+  if (report.count(Fate::exploded) > 0) text += "- = means nothing, since the robot exploded\n";
+  return text;
+}
+
+std::string csv_of(const RunReport& report) {
+  std::string text = csv_heading();
+  for (const RobotResult& robot : report.robots) text += csv_line(robot);
+  return text;
+}
+
+std::string json_of(const RunReport& report) {
+  nlohmann::ordered_json json{{"program", program_version},
+                              {"configuration", json_of(report.configuration)},
+                              {"device", report.device},
+                              {"steps", report.steps},
+                              {"seconds", report.seconds},
+                              {"settle", report.settle},
+                              {"interrupted", report.interrupted},
+                              {"wall_seconds", report.wall_seconds},
+                              {"springs_per_second", report.springs_per_second()},
+                              {"notes", report.notes},
+                              {"robots", nlohmann::ordered_json::array()}};
+  for (const RobotResult& robot : report.robots) json["robots"].push_back(json_of(robot));
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace mercury

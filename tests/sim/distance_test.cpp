@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far robots get, on every backend, where theory knows it.
+#include "mercury/distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "backend.h"
+#include "bodies.h"
+#include "mercury/evaluator.h"
+#include "mercury/trial_measures.h"
+
+namespace mercury {
+namespace {
+
+class Distance : public BackendTest {
+ protected:
+  static constexpr double g = 9.81;
+  static constexpr std::int64_t steps = 1000;
+
+  Configuration configuration(const Environment& environment) const {
+    return {.dt = 1e-3, .damping = 0, .environment = environment, .device = device()};
+  }
+  // The result of a body that flies with this velocity from high above the ground.
+  Evaluation flight(const Environment& environment, Vec3 velocity) const {
+    Robot robot = bodies::voxels({.x = 2, .y = 1, .z = 1}, {.stiffness = 50});
+    robot.masses.push_back({0, 0, -100});  // robots are set down with their lowest mass on the ground
+    Simulation simulation(configuration(environment), std::span(&robot, 1));
+    State state = bodies::moving(robot, velocity);
+    state.positions = simulation.state(0).positions;
+    simulation.set_state(0, state);
+    TrialMeasures measures(simulation.telemetry(0));
+    for (std::int64_t step = 0; step < steps; step += 50) {
+      simulation.step(50);
+      measures.add(simulation.telemetry(0), 50e-3);
+    }
+    Evaluation evaluation;
+    measures.write(evaluation);
+    return evaluation;
+  }
+};
+
+TEST(DistanceBetween, IsThatAlongTheGroundOnLandAndThroughSpaceElsewhere) {
+  EXPECT_DOUBLE_EQ(distance_between({1, 2, 3}, {3, 5, 9}, Land{}), std::sqrt(13.0));
+  EXPECT_DOUBLE_EQ(distance_between({1, 2, 3}, {3, 5, 9}, Ocean{}), 7);
+  EXPECT_DOUBLE_EQ(distance_between({1, 2, 3}, {3, 5, 9}, OceanSimple{}), 7);
+}
+
+// The body falls by g t (t + dt) / 2 with semi-implicit steps. One of its 13 masses stays on the ground.
+TEST_P(Distance, AFallOnLandIsNone) {
+  const Evaluation fall = flight(Land{}, {});
+  const double share = 12.0 / 13, height = share * g * (1 + 1e-3) / 2;
+  EXPECT_NEAR(fall.start.center_of_mass.z - fall.end.center_of_mass.z, height, 1e-3);
+  EXPECT_NEAR(distance_between(fall.start.center_of_mass, fall.end.center_of_mass, Land{}), 0, 1e-4);
+  EXPECT_NEAR(fall.path, height, 1e-3);
+  EXPECT_EQ(fall.highest, fall.start.center_of_mass.z);
+}
+
+// Thrown with a velocity: x = v t; it rises to v_z^2 / (2 g) above its start.
+TEST_P(Distance, OfAThrownBodyIsThatOfItsShadow) {
+  const Evaluation thrown = flight(Land{}, {3, 4, 5});
+  const double share = 12.0 / 13;
+  EXPECT_NEAR(distance_between(thrown.start.center_of_mass, thrown.end.center_of_mass, Land{}), share * 5, 2e-3);
+  EXPECT_NEAR(thrown.highest - thrown.start.center_of_mass.z, share * 25 / (2 * g), 0.02);  // sampled every 0.05 s
+}
+
+TEST_P(Distance, InSpaceCountsAllDirections) {
+  const Evaluation drifting = flight(empty_space(), {2, 3, 6});
+  EXPECT_NEAR(distance_between(drifting.start.center_of_mass, drifting.end.center_of_mass, empty_space()), 7, 2e-3);
+  EXPECT_NEAR(drifting.path, 7, 2e-3);
+}
+
+// A program that steps a simulation itself measures what an evaluator measures.
+TEST_P(Distance, MeasuresAreThoseOfAnEvaluator) {
+  const auto robot = std::make_shared<const Robot>(bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 7));
+  const EvaluationRequest request{
+      .configuration = configuration(Land{}), .settling = 130, .steps = 420, .sample_every = 50, .hashes = true};
+  Evaluator evaluator(request, source_of({robot}), 1);
+  const Evaluation expected = evaluator.next().value();
+  Simulation simulation(request.configuration, std::span(robot.get(), 1));
+  simulation.step(request.settling);
+  TrialMeasures measures(simulation.telemetry(0));
+  for (std::int64_t step = 0; step < request.steps;) {
+    const std::int64_t count = std::min(request.sample_every, request.steps - step);
+    simulation.step(count);
+    measures.add(simulation.telemetry(0), request.configuration.dt * static_cast<double>(count));
+    step += count;
+  }
+  Evaluation found;
+  measures.write(found);
+  EXPECT_EQ(simulation.hash(0), expected.hash);
+  EXPECT_EQ(found.path, expected.path);
+  EXPECT_EQ(found.work, expected.work);
+  EXPECT_EQ(found.highest, expected.highest);
+  EXPECT_EQ(found.largest_strain, expected.largest_strain);
+  EXPECT_EQ(found.strained_share, expected.strained_share);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, Distance, every_device, BackendTest::name);
+
+}  // namespace
+}  // namespace mercury
