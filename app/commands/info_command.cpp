@@ -10,9 +10,11 @@
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
+#include "app/commands/info_json.h"
 #include "app/commands/machine.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_inputs.h"
+#include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/cuda_devices.h"
@@ -28,6 +30,7 @@ namespace {
 struct InfoOptions {
   RobotInputs robots;
   std::string ffmpeg;
+  bool json = false;
 };
 
 // "9: muscle 3 (120), bone (14), ..., and 4 more", the most used first.
@@ -88,7 +91,7 @@ void describe_fit(const Robot& robot) {
   print_line("", "the CPU takes any size");
 }
 
-void describe(const Robot& robot) {
+void describe(const Robot& robot, const std::filesystem::path&) {
   const Inspection found = inspect(robot);
   const std::string kind = kind_of(robot), environment = environment_of(robot);
   const Generator* generator = find_generator(kind);
@@ -155,17 +158,70 @@ void describe(const TrajectoryReader& trajectory) {
   if (trajectory.robots().size() > shown) fmt::print("    and {} more\n", trajectory.robots().size() - shown);
 }
 
-int info(const InfoOptions& options) {
-  if (options.robots.empty()) return describe_machine(options.ffmpeg);
-  for (const std::filesystem::path& path : options.robots.paths()) {
+void describe(const Repro& repro, const std::filesystem::path& file) {
+  fmt::print("{}\n", file.string());
+  print_line("robot", fmt::format("{}, {} masses, {} springs, {} faces", repro.robot.name, repro.robot.masses.size(),
+                                  repro.robot.springs.size(), repro.robot.faces.size()));
+  print_line("exploded",
+             fmt::format("at {:.6g} s{}, seen on {}", repro.exploded_at,
+                         repro.culprit_spring == no_spring ? "" : fmt::format(", spring {}", repro.culprit_spring),
+                         repro.device_name));
+  print_line("repeats", fmt::format("steps {} to {}, with {} changes by the user on the way", repro.clock.step,
+                                    repro.last_step, repro.changes.size()));
+  print_line("solver", solver_text(repro.configuration));
+  print_line("environment", environment_text(repro.configuration));
+}
+
+// Reads what the paths name and hands it on: take(robot, file), take(recording), take(repro, file), take(run).
+template <class Take>
+void for_each_subject(const RobotInputs& robots, const Take& take) {
+  for (const std::filesystem::path& path : robots.paths()) {
     if (is_readable_trajectory_name(path)) {
-      describe(TrajectoryReader(path));
+      take(TrajectoryReader(path));
+    } else if (is_repro_name(path)) {
+      take(load_repro(path), path);
     } else if (is_run_folder(path)) {
-      describe(RunHistory(path));
+      take(RunHistory(path));
     } else {
-      for (const RobotFromFile& loaded : options.robots.load({path})) describe(loaded.robot);
+      for (const auto& [file, robot] : robots.load({path})) take(robot, file);
     }
   }
+}
+
+// One document, whatever the paths: a list for each kind of what they name.
+class InfoDocument {
+ public:
+  void operator()(const Robot& robot, const std::filesystem::path& file) { add("robots", info_of(robot, file)); }
+  void operator()(const TrajectoryReader& recording) { add("recordings", info_of(recording)); }
+  void operator()(const Repro& repro, const std::filesystem::path& file) { add("repros", info_of(repro, file)); }
+  void operator()(const RunHistory& run) { add("runs", info_of(run)); }
+
+  void set_machine(const std::vector<Finding>& machine) { document_["machine"] = info_of(machine); }
+  void print() const {
+    fmt::print("{}\n", document_.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
+
+ private:
+  void add(const char* list, nlohmann::ordered_json entry) { document_[list].push_back(std::move(entry)); }
+
+  nlohmann::ordered_json document_{{"program", program_version},
+                                   {"machine", nullptr},
+                                   {"robots", nlohmann::ordered_json::array()},
+                                   {"recordings", nlohmann::ordered_json::array()},
+                                   {"repros", nlohmann::ordered_json::array()},
+                                   {"runs", nlohmann::ordered_json::array()}};
+};
+
+int info(const InfoOptions& options) {
+  if (options.json) {
+    InfoDocument document;
+    if (options.robots.empty()) document.set_machine(inspect_machine(options.ffmpeg));
+    for_each_subject(options.robots, [&](const auto&... subject) { document(subject...); });
+    document.print();
+    return 0;
+  }
+  if (options.robots.empty()) return describe_machine(options.ffmpeg);
+  for_each_subject(options.robots, [](const auto&... subject) { describe(subject...); });
   return 0;
 }
 
@@ -175,8 +231,13 @@ void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
-  options->robots.add_to(*command,
-                         "Robot files (.json, .cbor), folders of them, recordings (.h5), runs of mercury evolve");
+  command
+      ->add_option(
+          "ROBOTS", options->paths,
+          "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), runs of mercury "
+          "evolve")
+      ->type_name("PATH");
+  command->add_flag("--json", options->json, "Print JSON instead of text");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
   command->callback([options, choose] { choose([options] { return options->robots.status(info(*options)); }); });

@@ -304,6 +304,21 @@ def test_the_program_reads_what_python_writes(tmp_path, mercury):
     assert [int(robot["hash"], 16) for robot in report["robots"]] == [batch.hash(0), batch.hash(1)]
 
 
+def test_the_program_describes_a_robot_as_python_does(tmp_path, mercury):
+    robot = mercurysim.random_voxel(1, seed=9)[0]
+    robot.save(tmp_path / "a.json")
+    [described] = json.loads(mercury("info", "--json", tmp_path / "a.json"))["robots"]
+    info = robot.info()
+    assert described.keys() - info.keys() == {"file", "name", "kind", "environment", "actuators", "chip"}
+    for key, value in info.items():
+        if key == "materials":
+            assert [use["name"] for use in described[key]] == [use.pop("name") for use in value]
+            for mine, other in zip(described[key], value):
+                assert other == pytest.approx({name: mine[name] for name in other}, rel=1e-6)
+        else:
+            assert described[key] == pytest.approx(list(value) if isinstance(value, tuple) else value, rel=1e-6), key
+
+
 def test_mutants_and_crosses_depend_on_their_arguments_alone():
     a, b = mercurysim.random_voxel(2, seed=4)
     assert a.mutate(seed=7) == a.mutate(seed=7)

@@ -54,6 +54,80 @@ TEST_F(InfoCommand, AdvisesOnAMissingEncoder) {
   EXPECT_THAT(outcome.output, HasSubstr("apt install ffmpeg"));
 }
 
+nlohmann::json info_json(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"info", "--json"});
+  const Outcome outcome = mercury(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  return nlohmann::json::parse(outcome.output, nullptr, false);
+}
+
+std::vector<std::string> names_of(const nlohmann::json& list, const char* name = "name") {
+  std::vector<std::string> names;
+  for (const auto& entry : list) names.push_back(entry[name].get<std::string>());
+  return names;
+}
+
+TEST_F(InfoCommand, JsonHoldsWhatThePathsName) {
+  ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("r/"),
+                     "--count", "2"})
+                .status,
+            0);
+  write("chain.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],"faces":[],
+    "springs":[[0,1,1],[1,2,2],[2,3,1]],"actuators":[{"name":"ends","materials":[1,3]},{"name":"mid","springs":[1]}]})");
+  ASSERT_EQ(mercury({"run", path("chain.json"), "--seconds", "0.01", "--every", "2", "--record", path("a.h5")}).status,
+            0);
+  const auto json = info_json({path("chain.json"), path("r"), path("a.h5")});
+  EXPECT_TRUE(json["machine"].is_null());
+  EXPECT_EQ(names_of(json["robots"]), (std::vector<std::string>{"chain", "voxel-1-0", "voxel-1-1"}));
+  EXPECT_EQ(json["robots"][0]["file"], path("chain.json"));
+  EXPECT_EQ(json["robots"][0]["actuators"],
+            nlohmann::json::parse(R"([{"name": "ends", "materials": [1, 3], "springs": 2},
+                                      {"name": "mid", "materials": [2], "springs": 1}])"));
+  // A cube: 8 masses, a spring per pair of them, 6 sides of two triangles.
+  const auto& cube = json["robots"][1];
+  EXPECT_EQ(cube["masses"], 8);
+  EXPECT_EQ(cube["springs"], 28);
+  EXPECT_EQ(cube["faces"], 12);
+  EXPECT_EQ(cube["springs_per_mass"], 7.0);
+  EXPECT_EQ(cube["closed"], true);
+  EXPECT_EQ(cube["euler_characteristic"], 2);
+  EXPECT_NEAR(cube["volume"], 0.001, 1e-8);
+  EXPECT_NEAR(cube["length"], 0.1, 1e-7);
+  EXPECT_EQ(cube["kind"], "voxel");
+  EXPECT_EQ(json["recordings"].size(), 1u);
+  const auto& recording = json["recordings"][0];
+  EXPECT_EQ(recording["frames"], 6);
+  EXPECT_EQ(recording["every"], 2);
+  EXPECT_EQ(recording["last_time"], 0.01);
+  EXPECT_EQ(recording["configuration"]["dt"], 0.001);
+  EXPECT_EQ(names_of(recording["robots"]), std::vector<std::string>{"chain"});
+  EXPECT_TRUE(json["repros"].empty() && json["runs"].empty());
+}
+
+TEST_F(InfoCommand, JsonOfTheMachineAndOfARun) {
+  const auto machine = info_json({});
+  const auto whats = names_of(machine["machine"], "what");
+  for (const char* what : {"processor", "memory", "GPU", "encoder"}) EXPECT_THAT(whats, testing::Contains(what));
+  EXPECT_TRUE(machine["robots"].empty());
+  ASSERT_EQ(mercury({"evolve", path("run"), "--from", "voxel:2x2x2", "--population", "6", "--generations", "2",
+                     "--seconds", "0.05", "--strain-limit", "1.5", "--quiet"})
+                .status,
+            0);
+  const auto run = info_json({path("run")})["runs"][0];
+  EXPECT_EQ(run["generations"], 2);
+  EXPECT_EQ(run["last_generation"], 2);
+  EXPECT_EQ(run["born"], 18);
+  EXPECT_EQ(run["living"], 6);
+  EXPECT_EQ(run["trials"]["strain_limit"], 1.5);
+  EXPECT_EQ(run["algorithm"]["population"], 6);
+  int sum = 0;
+  for (const auto& [fate, number] : run["fates"].items()) sum += number.get<int>();
+  EXPECT_EQ(sum, 18);
+  EXPECT_EQ(run["best"]["scores"][0], run["best"]["quantities"]["distance"]);
+  EXPECT_EQ(run["best"]["line"].back(), run["best"]["id"]);
+  EXPECT_TRUE(run["files"].contains("genomes"));
+}
+
 TEST_F(InfoCommand, BadFileIsBadInput) {
   write("a.json", "{}");
   const Outcome outcome = mercury({"info", path("a.json")});

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/info_json.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "app/options/generator_options.h"
+#include "app/recording/configuration_json.h"
+#include "mercury/cuda_devices.h"
+#include "mercury/inspect.h"
+#include "mercury/origin.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+Json spring_or_null(std::uint32_t spring) { return spring == no_spring ? Json() : Json(spring); }
+
+template <class Value>
+Json value_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json json_of(const MaterialUse& use) {
+  return {{"id", use.id},
+          {"name", use.name},
+          {"stiffness", shortest(use.material.stiffness)},
+          {"amplitude", shortest(use.material.amplitude)},
+          {"frequency", shortest(use.material.frequency)},
+          {"phase", shortest(use.material.phase)},
+          {"springs", use.springs}};
+}
+
+// Whether GPUs can step it in the fast memory of a block, see docs/performance.md.
+Json chip_of(const Robot& robot) {
+  Configuration configuration;
+  if (environment_of(robot) == Land::name) configuration.environment = Land{};
+  Json devices = Json::array();
+  for (int device = 0; device < cuda_device_count(); ++device) {
+    const ChipFit fit = chip_fit(robot, configuration, device);
+    devices.push_back({{"name", cuda_device_name(device)},
+                       {"block_bytes", fit.most_bytes},
+                       {"on_chip", fit.on_chip},
+                       {"contacts_on_chip", fit.contacts_on_chip},
+                       {"robots_at_once", fit.robots_at_once}});
+  }
+  return {{"environment", name_of(configuration.environment)},
+          {"bytes", chip_bytes(robot, configuration)},
+          {"devices", devices}};
+}
+
+Json json_of(const TrialSettings& trials) {
+  return {{"seconds", trials.seconds}, {"settle", trials.settle}, {"trials", trials.trials},
+          {"noise", trials.noise},     {"damage", trials.damage}, {"strain_limit", trials.strain_limit},
+          {"racing", trials.racing}};
+}
+
+Json json_of(const EvolutionSettings& settings) {
+  const AlgorithmSettings& algorithm = settings.algorithm;
+  Json axes = Json::array();
+  for (const MapAxis& axis : algorithm.axes)
+    axes.push_back(
+        {{"quantity", axis.quantity}, {"lowest", axis.lowest}, {"highest", axis.highest}, {"cells", axis.cells}});
+  return {{"name", algorithm.name},
+          {"population", algorithm.population},
+          {"children", settings.children > 0 ? settings.children : algorithm.population},
+          {"crossover", algorithm.crossover},
+          {"mutation", settings.mutation},
+          {"seed", settings.seed},
+          {"axes", axes}};
+}
+
+Json json_of(const GenomeSpaceRequest& space) {
+  Json options = Json::object();
+  if (const Generator* generator = find_generator(space.kind); generator && space.founders.empty())
+    for (const auto& [option, value] : options_of(*generator, space.values)) options[option.substr(2)] = value;
+  return {{"kind", space.founders.empty() ? Json(space.kind) : Json()},
+          {"options", options},
+          {"founders", space.founders.size()},
+          {"genes", name_of(space.genes)}};
+}
+
+Json quantities_of(const Assessment& assessment) {
+  Json json = Json::object();
+  for (std::size_t q = 0; q < std::min(assessment.values.size(), quantities().size()); ++q)
+    json[std::string(quantities()[q].name)] =
+        counts(quantities()[q], assessment.fate) ? Json(assessment.values[q]) : Json();
+  return json;
+}
+
+Json json_of(const RunHistory& run, const Individual& individual) {
+  const Assessment& assessment = individual.assessment;
+  return {
+      {"id", individual.id},         {"generation", individual.generation},     {"fate", name_of(assessment.fate)},
+      {"scores", assessment.scores}, {"quantities", quantities_of(assessment)}, {"line", run.line_of(individual.id)}};
+}
+
+Json files_in(const std::filesystem::path& folder) {
+  std::map<std::string, Json> found;  // by name
+  std::error_code error;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error))
+    if (entry.is_regular_file(error)) found[entry.path().lexically_relative(folder).string()] = entry.file_size(error);
+  Json files = Json::object();
+  for (auto& [name, bytes] : found) files[name] = std::move(bytes);
+  return files;
+}
+
+}  // namespace
+
+Json info_of(const Robot& robot, const std::filesystem::path& file) {
+  const Inspection found = inspect(robot);
+  Json materials = Json::array(), actuators = Json::array();
+  for (const MaterialUse& use : found.materials) materials.push_back(json_of(use));
+  if (!robot.actuators.empty())
+    for (const auto& [actuator, springs] : found.actuators)
+      actuators.push_back({{"name", actuator.name}, {"materials", actuator.materials}, {"springs", springs}});
+  return {{"file", file.string()},
+          {"name", robot.name},
+          {"kind", text_or_null(kind_of(robot))},
+          {"environment", text_or_null(environment_of(robot))},
+          {"masses", found.masses},
+          {"springs", found.springs},
+          {"faces", found.faces},
+          {"muscles", found.muscles},
+          {"materials", materials},
+          {"actuators", actuators},
+          {"lowest", json_of(found.lowest)},
+          {"highest", json_of(found.highest)},
+          {"extent", json_of(found.extent)},
+          {"length", shortest(found.length)},
+          {"shortest_spring", shortest(found.shortest_spring)},
+          {"longest_spring", shortest(found.longest_spring)},
+          {"springs_per_mass", found.springs_a_mass},
+          {"components", found.components},
+          {"loose_masses", found.loose_masses},
+          {"closed", found.closed},
+          {"open_edges", found.open_edges},
+          {"crowded_edges", found.crowded_edges},
+          {"euler_characteristic", found.euler_characteristic},
+          {"area", found.area},
+          {"volume", found.volume},
+          {"chip", chip_of(robot)}};
+}
+
+Json info_of(const TrajectoryReader& recording) {
+  Json robots = Json::array();
+  for (const auto& [robot, group, exploded_at, culprit_spring] : recording.robots())
+    robots.push_back({{"name", robot.name},
+                      {"group", group},
+                      {"masses", robot.masses.size()},
+                      {"springs", robot.springs.size()},
+                      {"faces", robot.faces.size()},
+                      {"actuators", robot.actuators.size()},
+                      {"exploded_at", value_or_null(exploded_at)},
+                      {"first_bad_spring", value_or_null(culprit_spring)}});
+  const std::size_t frames = recording.frames();
+  return {{"file", recording.path().string()},
+          {"program", recording.program()},
+          {"device", recording.device_name()},
+          {"unfinished", recording.unfinished()},
+          {"frames", frames},
+          {"every", recording.every()},
+          {"first_time", frames > 0 ? Json(recording.time(0)) : Json()},
+          {"last_time", frames > 0 ? Json(recording.time(frames - 1)) : Json()},
+          {"seed", value_or_null(recording.seed())},
+          {"masses", recording.mass_count()},
+          {"configuration", mercury::json_of(recording.configuration())},
+          {"robots", robots}};
+}
+
+Json info_of(const Repro& repro, const std::filesystem::path& file) {
+  return {{"file", file.string()},
+          {"name", repro.robot.name},
+          {"masses", repro.robot.masses.size()},
+          {"springs", repro.robot.springs.size()},
+          {"faces", repro.robot.faces.size()},
+          {"exploded_at", repro.exploded_at},
+          {"first_bad_spring", spring_or_null(repro.culprit_spring)},
+          {"device", repro.device_name},
+          {"first_step", repro.clock.step},
+          {"last_step", repro.last_step},
+          {"changes", repro.changes.size()},
+          {"configuration", mercury::json_of(repro.configuration)}};
+}
+
+Json info_of(const RunHistory& run) {
+  const RunSettings& settings = run.settings();
+  Json fates = Json::object(), devices = Json::array();
+  for (const Fate fate : {Fate::sound, Fate::stopped, Fate::exploded, Fate::overstretched, Fate::failed})
+    fates[std::string(name_of(fate))] =
+        std::ranges::count(run.individuals(), fate, [](const Individual& one) { return one.assessment.fate; });
+  double seconds = 0;
+  for (const GenerationSummary& generation : run.generations()) {
+    seconds += generation.times.seconds;
+    const Json device = text_or_null(generation.times.device);
+    if (!device.is_null() && std::ranges::find(devices, device) == devices.end()) devices.push_back(device);
+  }
+  return {{"folder", run.folder().string()},
+          {"program", settings.program},
+          {"genomes", json_of(settings.space)},
+          {"objectives", settings.evolution.objectives},
+          {"algorithm", json_of(settings.evolution)},
+          {"trials", json_of(settings.evolution.trials)},
+          {"configuration", mercury::json_of(settings.evolution.configuration)},
+          {"generations", settings.evolution.generations},
+          {"last_generation", run.generations().empty() ? Json() : Json(run.generations().back().number)},
+          {"born", run.individuals().size()},
+          {"living", run.living().size()},
+          {"fates", fates},
+          {"seconds", seconds},
+          {"devices", devices},
+          {"best", run.living().empty() ? Json() : json_of(run, run.individuals()[run.living().front()])},
+          {"files", files_in(run.folder())}};
+}
+
+Json info_of(std::span<const Finding> machine) {
+  Json json = Json::array();
+  for (const auto& [what, found, advice] : machine)
+    json.push_back({{"what", what}, {"found", found}, {"advice", text_or_null(advice)}});
+  return json;
+}
+
+}  // namespace mercury
