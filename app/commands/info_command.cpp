@@ -231,12 +231,9 @@ void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
-  command
-      ->add_option(
-          "ROBOTS", options->paths,
-          "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), runs of mercury "
-          "evolve")
-      ->type_name("PATH");
+  options->robots.add_to(
+      *command,
+      "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), runs of mercury evolve");
   command->add_flag("--json", options->json, "Print JSON instead of text");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");

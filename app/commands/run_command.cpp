@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "app/base/messages.h"
+#include "app/base/standard_streams.h"
 #include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
@@ -81,19 +82,18 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulat
                                                      .deflate = options.compress ? 1 : 0});
 }
 
-// Prints the results and writes the file, each even if the other fails: a failed simulation can be repeated, but it may
-// have taken hours.
+// Prints the results and writes the file, each even if the other fails: the simulation may have taken hours.
 void publish(const RunOptions& options, const RunReport& report) {
+  const NoBrokenPipeSignal no_signal;
   std::exception_ptr problem;
   try {
-    if (!options.csv.empty()) write_results(options.csv, csv_of(report));
-  } catch (...) {
+    const std::string text = options.json ? json_of(report) : table_of(report);
+    if (!is_standard_output(options.csv)) std::fwrite(text.data(), 1, text.size(), stdout);
+    flush_standard_output();
+  } catch (const std::exception&) {
     problem = std::current_exception();
   }
-  if (!is_standard_output(options.csv)) {
-    const std::string text = options.json ? json_of(report) : table_of(report);
-    std::fwrite(text.data(), 1, text.size(), stdout);  // the end of the program reports if this fails
-  }
+  if (!options.csv.empty()) write_results(options.csv, csv_of(report));
   if (problem) std::rethrow_exception(problem);
 }
 

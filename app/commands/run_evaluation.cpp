@@ -18,6 +18,7 @@
 #include "mercury/clock.h"
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
+#include "mercury/host_memory.h"
 #include "mercury/trial_measures.h"
 
 namespace mercury {

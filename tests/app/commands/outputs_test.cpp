@@ -82,8 +82,8 @@ TEST_F(Outputs, CsvGoesThroughAPipe) {
   const Outcome outcome = mercury(run({"--csv", path("pipe")}));
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   const std::string csv = reader.get();
-  EXPECT_THAT(csv, testing::StartsWith("name,"));
-  EXPECT_THAT(csv, HasSubstr("\neel,"));
+  EXPECT_THAT(csv, testing::StartsWith("index,name,"));
+  EXPECT_THAT(csv, HasSubstr("\n0,eel,"));
   EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
 }
 
@@ -219,7 +219,7 @@ TEST_F(Outputs, AnswerOnATerminalReplaces) {
   EXPECT_EQ(answer("\x03").status, 128 + SIGINT);
   EXPECT_EQ(read("a.csv"), "mine");
   EXPECT_EQ(answer("y\n").status, 0);
-  EXPECT_THAT(read("a.csv"), testing::StartsWith("name,"));
+  EXPECT_THAT(read("a.csv"), testing::StartsWith("index,name,"));
 }
 
 // --- --dry-run
