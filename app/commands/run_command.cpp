@@ -84,7 +84,9 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulat
 
 // Prints the results and writes the file, each even if the other fails: the simulation may have taken hours.
 void publish(const RunOptions& options, const RunReport& report) {
-  const NoBrokenPipeSignal no_signal;
+  // A reader who leaves must not end the program before the file is written.
+  std::optional<NoBrokenPipeSignal> no_signal;
+  if (!options.csv.empty() && !is_standard_output(options.csv)) no_signal.emplace();
   std::exception_ptr problem;
   try {
     const std::string text = options.json ? json_of(report) : table_of(report);

@@ -334,6 +334,16 @@ TEST_F(RunCommand, ABrokenStandardOutputLosesNoCsv) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
 }
 
+// 2,000 rows are more than a pipe holds.
+TEST_F(RunCommand, AReaderWhoLeavesLosesNoCsv) {
+  const std::string command = std::string(MERCURY_PROGRAM) +
+                              " run --random voxel:2000 --voxels 1x1x1 --seconds 0.001 -q --csv " + path("a.csv") +
+                              " | exit 0";
+  run_program("sh", {"-c", command});
+  const std::string csv = read("a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2001);
+}
+
 TEST_F(RunCommand, ACsvThatFailsLosesNoTable) {
   for (const bool as_json : {false, true}) {
     std::vector<std::string> arguments{"run", "--random", "voxel:2", "--seconds", "0.01", "--csv", "/dev/full"};
