@@ -45,4 +45,6 @@ void Recorder::take() {
 
 void Recorder::finish() { writer_.finish(simulation_.telemetry()); }
 
+void Recorder::finish_without_device() { writer_.finish({}); }
+
 }  // namespace mercury

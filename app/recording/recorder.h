@@ -29,6 +29,8 @@ class Recorder {
   void observe();
   // Completes the file and gives it its name.
   void finish();
+  // The same when the device has failed: with the frames so far, and without which robots exploded.
+  void finish_without_device();
 
   std::int64_t frames() const { return writer_.frames(); }
 

@@ -276,13 +276,15 @@ void TrajectoryWriter::start_frames() {
 
 TrajectoryWriter::Frame TrajectoryWriter::add(std::int64_t step, double time) {
   const std::size_t masses = offsets_.back(), first = static_cast<std::size_t>(frames_ - written_) * masses;
-  steps_.push_back(step);
-  times_.push_back(time);
-  ++frames_;
+  next_step_ = step;
+  next_time_ = time;
   return {std::span(positions_).subspan(first, masses), std::span(velocities_).subspan(first, masses)};
 }
 
 void TrajectoryWriter::commit() {
+  steps_.push_back(next_step_);
+  times_.push_back(next_time_);
+  ++frames_;
   const double now = clock_(), before = std::exchange(last_commit_, now);
   if (flush_is_due(now - last_flush_, now - before, flush_period_)) return flush();
   if (frames_ - written_ == static_cast<std::int64_t>(frames_per_block_)) guarded([&] { write_block(); });

@@ -61,13 +61,13 @@ class TrajectoryWriter {
   struct Frame {
     std::span<Vec3> positions, velocities;
   };
-  // The next frame. Fill it, then call commit(). Steps increase from frame to frame.
+  // The next frame. Fill it, then call commit(); without that it does not count. Steps increase from frame to frame.
   Frame add(std::int64_t step, double time);
   // Writes and flushes what is due. Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
   void commit();
 
-  // Records which robots exploded (`telemetry` has one element per robot), closes the file and gives it its name.
-  // Throws like commit().
+  // Records which robots exploded (`telemetry` has one element per robot, or none if it is unknown), closes the file
+  // and gives it its name. Throws like commit().
   void finish(std::span<const Telemetry> telemetry);
 
   std::int64_t frames() const { return frames_; }
@@ -95,6 +95,8 @@ class TrajectoryWriter {
   std::vector<Vec3> positions_, velocities_;  // frames_per_block_ times offsets_.back() elements
   std::vector<std::int64_t> steps_;           // of the frames since the last flush
   std::vector<double> times_;
+  std::int64_t next_step_ = 0;  // of the frame that is being filled
+  double next_time_ = 0;        // [s]
   std::size_t frames_per_block_ = 1;
   std::int64_t frames_ = 0, written_ = 0, flushed_ = 0;  // written_: in the file; flushed_: announced by step
   bool started_ = false;                                 // the datasets of the frames exist

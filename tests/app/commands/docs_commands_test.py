@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The commands of a page work: every line of it that begins with `mercury`, in the order of the page, in one folder.
+
+    docs_commands_test.py MERCURY PAGE.md
+
+The folder holds what a reader would have: the sample robots, the folder my-robots. Commands are shortened so that they take
+moments: fewer robots, shorter trials, smaller pictures. Commands that need a scheduler or several hosts are left out.
+"""
+
+import os
+import re
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[3]
+SHORT = {  # appended; the last value of an option counts
+    "evolve": ["--population", "4", "--generations", "10", "--seconds", "0.05", "--settle", "0"],
+    "run": ["--seconds", "0.1"],
+    "render": ["--seconds", "0.1", "--size", "160x120"],
+    "new": ["--seconds", "0.1"],
+    "bench": ["--seconds", "0.05"],
+}
+MOST = {"--count": 2, "--best-of": 4, "--ancestors": 3, "--points": 200}  # values that are larger are lowered
+WRITES = {"render", "new", "mutate", "cross", "grow", "run", "bench"}     # repeated on a page, they replace their files
+DEADLINE = 60  # seconds
+
+
+def shortened(arguments):
+    """The same command, but quick."""
+    command = arguments[0] if arguments else ""
+    result = list(arguments)
+    for i in range(1, len(result)):
+        limit = MOST.get(result[i - 1])
+        if limit and result[i].isdigit():
+            result[i] = str(min(int(result[i]), limit))
+        if result[i - 1] == "--random" and (match := re.fullmatch(r"(\w+):(\d+)(.*)", result[i])):
+            result[i] = f"{match[1]}:{min(int(match[2]), 4)}{match[3]}"
+    extra = list(SHORT.get(command, []))
+    if command == "evolve" and any(word in arguments for word in ["--resume", "--shard", "--merge"]):
+        extra = ["--generations", "11"] if "--resume" in arguments else []
+    if command == "new" and "--best-of" not in arguments:
+        extra = []
+    if command == "new" and "--settle" in arguments:
+        extra += ["--settle", "0.05"]
+    if command in WRITES:
+        extra.append("--force")
+    return result + extra
+
+
+def show(program, arguments):
+    """Opens a window on a display of its own, and closes it once it is ready."""
+    sys.path.insert(0, str(PROJECT / "tests/app/window"))
+    from window_driver import Display
+    with tempfile.TemporaryDirectory() as scratch:
+        report = Path(scratch) / "report.jsonl"
+        display = Display(640, 480)
+        environment = dict(os.environ, DISPLAY=display.name, XDG_CONFIG_HOME=scratch, LIBGL_ALWAYS_SOFTWARE="1")
+        environment.pop("WAYLAND_DISPLAY", None)
+        process = subprocess.Popen([program, *arguments, "--device", "cpu", "--quality", "low", "--size", "320x240",
+                                    "--report", report], env=environment)
+        try:
+            deadline = time.monotonic() + DEADLINE
+            while not (report.exists() and '"ready"' in report.read_text()):
+                if process.poll() is not None or time.monotonic() > deadline:
+                    return process.returncode or 1
+                time.sleep(0.02)
+        finally:
+            process.terminate()
+            process.wait()
+            display.close()
+    return 0
+
+
+def commands(page):
+    """(line number, text) of each command: indented lines, blocks of sh, and inline ones stay prose."""
+    lines = page.read_text(encoding="utf-8").split("\n")
+    fence = None
+    number = 0
+    while number < len(lines):
+        line = lines[number]
+        number += 1
+        if line.startswith("```"):
+            fence = None if fence is not None else line[3:]
+            continue
+        indented = fence is None and line.startswith("    ")
+        if not indented and fence not in ("sh", "console"):
+            continue
+        first = number
+        text = line.strip()
+        while text.endswith("\\") and number < len(lines):
+            text = text[:-1] + lines[number].strip()
+            number += 1
+        if re.match(r"(build/bin/)?mercury\s", text):
+            # What stands two columns or more behind a command explains it.
+            yield first, re.split(r"\s{2,}(?![\s-])|\s+#\s", text)[0]
+
+
+def is_for_one_host(text):
+    return not re.search(r"\.\.\.|\bRUN\b|\bFILE\b|SLURM", text)
+
+
+def make_folder(folder, program):
+    shutil.copytree(PROJECT / "robots/library", folder / "robots/library",
+                    ignore=lambda _, names: [name for name in names if not name.endswith((".json", ".cbor"))])
+    for robot in (folder / "robots/library").iterdir():
+        shutil.copy(robot, folder)
+    run = dict(check=True, cwd=folder, capture_output=True)
+    subprocess.run([program, "new", "voxel", "--count", "3", "--seed", "7", "-o", "my-robots"], **run)
+    subprocess.run([program, "run", "my-robots", "--seconds", "0.1", "--record", "run.h5"], **run)
+    for name in ["bin", "build/bin"]:
+        shim = folder / name / "mercury"
+        shim.parent.mkdir(parents=True)
+        shim.write_text(f'#!/bin/sh\nexec "{sys.executable}" -B "{Path(__file__).resolve()}" --as "{program}" "$@"\n')
+        shim.chmod(shim.stat().st_mode | stat.S_IXUSR)
+
+
+def test(program, page):
+    found = [(line, text) for line, text in commands(page) if is_for_one_host(text)]
+    if not found:
+        print(f"{page.name} has no commands", file=sys.stderr)
+        return 1
+    failures = 0
+    with tempfile.TemporaryDirectory(prefix="mercury-docs-") as scratch:
+        folder = Path(scratch)
+        make_folder(folder, program)
+        environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
+        for line, text in found:
+            done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, capture_output=True, text=True)
+            print(f"{'ok    ' if done.returncode == 0 else 'FAILED'} {page.name}:{line}: {text}")
+            if done.returncode != 0:
+                failures += 1
+                print(done.stderr, file=sys.stderr)
+    return 1 if failures else 0
+
+
+def main():
+    if sys.argv[1] == "--as":
+        program, arguments = sys.argv[2], sys.argv[3:]
+        if arguments[:1] == ["view"]:
+            return show(program, arguments)
+        return subprocess.run([program, *shortened(arguments)]).returncode
+    return test(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve())
+
+
+sys.exit(main())
