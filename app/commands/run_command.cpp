@@ -106,7 +106,7 @@ int report_results(const RunOptions& options, const RunReport& report) {
     warn(fmt::format("{} of {} robots exploded; a smaller --dt or --solver xpbd helps", exploded,
                      report.robots.size() - failed));
   if (report.interrupted) {
-    warn(fmt::format("stopped at {:.6g} s", report.seconds));
+    warn(report.problem.empty() ? fmt::format("stopped at {:.6g} s", report.seconds) : report.problem);
     if (report.missing > 0)
       warn(fmt::format("{} robots did not come so far and are not in the report", report.missing));
     return 1;
@@ -167,7 +167,14 @@ int run_recorded(const RunOptions& options, const RobotSequence& robots, const C
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
   const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation);
-  RunReport report = simulate(simulation, std::move(gathered.identities), trials, {.recorder = recorder.get()});
+  RunReport report;
+  try {
+    report = simulate(simulation, std::move(gathered.identities), trials, {.recorder = recorder.get()});
+  } catch (const DeviceError&) {
+    recorder->finish_without_device();
+    warn(fmt::format("{} holds the {} frames so far", options.record, recorder->frames()));
+    throw;
+  }
   add_failed(report, std::move(gathered.failed));
   const int status = report_results(options, report);
   recorder->finish();  // it may fail, so it comes last

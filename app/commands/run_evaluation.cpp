@@ -120,7 +120,13 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   bool stopped = false;
   {
     Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count));
-    stopped = !take_results(evaluator, progress, request.settling + request.steps, take);
+    try {
+      stopped = !take_results(evaluator, progress, request.settling + request.steps, take);
+    } catch (const DeviceError& error) {
+      if (report.robots.empty()) throw;
+      report.problem = error.what();
+      stopped = true;
+    }
   }
   report.missing = robots.count - report.robots.size();
   report.interrupted = stopped && (report.missing > 0 || reached.value_or(0) < request.steps);

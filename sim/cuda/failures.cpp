@@ -46,6 +46,10 @@ std::string failure_text(cudaError_t error, const char* what) {
   if (loses_the_device(error))
     return std::string("the GPU failed while ") + what + " (" + reason +
            "): start the program again; nvidia-smi and the system's log show the state of the GPU";
+  if (error == cudaErrorMemoryAllocation)
+    return "the GPU has no memory left: other programs use it (nvidia-smi shows which); wait, "
+           "or "
+           "give another device";
   if (error == cudaErrorDevicesUnavailable)
     return "the GPU cannot be used now; another program may have it alone (nvidia-smi shows who uses it): wait, or "
            "give "

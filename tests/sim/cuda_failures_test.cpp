@@ -23,6 +23,7 @@ TEST(CudaFailures, SayWhatHappenedAndWhatHelps) {
               MatchesRegex("the GPU failed while stepping \\(.+\\): start the program again.*"));
   EXPECT_THAT(cuda::failure_text(cudaErrorECCUncorrectable, "stepping"), HasSubstr("start the program again"));
   EXPECT_THAT(cuda::failure_text(cudaErrorDevicesUnavailable, "choosing the device"), HasSubstr("another program"));
+  EXPECT_THAT(cuda::failure_text(cudaErrorMemoryAllocation, "choosing the device"), HasSubstr("other programs use it"));
   EXPECT_THAT(cuda::failure_text(cudaErrorInvalidValue, "stepping"), MatchesRegex("CUDA: stepping: .+"));
 }
 
