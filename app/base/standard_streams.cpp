@@ -21,6 +21,8 @@ sigset_t broken_pipe() {
   return set;
 }
 
+int flush_error = 0;  // of the first flush that failed
+
 }  // namespace
 
 void replace_closed_streams() {
@@ -32,10 +34,14 @@ void replace_closed_streams() {
   }
 }
 
+void flush_results_so_far() {
+  if (std::fflush(stdout) != 0 && flush_error == 0) flush_error = errno;
+}
+
 void flush_standard_output() {
-  errno = 0;
-  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
-  const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  flush_results_so_far();
+  if (flush_error == 0 && !std::ferror(stdout)) return;
+  const std::string reason = flush_error != 0 ? std::string(": ") + std::strerror(flush_error) : "";
   throw std::runtime_error("standard output cannot be written" + reason);
 }
 

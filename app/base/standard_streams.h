@@ -8,6 +8,8 @@ namespace mercury {
 // standard error. Reading such an input and writing such an output still fails.
 void replace_closed_streams();
 
+// Writes the results printed so far. A failure is reported by flush_standard_output().
+void flush_results_so_far();
 // Writes what is left of the results. Throws std::runtime_error("standard output cannot be written: ...") if they could
 // not be written.
 void flush_standard_output();

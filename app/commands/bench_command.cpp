@@ -13,6 +13,7 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/base/standard_streams.h"
 #include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
@@ -246,7 +247,7 @@ class Results {
  private:
   static void print(const std::string& text) {
     fmt::print("{}", text);
-    std::fflush(stdout);
+    flush_results_so_far();
   }
   bool writes_file() const { return !options_.csv.empty() && !is_standard_output(options_.csv); }
 

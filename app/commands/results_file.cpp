@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/base/interrupt.h"
+#include "app/base/standard_streams.h"
 #include "robots/whole_file.h"
 
 namespace mercury {
@@ -52,7 +53,7 @@ void write_results(const std::string& file, std::string_view content) {
     fmt::print("{}", content);
     return;
   }
-  std::fflush(stdout);  // what was printed so far is not lost if this takes long, or fails
+  flush_results_so_far();  // what was printed so far is not lost if this takes long, or fails
   std::optional<PipeWithReader> pipe;
   if (is_named_pipe(file)) pipe.emplace(file);
   write_whole_file(file, content);

@@ -23,7 +23,8 @@ std::span<const Target> targets();
 // Null if there is none.
 const Target* find_target(std::string_view name);
 
-// Calls check(), and fail() for errors that a user should not see. Returns why the input was refused; empty = it was read.
+// Calls check(), and fail() for errors that a user should not see. Returns why the input was refused; empty = it was
+// read.
 std::string run(const Target& target, std::string_view input);
 
 // Prints a line and aborts.

@@ -85,7 +85,7 @@ TEST_P(FullDisk, IsReportedInOneLine) {
   const Outcome outcome =
       run_program("env", {"NO_SPACE_AFTER=" + std::to_string(GetParam()), std::string("LD_PRELOAD=") + MERCURY_NO_SPACE,
                           MERCURY_PROGRAM, "run", "--random", "voxel:4", "--seconds", "0.2", "--record", file(),
-                          "--every", "1", "--quiet"});
+                          "--every", "1", "--quiet", "--force"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.messages, "mercury: " + file() + ": the disk is full; nothing was kept\n");
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
