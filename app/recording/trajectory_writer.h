@@ -83,6 +83,7 @@ class TrajectoryWriter {
   void create_frames(hid_t particles, std::size_t masses);
   void write_block();
   void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
+  bool survives_kill() const;  // otherwise the file can be read only once it is complete
   void flush();
   template <class Work>
   void guarded(const Work& work);
