@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "render/context.h"
+#include "render/gl_failure.h"
 #include "render/shader_source.h"
 
 namespace mercury::render {
@@ -94,8 +95,10 @@ Framebuffer make_framebuffer(std::initializer_list<GLuint> colors, GLuint depth)
   if (depth) glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth, 0);
   glNamedFramebufferDrawBuffers(name, GLsizei(targets.size()), targets.data());
   if (targets.empty()) glNamedFramebufferReadBuffer(name, GL_NONE);
-  if (glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+  if (glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw_if_gl_failed();
     throw ContextError("the driver cannot draw into a framebuffer of this kind");
+  }
   return framebuffer;
 }
 

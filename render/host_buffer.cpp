@@ -2,6 +2,7 @@
 #include "render/host_buffer.h"
 
 #include "render/context.h"
+#include "render/gl_failure.h"
 
 namespace mercury::render {
 namespace {
@@ -17,7 +18,9 @@ HostBuffer::HostBuffer(std::size_t bytes) : size_(bytes) {
   const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   glNamedBufferStorage(name, GLsizeiptr(bytes), nullptr, access | GL_CLIENT_STORAGE_BIT);
   mapped_ = static_cast<const std::uint8_t*>(glMapNamedBufferRange(name, 0, GLsizeiptr(bytes), access));
-  if (!mapped_) throw ContextError("the driver does not give host memory to read back into");
+  if (mapped_) return;
+  throw_if_gl_failed();
+  throw ContextError("the driver does not give host memory to read back into");
 }
 
 void HostBuffer::start(const Buffer& from, std::size_t bytes) {
@@ -33,6 +36,7 @@ const std::uint8_t* HostBuffer::finish() {
   forget();
   if (outcome != GL_ALREADY_SIGNALED && outcome != GL_CONDITION_SATISFIED)
     throw ContextError("the card did not finish a picture within 20 s");
+  throw_if_gl_failed();
   return mapped_;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/gl_objects.h"
 #include "tests/render/offscreen.h"
 #include "tests/render/wobbling_bodies.h"
 
@@ -38,6 +39,23 @@ TEST_F(ReadbackTest, RgbaIsRgbWithOpaqueAlpha) {
     for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(rgb.bytes[3 * i + c], rgba.bytes[4 * i + c]);
     ASSERT_EQ(rgba.bytes[4 * i + 3], 255);
   }
+}
+
+// A card without room draws nothing and only sets a flag: the picture would be black.
+TEST_F(ReadbackTest, PicturesDrawnWithoutMemoryAreRefused) {
+  Renderer renderer = make_renderer();
+  draw(renderer, 1);
+  const Image good = read(renderer);
+  Buffer larger_than_any_card;
+  larger_than_any_card.reserve(std::size_t(1) << 46);
+  try {
+    (void)read(renderer);
+    FAIL() << "the picture was accepted";
+  } catch (const ContextError& error) {
+    EXPECT_NE(std::string(error.what()).find("no memory left to draw with"), std::string::npos) << error.what();
+  }
+  context_->take_messages();
+  EXPECT_EQ(read(renderer).bytes, good.bytes) << "the failure is reported once";
 }
 
 TEST_F(ReadbackTest, UpperRowComesFirst) {
