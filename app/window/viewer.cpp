@@ -238,6 +238,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   const bool clock = !preferences_.panels;  // the play bar has its own clock
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, clock);
   mouse_.draw(area_, shown_camera_);
+  panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   if (skips_picture()) {
     imgui_.discard_frame();

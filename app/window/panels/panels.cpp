@@ -32,9 +32,11 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
   if (help_open_) draw_help(help_open_, context_.log);
-  context_.dialogs.draw(context_.log);
   context_.toasts.draw(area.low, area.high, dt, context_.log);
 }
+
+// Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.
+void Panels::draw_dialogs() { context_.dialogs.draw(context_.log); }
 
 void Panels::work(double seconds) {
   left_.work(context_, seconds);

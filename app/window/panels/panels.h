@@ -29,8 +29,10 @@ class Panels {
 
   // Draws menu, columns and play bar; returns the area that is left for the picture.
   ViewportArea draw_frame();
-  // Draws what lies over the picture: explosions, help, dialogs, messages.
+  // Draws what lies over the picture: explosions, help, messages.
   void draw_over(const ViewportArea& area, const render::Camera& camera, double dt);
+  // Draws the open dialog. Call it after everything else that draws windows or tooltips.
+  void draw_dialogs();
   // Executes a command of a key or menu.
   void execute(const Command& command);
   // Opens a panel by its title.

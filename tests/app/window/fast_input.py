@@ -37,24 +37,25 @@ class FastInput:
         self.button(number, True)
         self.button(number, False)
 
-    def hold(self, key, down):
+    def hold(self, key, down, after=0):
+        """`after`: how long the server waits before this event [ms]."""
         code = self.x11.XKeysymToKeycode(self.display, self.x11.XStringToKeysym(key.encode()))
         assert code, f"no key {key}"
         # GLFW drops a second press of a key within the same millisecond.
-        self.xtest.XTestFakeKeyEvent(self.display, code, int(down), 2 if down else 0)
+        self.xtest.XTestFakeKeyEvent(self.display, code, int(down), max(after, 2) if down else after)
         self.pressed += bool(down)
 
-    def key(self, name):
-        """ "a", "plus", "ctrl+z" """
+    def key(self, name, after=0):
+        """ "a", "plus", "ctrl+z"; `after`: how long the server waits before it [ms]."""
         *held, key = name.split("+")
         held = [{"ctrl": "Control_L", "shift": "Shift_L"}[name] for name in held]
         symbol = self.x11.XStringToKeysym(key.encode())
         code = self.x11.XKeysymToKeycode(self.display, symbol)
         if self.x11.XkbKeycodeToKeysym(self.display, code, 0, 0) != symbol and "Shift_L" not in held:
             held.append("Shift_L")
-        for modifier in held:
-            self.hold(modifier, True)
-        self.hold(key, True)
+        for pressed in [*held, key]:
+            self.hold(pressed, True, after)
+            after = 0
         self.hold(key, False)
         for modifier in reversed(held):
             self.hold(modifier, False)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The real window under random input: window_random_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import itertools
 import os
 import random
 import shutil
@@ -18,6 +19,23 @@ class RandomInputTest(WindowCase):
         for seed in SEEDS:
             with self.subTest(seed=seed):
                 RandomUser(self, seed).play(PRESSES)
+
+
+    def test_a_dialog_that_opens_together_with_a_tooltip(self):
+        """The tooltip of a robot appears a quarter of a second after the mouse came to rest on it."""
+        user = RandomUser(self, SEEDS[0])
+        window = user.open()
+        since = window.mark()
+        window.key("space")  # robots that hold still
+        x, y = window.frame(lambda frame: not frame["playing"] and frame["where"], since)["where"][0]
+        for trial, key in zip(range(40), itertools.cycle(["ctrl+o", "ctrl+s", "F1"])):
+            user.input.move(round(x) + trial % 2, round(y))
+            user.input.key(key, after=user.chance.randrange(210, 330))
+            user.input.key("Escape", after=200)
+            user.input.flush()
+            user.wait(window, 0)
+            self.assertIsNone(window.process.poll(), f"{key}, trial {trial}: {window.stderr()}")
+        self.assertEqual(window.gl_messages(), [])
 
 
 class RandomUser:
