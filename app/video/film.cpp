@@ -11,7 +11,9 @@
 
 #include "app/video/frame_encoder.h"
 #include "app/video/group_drawing.h"
+#include "app/video/picture_memory.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 
 namespace mercury {
 namespace {
@@ -32,6 +34,8 @@ void wait_for(std::future<void>& task) {
 void prepare(DrawingThread::Canvas& canvas, PictureSize size, render::Quality quality) {
   render::Renderer& renderer = canvas.offscreen.renderer;
   renderer.set_quality(quality);
+  if (size.width != renderer.width() || size.height != renderer.height())
+    require_memory_for_pictures(size, canvas.offscreen.context->is_software(), usable_host_memory());
   try {
     renderer.resize(size.width, size.height);
   } catch (const render::ContextError& error) {

@@ -3,6 +3,9 @@
 
 #include <utility>
 
+#include "app/video/picture_memory.h"
+#include "mercury/host_memory.h"
+
 namespace mercury {
 namespace {
 
@@ -15,6 +18,7 @@ float aspect_of(const render::Renderer& renderer) {
 OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
                                           int cuda_device) {
   auto context = render::make_context({.kind = kind, .cuda_device = cuda_device, .debug = false});
+  require_memory_for_pictures(size, context->is_software(), usable_host_memory());
   render::Renderer renderer(*context, {.width = size.width, .height = size.height, .quality = quality});
   return {std::move(context), std::move(renderer)};
 }

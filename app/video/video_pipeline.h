@@ -21,7 +21,7 @@ struct OffscreenRenderer {
   render::Renderer renderer;
 };
 // `cuda_device`: draws on the GPU with that CUDA ordinal, if there is a choice; -1 = any. Throws render::ContextError
-// when no context is available.
+// when no context is available, ParameterError("size", ...) when pictures of this size do not fit into memory.
 OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
                                           int cuda_device = -1);
 
