@@ -3,11 +3,22 @@
 
 #include <fmt/format.h>
 
+#include "app/base/messages.h"
 #include "app/recording/configuration_json.h"
 
 namespace mercury {
 
-void print_line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, text); }
+namespace {
+
+constexpr std::size_t longest = 10'000;  // of a line [bytes]
+
+}  // namespace
+
+void print_heading(const std::string& text) { fmt::print("{}\n", printable(text, longest)); }
+
+void print_line(const std::string& what, const std::string& text) {
+  fmt::print("  {:<12}{}\n", what, printable(text, longest));
+}
 
 std::string environment_text(const Configuration& configuration) {
   std::string text(name_of(configuration.environment));

@@ -9,6 +9,8 @@
 
 namespace mercury {
 
+// What is described. Names come from files: what a terminal would obey is shown as an escape, here and below.
+void print_heading(const std::string& text);
 // "  masses      300"
 void print_line(const std::string& what, const std::string& text);
 

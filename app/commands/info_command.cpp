@@ -7,6 +7,7 @@
 #include <memory>
 #include <variant>
 
+#include "app/base/messages.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
@@ -95,7 +96,7 @@ void describe(const Robot& robot, const std::filesystem::path&) {
   const Inspection found = inspect(robot);
   const std::string kind = kind_of(robot), environment = environment_of(robot);
   const Generator* generator = find_generator(kind);
-  fmt::print("{}\n", robot.name);
+  print_heading(robot.name);
   if (!kind.empty() || !environment.empty())
     print_line(
         "made",
@@ -127,7 +128,7 @@ int describe_machine(const std::string& ffmpeg) {
 void describe(const TrajectoryReader& trajectory) {
   constexpr std::size_t shown = 20;
   const Configuration& configuration = trajectory.configuration();
-  fmt::print("{}\n", trajectory.path().string());
+  print_heading(trajectory.path().string());
   if (trajectory.unfinished()) {
     const std::filesystem::path& path = trajectory.path();
     const bool temporary = path.extension() == ".part";
@@ -153,13 +154,13 @@ void describe(const TrajectoryReader& trajectory) {
     if (!robot.actuators.empty()) text += fmt::format(", {} actuators", robot.actuators.size());
     if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
     if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
-    fmt::print("    {}: {}\n", group, text);
+    fmt::print("    {}: {}\n", printable(group), text);
   }
   if (trajectory.robots().size() > shown) fmt::print("    and {} more\n", trajectory.robots().size() - shown);
 }
 
 void describe(const Repro& repro, const std::filesystem::path& file) {
-  fmt::print("{}\n", file.string());
+  print_heading(file.string());
   print_line("robot", fmt::format("{}, {} masses, {} springs, {} faces", repro.robot.name, repro.robot.masses.size(),
                                   repro.robot.springs.size(), repro.robot.faces.size()));
   print_line("exploded",

@@ -174,7 +174,7 @@ void describe(const RunHistory& run) {
   const RunSettings& settings = run.settings();
   const Configuration& configuration = settings.evolution.configuration;
   const Totals totals = totals_of(run);
-  fmt::print("{}\n", name_of_run(run));
+  print_heading(name_of_run(run));
   print_line("made by", settings.program);
   print_line("evolves", genome_text(settings.space));
   print_line("for", fmt::format("{}", fmt::join(settings.evolution.objectives, ", ")));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <sstream>
 
 #include "app/base/messages.h"
 #include "tests/app/program.h"
@@ -139,6 +140,33 @@ TEST_F(HostileInput, InNames) {
     expect_one_line({"evolve", path("new-run"), "--objective", name});
     expect_one_line({"evolve", path("new-run"), "--axis", name});
     expect_one_line({"evolve", name, "--resume"});
+  }
+}
+
+// What a person reads shows escapes, in as many lines as always.
+TEST_F(HostileInput, InTheNameOfARobotDoesNotReachTheTerminal) {
+  nlohmann::json robot = nlohmann::json::parse(read("good.json"));
+  const std::string plain = "A", hostile = "\x1b[31mred\nline\x07\xe2\x80\xae";
+  const auto output = [&](const std::string& name, std::vector<std::string> arguments) {
+    robot["name"] = name;
+    robot["actuators"] = {{{"name", name}, {"materials", {1}}}};
+    write("named.json", robot.dump());
+    mercury({"run", path("named.json"), "--seconds", "0.01", "--device", "cpu", "--record", path("named.h5"), "--force",
+             "-q"});
+    return mercury(arguments).output;
+  };
+  const std::vector<std::vector<std::string>> commands{
+      {"info", path("named.json")},
+      {"info", path("named.h5")},
+      {"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"},
+      {"mutate", path("named.json"), "-o", path("child.json"), "--dry-run"}};
+  for (const std::vector<std::string>& arguments : commands) {
+    SCOPED_TRACE(arguments[0] + " " + arguments[1]);
+    const std::string expected = output(plain, arguments), shown = output(hostile, arguments);
+    EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), std::count(expected.begin(), expected.end(), '\n'))
+        << shown;
+    std::istringstream lines(shown);
+    for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, printable(line, 10'000));
   }
 }
 
