@@ -11,7 +11,7 @@ packages_to_build=(
   nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev            # robots
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev fonts-lato   # render
   libmuparser-dev                                                        # evolution
-  libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev   # app
+  libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev zlib1g-dev  # app
 )
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
 packages_welcome=(libosmesa6 libopenmpi-dev openmpi-bin)  # drawing where EGL is missing (newer distributions no longer have OSMesa); evolution on several hosts

@@ -15,7 +15,7 @@ LEFT_OUT = {"bench", "tests", "examples"}  # on top of everything
 
 # Folder: (middle, row from the top, width, color, what it is).
 PLACES = {
-    "python": (1050, 5, 150, GOLD, "the package mercurysim"),
+    "python": (1050, 4, 150, GOLD, "the package mercurysim"),
     "app/commands": (690, 0, 210, VIOLET, "view, render, run, new, info, bench"),
     "app/window": (690, 1, 190, VIOLET, "the main loop of the window"),
     "app/window/panels": (690, 2, 190, VIOLET, "what the user reads and changes"),
@@ -24,6 +24,7 @@ PLACES = {
     "app/live": (560, 4, 190, VIOLET, "scene, physics thread, undo"),
     "app/window/toolkit": (840, 4, 190, VIOLET, "ImGui, fonts, widgets"),
     "app/options": (560, 5, 190, VIOLET, "command line and TOML"),
+    "app/export": (785, 5, 170, VIOLET, "files of other programs"),
     "app/recording": (470, 6, 170, VIOLET, "HDF5 and repro files"),
     "app/video": (660, 6, 170, VIOLET, "simulate, draw, encode"),
     "app/base": (445, 7, 150, VIOLET, "Ctrl-C, progress, queues"),

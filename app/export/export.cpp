@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/export/export.h"
+
+#include <fmt/format.h>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+void require_content(const ExportFormat& format, const Robot& robot, bool springs) {
+  if (springs && format.springs == ExportFormat::Springs::never)
+    throw ParameterError(
+        "springs", fmt::format("a {} file holds no springs; give {}", format.extension, format_names(holds_springs)));
+  if (format.needs_skin && robot.faces.empty() && !springs)
+    throw InputError(robot.name,
+                     fmt::format("has no skin, which a {} file holds; give --format vtu, or --springs with {}",
+                                 format.extension, format_names([](const ExportFormat& other) {
+                                   return other.springs == ExportFormat::Springs::if_asked;
+                                 })));
+}
+
+}  // namespace
+
+const ExportFormat& format_for(const std::filesystem::path& file, const std::string& name) {
+  const ExportFormat* by_extension = export_format_of(file);
+  if (name.empty()) {
+    if (by_extension) return *by_extension;
+    throw ParameterError("format", fmt::format("{} does not say it; give {}", file.string(), format_names()));
+  }
+  const ExportFormat& format = export_format(name);
+  if (by_extension && by_extension != &format)
+    throw ParameterError("output", fmt::format("{} is the name of a {} file; give one that ends in {}", file.string(),
+                                               by_extension->name, format.extension));
+  return format;
+}
+
+void require_pose(const ExportFormat& format, const Robot& robot, bool springs) {
+  if (!holds_pose(format))
+    throw ParameterError("format",
+                         fmt::format("{} holds a motion, which comes from a recording: mercury run ROBOT --seconds 5 "
+                                     "--record run.h5; for one pose give {}",
+                                     format.name, format_names(holds_pose)));
+  require_content(format, robot, springs);
+}
+
+void require_motion(const ExportFormat& format, const Robot& robot, bool springs) {
+  if (!holds_motion(format))
+    throw ParameterError("format", fmt::format("{} holds one pose; choose a moment of the recording with --still S, or "
+                                               "give {}",
+                                               format.name, format_names(holds_motion)));
+  require_content(format, robot, springs);
+}
+
+void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,
+                 const std::string& option) {
+  outputs.add_file(option, file.string());
+  if (format.files_beside)
+    for (const std::filesystem::path& other : format.files_beside(file)) outputs.add_file(option, other.string());
+  if (format.folder_beside) outputs.add_new_folder(option, format.folder_beside(file).string());
+}
+
+std::string outputs_text(const ExportFormat& format, const std::filesystem::path& file) {
+  std::string text = file.string();
+  if (format.files_beside)
+    for (const std::filesystem::path& other : format.files_beside(file)) text += fmt::format(", {}", other.string());
+  if (format.folder_beside) text += fmt::format(", the folder {}", format.folder_beside(file).string());
+  return text;
+}
+
+}  // namespace mercury

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exports robots and motions, checked: what the command, the window and Python share.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/base/output_files.h"
+#include "app/export/export_format.h"
+
+namespace mercury {
+
+// The format that a file is written in: that of `name` if it is not empty, else that of the file's extension. Throws
+// ParameterError("format" | "output", ...) for an unknown format, and for a file with another format's extension.
+const ExportFormat& format_for(const std::filesystem::path& file, const std::string& name);
+
+// Throws InputError that begins with the robot's name, or ParameterError("springs" | "format", ...), for what the
+// format cannot hold.
+void require_pose(const ExportFormat& format, const Robot& robot, bool springs);
+void require_motion(const ExportFormat& format, const Robot& robot, bool springs);
+
+// Adds the file and what the format writes beside it to outputs that are checked.
+void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,
+                 const std::string& option);
+
+// All that is written: "eel.obj and eel.mtl".
+std::string outputs_text(const ExportFormat& format, const std::filesystem::path& file);
+
+}  // namespace mercury

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/export/export_format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+using Springs = ExportFormat::Springs;
+
+std::vector<std::filesystem::path> beside_obj(const std::filesystem::path& obj) { return {materials_beside(obj)}; }
+
+std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2) {
+  return {mesh_beside(pc2), materials_beside(mesh_beside(pc2))};
+}
+
+constexpr std::array formats{
+    ExportFormat{.name = "obj",
+                 .extension = ".obj",
+                 .title = "Wavefront OBJ",
+                 .help = "skin with materials (.mtl) for Blender and most other programs",
+                 .springs = Springs::if_asked,
+                 .pose = write_obj,
+                 .files_beside = beside_obj},
+    ExportFormat{.name = "ply",
+                 .extension = ".ply",
+                 .title = "PLY",
+                 .help = "skin with colours for MeshLab and mesh libraries",
+                 .springs = Springs::if_asked,
+                 .pose = write_ply},
+    ExportFormat{.name = "stl",
+                 .extension = ".stl",
+                 .title = "STL",
+                 .help = "skin without colours for printing and CAD",
+                 .pose = write_stl},
+    ExportFormat{.name = "glb",
+                 .extension = ".glb",
+                 .title = "glTF",
+                 .help = "skin with colours for web viewers; a short motion as morph targets",
+                 .springs = Springs::if_asked,
+                 .pose = write_glb,
+                 .motion = write_glb_motion},
+    ExportFormat{.name = "usda",
+                 .extension = ".usda",
+                 .title = "USD",
+                 .help = "skin with colours for Blender, usdview and other USD programs",
+                 .springs = Springs::if_asked,
+                 .pose = write_usda,
+                 .motion = write_usda_motion},
+    ExportFormat{.name = "pc2",
+                 .extension = ".pc2",
+                 .title = "Point cache",
+                 .help = "moves the mesh (.obj) written beside it: Blender's Mesh Cache, 3ds Max",
+                 .springs = Springs::if_asked,
+                 .motion = write_pc2,
+                 .files_beside = beside_pc2},
+    ExportFormat{.name = "vtu",
+                 .extension = ".vtu",
+                 .title = "VTK grid",
+                 .help = "skin and springs with material, strain, force and velocity for ParaView",
+                 .springs = Springs::always,
+                 .needs_skin = false,
+                 .pose = write_vtu},
+    ExportFormat{.name = "pvd",
+                 .extension = ".pvd",
+                 .title = "VTK series",
+                 .help = "the same for every frame of a motion, a .vtu file each",
+                 .springs = Springs::always,
+                 .needs_skin = false,
+                 .motion = write_pvd,
+                 .folder_beside = frames_beside},
+    ExportFormat{.name = "xdmf",
+                 .extension = ".xdmf",
+                 .title = "XDMF",
+                 .help = "describes the recording itself for ParaView, which reads its numbers from there",
+                 .springs = Springs::always,
+                 .needs_skin = false,
+                 .motion = write_xdmf},
+};
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() { return formats; }
+
+const ExportFormat& export_format(std::string_view name) {
+  const auto found = std::ranges::find(formats, name, &ExportFormat::name);
+  if (found == formats.end())
+    throw ParameterError("format", fmt::format("\"{}\" is not accepted; give {}", name, format_names()));
+  return *found;
+}
+
+const ExportFormat* export_format_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  const auto found = std::ranges::find(formats, extension, &ExportFormat::extension);
+  return found == formats.end() ? nullptr : &*found;
+}
+
+std::string format_names(bool (*condition)(const ExportFormat&)) {
+  std::string names;
+  for (const ExportFormat& format : formats) {
+    if (!condition(format)) continue;
+    if (!names.empty()) names += ", ";
+    names += format.name;
+  }
+  return names;
+}
+
+}  // namespace mercury

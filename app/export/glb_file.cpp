@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF 2.0 in one binary file. glTF has y up; the node turns the robot, whose numbers stay as they are.
+//
+// A motion has a morph target per frame, the difference from the first frame. The weight of target k is 1 at the time
+// of frame k and 0 at all others; viewers interpolate linearly between frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/base/version.h"
+#include "app/export/writers.h"
+#include "app/recording/configuration_json.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Numbers that the format gives to its words.
+enum Gltf { float_type = 5126, short_type = 5123, array_buffer = 34962, element_buffer = 34963, lines = 1 };
+
+constexpr std::size_t most_targets = 256;                   // WebGL 2 promises textures of as many layers
+constexpr std::size_t largest_glb = std::size_t{64} << 20;  // of the frames [bytes]
+
+ordered_json shortest_numbers(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+// The document, and the numbers behind it.
+class Document {
+ public:
+  ordered_json json;
+  std::string numbers;
+
+  // Adds a list of numbers and its description; returns the accessor's index.
+  template <class Value>
+  std::size_t add(std::span<const Value> values, int component, const char* type, std::size_t count, int target = 0) {
+    ordered_json view{{"buffer", 0}, {"byteOffset", numbers.size()}, {"byteLength", values.size_bytes()}};
+    if (target != 0) view["target"] = target;
+    numbers.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+    numbers.append((4 - numbers.size() % 4) % 4, '\0');
+    json["bufferViews"].push_back(view);
+    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                 {"componentType", component},
+                                 {"count", count},
+                                 {"type", type}});
+    return json["accessors"].size() - 1;
+  }
+  std::size_t add_vectors(const std::vector<Vec3>& values) {
+    const std::size_t index = add(std::span(values), float_type, "VEC3", values.size(), array_buffer);
+    Vec3 low = values.front(), high = low;
+    for (const Vec3 v : values) {
+      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    json["accessors"][index]["min"] = shortest_numbers(low);
+    json["accessors"][index]["max"] = shortest_numbers(high);
+    return index;
+  }
+  std::size_t add_floats(const std::vector<float>& values) {
+    return add(std::span(values), float_type, "SCALAR", values.size());
+  }
+
+  void write(OutputStream& file) {
+    json["buffers"] = {{{"byteLength", numbers.size()}}};
+    std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    text.append((4 - text.size() % 4) % 4, ' ');
+    const auto size = [](std::size_t bytes) { return static_cast<std::uint32_t>(bytes); };
+    file.text("glTF");
+    file.raw(std::uint32_t{2});
+    file.raw(size(12 + 8 + text.size() + 8 + numbers.size()));
+    file.raw(size(text.size()));
+    file.text("JSON");
+    file.text(text);
+    file.raw(size(numbers.size()));
+    file.text(std::string_view("BIN\0", 4));
+    file.text(numbers);
+  }
+};
+
+ordered_json material_of(const ExportedMaterial& material) {
+  const auto [r, g, b] = render::linear_of(material.color);
+  return {{"name", material.name},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {shortest(r), shortest(g), shortest(b), 1}},
+            {"metallicFactor", 0},
+            {"roughnessFactor", 0.5}}}};
+}
+
+// A primitive per material, without normals: viewers then shade each face flat.
+void add_primitives(Document& document, const SkinShape& shape, std::size_t positions, const ordered_json& targets) {
+  ordered_json primitives = ordered_json::array();
+  const auto add = [&](const std::vector<std::uint16_t>& indices, std::size_t material, bool are_lines) {
+    if (indices.empty()) return;
+    ordered_json primitive{
+        {"attributes", {{"POSITION", positions}}},
+        {"indices", document.add(std::span(indices), short_type, "SCALAR", indices.size(), element_buffer)},
+        {"material", material}};
+    if (are_lines) primitive["mode"] = int{lines};
+    if (!targets.empty()) primitive["targets"] = targets;
+    primitives.push_back(primitive);
+  };
+  const auto add_all = [&](const auto& elements, std::span<const MaterialId> materials, bool are_lines) {
+    const auto lists = by_material(shape, materials);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      std::vector<std::uint16_t> indices;
+      for (const std::uint32_t element : lists[i])
+        indices.insert(indices.end(), elements[element].begin(), elements[element].end());
+      add(indices, i, are_lines);
+    }
+  };
+  add_all(shape.faces, shape.face_materials, false);
+  add_all(shape.springs, shape.spring_materials, true);
+  document.json["meshes"][0]["primitives"] = primitives;
+}
+
+Document document_of(const ExportedRobot& exported, const SkinShape& shape) {
+  constexpr double half_root = 0.7071067811865476;
+  Document document;
+  document.json = {
+      {"asset", {{"version", "2.0"}, {"generator", program_version}}},
+      {"scene", 0},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"nodes", {{{"name", exported.robot.name}, {"rotation", {-half_root, 0, 0, half_root}}, {"mesh", 0}}}},
+      {"meshes", {{{"name", exported.robot.name}}}},
+      {"materials", ordered_json::array()},
+      {"accessors", ordered_json::array()},
+      {"bufferViews", ordered_json::array()}};
+  for (const ExportedMaterial& material : shape.materials) document.json["materials"].push_back(material_of(material));
+  return document;
+}
+
+std::size_t bytes_of(std::size_t frames, std::size_t vertices) {
+  return frames * vertices * sizeof(Vec3) + frames * (frames - 1) * sizeof(float);
+}
+
+bool fits(std::size_t frames, std::size_t vertices) {
+  return frames <= most_targets + 1 && bytes_of(frames, vertices) <= largest_glb;
+}
+
+void require_short(const RecordedMotion& motion, std::size_t vertices) {
+  const std::size_t frames = motion.frames();
+  if (fits(frames, vertices)) return;
+  std::size_t every = 2;
+  while (!fits((frames - 1) / every + 1, vertices)) ++every;
+  std::size_t first = frames;
+  while (!fits(first, vertices)) first = std::min(first - 1, most_targets + 1);
+  const std::size_t apart = motion.recorded_frame(frames > 1 ? 1 : 0) - motion.recorded_frame(0);
+  throw InputError(
+      motion.recording().path().string(),
+      fmt::format("{} frames of {} vertices are too many for a .glb file, which web viewers hold in memory: "
+                  "at most {} fit; give --every {}, or --to {:.4g}",
+                  frames, vertices, first, every * apart, motion.time(first - 1) - motion.recording().time(0)));
+}
+
+void add_animation(Document& document, RecordedMotion& motion, std::span<const std::size_t> targets) {
+  const std::size_t frames = motion.frames();
+  std::vector<float> times, weights(frames * targets.size(), 0.0f);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    times.push_back(static_cast<float>(motion.time(frame) - motion.time(0)));
+    if (frame > 0) weights[frame * targets.size() + frame - 1] = 1;
+  }
+  const std::size_t input = document.add_floats(times), output = document.add_floats(weights);
+  document.json["accessors"][input]["min"] = {shortest(times.front())};
+  document.json["accessors"][input]["max"] = {shortest(times.back())};
+  document.json["meshes"][0]["weights"] = std::vector<int>(targets.size(), 0);
+  document.json["animations"] = {{{"name", "motion"},
+                                  {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
+                                  {"samplers", {{{"input", input}, {"interpolation", "LINEAR"}, {"output", output}}}}}};
+}
+
+}  // namespace
+
+void write_glb(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices) {
+  const SkinShape shape = skin_shape(robot.robot, choices.springs);
+  Document document = document_of(robot, shape);
+  add_primitives(document, shape, document.add_vectors(vertices_of(shape, pose.positions)), {});
+  OutputStreams files;
+  document.write(files.add(path));
+  files.keep();
+}
+
+void write_glb_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                      const ExportChoices& choices) {
+  const SkinShape shape = skin_shape(robot.robot, choices.springs);
+  require_short(motion, shape.masses.size());
+  Document document = document_of(robot, shape);
+  const std::vector<Vec3> first = vertices_of(shape, motion.pose(0).positions);
+  const std::size_t positions = document.add_vectors(first);
+  std::vector<std::size_t> accessors;
+  ordered_json targets = ordered_json::array();
+  for (std::size_t frame = 1; frame < motion.frames(); ++frame) {
+    std::vector<Vec3> offsets = vertices_of(shape, motion.pose(frame).positions);
+    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = offsets[i] - first[i];
+    accessors.push_back(document.add_vectors(offsets));
+    targets.push_back({{"POSITION", accessors.back()}});
+    choices.watch(frame + 1, motion.frames());
+  }
+  add_primitives(document, shape, positions, targets);
+  if (!accessors.empty()) add_animation(document, motion, accessors);
+  OutputStreams files;
+  document.write(files.add(path));
+  files.keep();
+}
+
+}  // namespace mercury

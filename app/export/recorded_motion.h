@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motion of one robot of a recording, or a part of it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/export/exported_robot.h"
+#include "app/recording/trajectory_reader.h"
+
+namespace mercury {
+
+// Which frames of a recording. Times count from its first frame [s].
+struct FrameRange {
+  std::optional<double> from, to;  // the whole recording if absent
+  std::int64_t every = 1;          // takes every so many frames
+};
+
+class RecordedMotion {
+ public:
+  // Throws ParameterError("from" | "to" | "every", ...) for a range that the recording does not have, and InputError if
+  // it has no frames. A robot that exploded may have positions that are no numbers: the motion ends before them, and
+  // problem() says so.
+  RecordedMotion(std::shared_ptr<TrajectoryReader> recording, std::size_t robot, const FrameRange& range = {});
+
+  // At the moment of --still, the nearest frame alone. Throws ParameterError("still", ...).
+  static RecordedMotion still(std::shared_ptr<TrajectoryReader> recording, std::size_t robot, double seconds);
+
+  ExportedRobot robot() const;
+  std::size_t frames() const { return count_; }
+  double time(std::size_t frame) const { return recording_->time(recorded_frame(frame)); }  // [s]
+  // Frames per second, from the first to the last; 0 for a single frame.
+  double frame_rate() const;
+  // Valid until the next call. Throws InputError if the recording cannot be read.
+  Pose pose(std::size_t frame);
+  const std::string& problem() const { return problem_; }  // empty = none
+
+  // Where the frames are in the file, for formats that refer to it.
+  const TrajectoryReader& recording() const { return *recording_; }
+  const std::string& group() const { return recording_->robots()[robot_].group; }
+  std::size_t recorded_frame(std::size_t frame) const { return first_ + frame * every_; }
+
+ private:
+  void end_at_explosion();
+
+  std::shared_ptr<TrajectoryReader> recording_;
+  std::size_t robot_, first_ = 0, every_ = 1, count_ = 0;
+  std::string problem_;
+};
+
+}  // namespace mercury

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The writers of the formats, listed in export_format.cpp. Files are whole or not at all; files of these names are
+// replaced. All throw as OutputStream.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "app/export/exported_robot.h"
+#include "app/export/output_stream.h"
+#include "app/export/recorded_motion.h"
+#include "app/export/skin_shape.h"
+
+namespace mercury {
+
+// Called after each frame; may throw to stop the work, which then leaves nothing behind.
+using FrameWatch = std::function<void(std::size_t done, std::size_t total)>;
+
+struct ExportChoices {
+  bool springs = false;  // also the springs, as lines
+  FrameWatch watch = [](std::size_t, std::size_t) {};
+};
+
+void write_obj(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices);
+// The .mtl file of an .obj file.
+std::filesystem::path materials_beside(const std::filesystem::path& obj);
+// Adds both to the files that are written.
+void add_obj(OutputStreams& files, const ExportedRobot& robot, const SkinShape& shape, const Pose& pose,
+             const std::filesystem::path& path);
+
+void write_ply(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices);
+void write_stl(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices);
+
+// Faces and springs as cells, all masses as points.
+void write_vtu(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices);
+// A .vtu file per frame in a folder beside the .pvd file, which lists them with their times.
+void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+               const ExportChoices& choices);
+std::filesystem::path frames_beside(const std::filesystem::path& pvd);
+
+void write_glb(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+               const ExportChoices& choices);
+// Throws InputError that says what would fit if the motion is too long (largest_glb).
+void write_glb_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                      const ExportChoices& choices);
+
+// The first frame as an .obj file beside the point cache, which moves its vertices.
+void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+               const ExportChoices& choices);
+std::filesystem::path mesh_beside(const std::filesystem::path& pc2);
+
+void write_usda(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+                const ExportChoices& choices);
+void write_usda_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                       const ExportChoices& choices);
+
+// Describes the recording for ParaView; its numbers stay where they are. Throws InputError for a recording that was not
+// finished.
+void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                const ExportChoices& choices);
+
+// Text of an XML document, between quotes too.
+std::string xml_text(const std::string& text);
+
+}  // namespace mercury
