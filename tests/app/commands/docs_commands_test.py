@@ -26,7 +26,8 @@ SHORT = {  # appended; the last value of an option counts
     "bench": ["--seconds", "0.05"],
 }
 MOST = {"--count": 2, "--best-of": 4, "--ancestors": 3, "--points": 200}  # values that are larger are lowered
-WRITES = {"render", "new", "mutate", "cross", "grow", "run", "bench"}     # repeated on a page, they replace their files
+EARLIEST = ("--still", "--from", "--to")  # of export: moments of a recording, which is short
+WRITES = {"render", "new", "mutate", "cross", "grow", "run", "bench", "export"}  # repeated on a page, they replace their files
 DEADLINE = 60  # seconds
 
 
@@ -38,6 +39,8 @@ def shortened(arguments):
         limit = MOST.get(result[i - 1])
         if limit and result[i].isdigit():
             result[i] = str(min(int(result[i]), limit))
+        if command == "export" and result[i - 1] in EARLIEST:
+            result[i] = str(min(float(result[i]), 0.05))
         if result[i - 1] == "--random" and (match := re.fullmatch(r"(\w+):(\d+)(.*)", result[i])):
             result[i] = f"{match[1]}:{min(int(match[2]), 4)}{match[3]}"
     extra = list(SHORT.get(command, []))

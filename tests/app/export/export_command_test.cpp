@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury export as users call it: what is written where, and one line for what cannot be used.
+#include <gmock/gmock.h>
+
+#include "app/export/export_format.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ExportCommand : public FolderTest {
+ protected:
+  ExportCommand() {
+    EXPECT_EQ(
+        mercury({"new", "voxel", "--count", "2", "--seed", "7", "--voxels", "2x2x2", "-o", path("robots")}).status, 0);
+    robot_ = path("robots/voxel-7-0.json");
+  }
+  std::string recording() const {
+    const std::string file = path("run.h5");
+    EXPECT_EQ(mercury({"run", path("robots"), "--seconds", "0.2", "--every", "20", "--device", "cpu", "--record", file})
+                  .status,
+              0);
+    return file;
+  }
+  static void refuses(const std::vector<std::string>& arguments, const std::string& message) {
+    std::vector<std::string> all{"export"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = mercury(all);
+    EXPECT_EQ(outcome.status, 2) << message;
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_EQ(outcome.messages, "mercury: " + message + "\n");
+  }
+  std::string robot_;
+};
+
+TEST_F(ExportCommand, ExtensionSaysTheFormatAndNamesArePrinted) {
+  for (const ExportFormat& format : export_formats()) {
+    if (!holds_pose(format)) continue;
+    const std::string file = path("eel" + std::string(format.extension));
+    const Outcome outcome = mercury({"export", robot_, "-o", file});
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_EQ(outcome.output, file + "\n");
+    EXPECT_TRUE(std::filesystem::exists(file));
+  }
+}
+
+TEST_F(ExportCommand, EveryMotionFormatTakesARecording) {
+  const std::string file = recording();
+  for (const ExportFormat& format : export_formats()) {
+    if (!holds_motion(format)) continue;
+    const std::string target = path("out/swim" + std::string(format.extension));
+    const Outcome outcome = mercury({"export", file, "--robot", "1", "--every", "2", "-o", target});
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_EQ(outcome.output, target + "\n");
+  }
+}
+
+TEST_F(ExportCommand, SeriesHasTheChosenFramesWithTheirTimes) {
+  const std::string file = recording();  // frames at 0, 0.02, ..., 0.2 s
+  ASSERT_EQ(mercury({"export", file, "--robot", "voxel-7-1", "--from", "0.04", "--to", "0.17", "--every", "2", "-o",
+                     path("swim.pvd")})
+                .status,
+            0);
+  EXPECT_THAT(listing("swim-frames"), ElementsAre("0.vtu", "1.vtu", "2.vtu", "3.vtu"));
+  const std::string list = read("swim.pvd");
+  for (const char* entry : {"timestep=\"0.04\" part=\"0\" file=\"swim-frames/0.vtu\"", "timestep=\"0.08\"",
+                            "timestep=\"0.12\"", "timestep=\"0.16\" part=\"0\" file=\"swim-frames/3.vtu\""})
+    EXPECT_THAT(list, HasSubstr(entry));
+}
+
+TEST_F(ExportCommand, SeveralRobotsGoIntoAFolder) {
+  ASSERT_EQ(mercury({"export", path("robots"), "--format", "stl", "-o", path("printed")}).status, 0);
+  EXPECT_THAT(listing("printed"), ElementsAre("voxel-7-0.stl", "voxel-7-1.stl"));
+  refuses({path("robots"), "-o", path("all.stl")},
+          "-o: " + path("all.stl") +
+              " is one file, and there are 2 robots; give a folder with --format, or choose one with --robot");
+  EXPECT_EQ(mercury({"export", path("robots"), "--robot", "voxel-7-1", "-o", path("one.stl")}).status, 0);
+}
+
+TEST_F(ExportCommand, StillTakesThePoseOfTheNearestFrame) {
+  const std::string file = recording();
+  ASSERT_EQ(mercury({"export", file, "--still", "0.111", "--robot", "0", "-o", path("still.obj")}).status, 0);
+  ASSERT_EQ(mercury({"export", file, "--still", "0.12", "--robot", "0", "-o", path("exact.obj")}).status, 0);
+  const auto vertices = [](const std::string& obj) { return obj.substr(obj.find("\nv ")); };
+  const auto without_materials = [&](std::string obj) { return vertices(obj); };
+  EXPECT_EQ(without_materials(read("still.obj")), without_materials(read("exact.obj")));
+  ASSERT_EQ(mercury({"export", robot_, "-o", path("rest.obj")}).status, 0);
+  EXPECT_NE(vertices(read("rest.obj")), vertices(read("exact.obj")));
+}
+
+TEST_F(ExportCommand, WhatCannotBeUsedIsOneLine) {
+  const std::string names = format_names();
+  refuses({robot_, "-o", path("eel.xyz")}, "-o: " + path("eel.xyz") + ": \".xyz\" is no format; give a file of " +
+                                               names + ", or a folder with --format");
+  refuses({robot_, "-o", path("eel")}, "--format: a folder does not say it; give " + names);
+  refuses({robot_, "-o", path("eel.obj"), "--format", "stl"},
+          "-o: " + path("eel.obj") + " is the name of a obj file; give one that ends in .stl");
+  refuses({robot_, "-o", path("eel.stl"), "--springs"},
+          "--springs: a .stl file holds no springs; give " + format_names(holds_springs));
+  refuses({robot_, "-o", path("eel.stl"), "--still", "1"},
+          "--still: chooses frames of a recording (.h5), and there is none");
+  refuses({robot_, "-o", path("eel.pvd")},
+          "--format: pvd holds a motion, which comes from a recording: mercury run ROBOT --seconds 5 --record run.h5; "
+          "for one pose give " +
+              format_names(holds_pose));
+  refuses({robot_, "-o", path("eel.stl"), "--robot", "eel"},
+          "--robot: no robot is named \"eel\"; give a name, or a number from 0 to 0");
+}
+
+TEST_F(ExportCommand, WhatARecordingCannotGiveIsOneLine) {
+  const std::string file = recording();
+  refuses({file, "--robot", "0", "-o", path("eel.stl")},
+          "--format: stl holds one pose; choose a moment of the recording with --still S, or give " +
+              format_names(holds_motion));
+  refuses({file, "--robot", "0", "-o", path("eel.glb"), "--from", "3"},
+          "--from: 3 is not accepted; the recording has 0 to 0.2 s");
+  refuses({file, "--robot", "0", "-o", path("eel.glb"), "--from", "0.1", "--to", "0.02"},
+          "--to: 0.02 is before --from 0.1; give a later time");
+  refuses({file, "--robot", "0", "-o", path("eel.glb"), "--every", "0"}, "--every: 0 is not accepted; give 1 or more");
+  refuses({file, "--robot", "0", "-o", path("eel.glb"), "--still", "nan"},
+          "--still: nan is not accepted; the recording has 0 to 0.2 s");
+}
+
+TEST_F(ExportCommand, FilesAreReplacedOnlyWithForce) {
+  write("eel.mtl", "mine");
+  refuses({robot_, "-o", path("eel.obj")},
+          "-o: " + path("eel.mtl") + " exists already; use --force to replace it, or give another name");
+  EXPECT_EQ(read("eel.mtl"), "mine");
+  EXPECT_EQ(mercury({"export", robot_, "-o", path("eel.obj"), "--force"}).status, 0);
+  EXPECT_THAT(read("eel.mtl"), HasSubstr("newmtl"));
+}
+
+TEST_F(ExportCommand, DryRunWritesNothing) {
+  const Outcome outcome = mercury({"export", robot_, "-o", path("new/eel.obj"), "--dry-run"});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, HasSubstr("nothing was written"));
+  EXPECT_THAT(outcome.output, HasSubstr("eel.mtl"));
+  EXPECT_THAT(listing(), ElementsAre("robots"));
+}
+
+TEST_F(ExportCommand, HelpListsEveryFormat) {
+  const std::string help = mercury({"export", "--help"}).output;
+  for (const ExportFormat& format : export_formats()) EXPECT_THAT(help, HasSubstr("  " + std::string(format.name)));
+}
+
+}  // namespace
+}  // namespace mercury::test

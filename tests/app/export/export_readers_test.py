@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of others read what mercury export writes, and find the robot's numbers in it.
+
+    export_readers_test.py MERCURY READER
+
+READER is the name of a class below. Exit status 77: that reader is not installed.
+"""
+
+import importlib
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+MERCURY = sys.argv[1]
+
+
+def mercury(*arguments):
+    return subprocess.run([MERCURY, *map(str, arguments), "--quiet"], check=True, capture_output=True, text=True).stdout
+
+
+class Case(unittest.TestCase):
+    """A robot, its recording, and what both are according to Mercury's own files."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        mercury("new", "voxel", "--seed", 7, "--voxels", "4x3x3", "-o", self.folder / "eel.json")
+        robot = json.loads((self.folder / "eel.json").read_text())
+        self.masses = np.array(robot["masses"], np.float32)
+        self.faces = np.array(robot["faces"])
+        self.springs = np.array([spring[:2] for spring in robot["springs"]])
+        self.spring_materials = np.array([spring[2] for spring in robot["springs"]])
+        self.skin = np.unique(self.faces)  # the masses that the skin has, in the order of the vertices
+
+    def export(self, name, *options):
+        mercury("export", self.folder / "eel.json", "-o", self.folder / name, *options)
+        return str(self.folder / name)
+
+    def export_motion(self, name, *options):
+        if not (self.folder / "swim.h5").exists():
+            mercury("run", self.folder / "eel.json", "--seconds", 0.3, "--every", 20, "--device", "cpu",
+                    "--record", self.folder / "swim.h5")
+        mercury("export", self.folder / "swim.h5", "-o", self.folder / name, *options)
+        return str(self.folder / name)
+
+    def recorded(self):
+        """Times, positions and velocities of the recording."""
+        import h5py
+        with h5py.File(self.folder / "swim.h5") as file:
+            group = next(iter(file["particles"].values()))
+            return group["position/time"][:], group["position/value"][:], group["velocity/value"][:]
+
+    def volume(self):
+        a, b, c = (self.masses[self.faces[:, i]].astype(float) for i in range(3))
+        return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+class Trimesh(Case):
+    needs = "trimesh"
+
+    def test_volume_and_size_are_those_of_the_robot(self):
+        import trimesh
+        for name in ("eel.obj", "eel.ply", "eel.stl"):
+            with self.subTest(name):
+                mesh = trimesh.load(self.export(name), force="mesh")
+                self.assertEqual(len(mesh.faces), len(self.faces))
+                self.assertAlmostEqual(mesh.volume, self.volume(), 6)
+                np.testing.assert_allclose(mesh.bounds, [self.masses.min(0), self.masses.max(0)], atol=1e-7)
+
+    def test_faces_of_a_ply_have_the_colors_of_its_materials(self):
+        import trimesh
+        mesh = trimesh.load(self.export("eel.ply"), process=False)
+        np.testing.assert_array_equal(np.asarray(mesh.vertices, np.float32), self.masses[self.skin])
+        self.assertGreater(len(np.unique(mesh.visual.face_colors, axis=0)), 2)
+
+    def test_glb_stands_upright(self):
+        import trimesh
+        scene = trimesh.load(self.export("eel.glb"))
+        low, high = self.masses.min(0), self.masses.max(0)
+        np.testing.assert_allclose(scene.bounds, [[low[0], low[2], -high[1]], [high[0], high[2], -low[1]]], atol=1e-6)
+        self.assertEqual(sum(len(mesh.faces) for mesh in scene.geometry.values()), len(self.faces))
+
+
+class Meshio(Case):
+    needs = "meshio"
+
+    def test_grid_has_points_cells_and_values(self):
+        import meshio
+        grid = meshio.read(self.export("eel.vtu"))
+        np.testing.assert_array_equal(grid.points.astype(np.float32), self.masses)
+        cells = {block.type: block.data for block in grid.cells}
+        np.testing.assert_array_equal(cells["triangle"], self.faces)
+        np.testing.assert_array_equal(cells["line"], self.springs)
+        np.testing.assert_array_equal(grid.cell_data["material"][1], self.spring_materials)
+        np.testing.assert_allclose(grid.cell_data["strain"][1], 0, atol=1e-5)  # it is at rest
+
+    def test_series_has_every_frame_of_the_recording(self):
+        import meshio
+        self.export_motion("swim.pvd")
+        times, positions, velocities = self.recorded()
+        for frame, name in enumerate(sorted((self.folder / "swim-frames").iterdir())):
+            grid = meshio.read(name)
+            np.testing.assert_array_equal(grid.points.astype(np.float32), positions[frame])
+            np.testing.assert_array_equal(grid.point_data["velocity"], velocities[frame])
+            self.assertEqual(grid.field_data["TimeValue"], times[frame])
+        self.assertEqual(frame + 1, len(times))
+
+    def test_surfaces_open_too(self):
+        import meshio
+        for name in ("eel.obj", "eel.stl"):  # meshio reads no .ply whose faces have colors
+            with self.subTest(name):
+                mesh = meshio.read(self.export(name))
+                self.assertEqual(sum(len(block.data) for block in mesh.cells), len(self.faces))
+
+
+class Pygltflib(Case):
+    needs = "pygltflib"
+
+    def test_motion_has_a_target_per_frame(self):
+        import pygltflib
+        gltf = pygltflib.GLTF2().load(self.export_motion("swim.glb"))
+        times, positions, _ = self.recorded()
+
+        def numbers(index):
+            accessor = gltf.accessors[index]
+            view = gltf.bufferViews[accessor.bufferView]
+            width = {"SCALAR": 1, "VEC3": 3}[accessor.type]
+            start = (view.byteOffset or 0) + (accessor.byteOffset or 0)
+            return np.frombuffer(gltf.binary_blob()[start:start + 4 * width * accessor.count],
+                                 np.float32).reshape(-1, width).squeeze()
+
+        primitive = gltf.meshes[0].primitives[0]
+        base = numbers(primitive.attributes.POSITION)
+        np.testing.assert_array_equal(base, positions[0][self.skin])
+        sampler = gltf.animations[0].samplers[0]
+        np.testing.assert_allclose(numbers(sampler.input), times - times[0], rtol=1e-6)
+        weights = numbers(sampler.output).reshape(len(times), -1)
+        self.assertEqual(weights.shape[1], len(primitive.targets))
+        for frame in range(len(times)):
+            shape = base + sum(weight * numbers(target["POSITION"])
+                               for weight, target in zip(weights[frame], primitive.targets))
+            np.testing.assert_allclose(shape, positions[frame][self.skin], atol=1e-6)
+
+
+class Vtk(Case):
+    needs = "vtkmodules.vtkIOXML"
+
+    def test_grid_has_points_cells_and_values(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+        self.export_motion("swim.pvd")
+        times, positions, velocities = self.recorded()
+        reader = vtkXMLUnstructuredGridReader()
+        for frame, name in enumerate(sorted((self.folder / "swim-frames").iterdir())):
+            reader.SetFileName(str(name))
+            reader.Update()
+            self.assertEqual(reader.GetErrorCode(), 0)
+            grid = reader.GetOutput()
+            np.testing.assert_array_equal(vtk_to_numpy(grid.GetPoints().GetData()), positions[frame])
+            np.testing.assert_array_equal(vtk_to_numpy(grid.GetPointData().GetArray("velocity")), velocities[frame])
+            self.assertEqual(grid.GetNumberOfCells(), len(self.faces) + len(self.springs))
+            ends = positions[frame][self.springs].astype(float)
+            rest = np.linalg.norm(np.diff(self.masses[self.springs].astype(float), axis=1)[:, 0], axis=1)
+            strain = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / rest - 1
+            found = vtk_to_numpy(grid.GetCellData().GetArray("strain"))[len(self.faces):]
+            np.testing.assert_allclose(found, strain, atol=1e-5)
+
+
+class Usd(Case):
+    needs = "pxr"
+
+    def test_stage_has_metres_z_up_and_a_time_code_per_frame(self):
+        from pxr import Usd as usd, UsdGeom
+        stage = usd.Stage.Open(self.export_motion("swim.usda", "--springs"))
+        times, positions, _ = self.recorded()
+        self.assertEqual(UsdGeom.GetStageMetersPerUnit(stage), 1)
+        self.assertEqual(UsdGeom.GetStageUpAxis(stage), UsdGeom.Tokens.z)
+        self.assertEqual((stage.GetStartTimeCode(), stage.GetEndTimeCode()), (0, len(times) - 1))
+        self.assertAlmostEqual(stage.GetTimeCodesPerSecond(), (len(times) - 1) / (times[-1] - times[0]), 9)
+        root = stage.GetDefaultPrim()
+        mesh = UsdGeom.Mesh(root.GetChild("skin"))
+        curves = UsdGeom.BasisCurves(root.GetChild("springs"))
+        self.assertEqual(mesh.GetPointsAttr().GetTimeSamples(), list(range(len(times))))
+        for frame, expected in enumerate(positions):
+            points = mesh.GetPointsAttr().Get(frame)
+            np.testing.assert_array_equal(np.array(points), expected)
+            np.testing.assert_array_equal(np.array(mesh.GetExtentAttr().Get(frame)), [expected.min(0), expected.max(0)])
+            np.testing.assert_array_equal(np.array(curves.GetPointsAttr().Get(frame)), expected[self.springs].reshape(-1, 3))
+        np.testing.assert_array_equal(np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3), self.faces)
+        self.assertEqual(set(mesh.GetFaceVertexCountsAttr().Get()), {3})
+        self.assertEqual(sum(curves.GetCurveVertexCountsAttr().Get()), 2 * len(self.springs))
+
+    def test_each_face_has_a_color(self):
+        from pxr import Usd as usd, UsdGeom
+        stage = usd.Stage.Open(self.export("eel.usda"))
+        mesh = UsdGeom.Mesh(stage.GetDefaultPrim().GetChild("skin"))
+        np.testing.assert_array_equal(np.array(mesh.GetPointsAttr().Get()), self.masses[self.skin])
+        color = mesh.GetDisplayColorPrimvar()
+        self.assertEqual(color.GetInterpolation(), UsdGeom.Tokens.uniform)
+        self.assertEqual(len(color.Get()), len(self.faces))
+        self.assertGreater(len(set(map(tuple, color.Get()))), 2)
+
+
+class VtkXdmf(Case):
+    needs = "vtkmodules.vtkIOXdmf2"
+
+    def test_reader_finds_the_recording(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+        from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+        reader = vtkXdmfReader()
+        reader.SetFileName(self.export_motion("swim.xdmf", "--every", 2))
+        reader.UpdateInformation()
+        steps = reader.GetExecutive().GetOutputInformation(0)
+        times, positions, velocities = (values[::2] for values in self.recorded())
+        self.assertEqual(steps.Length(Pipeline.TIME_STEPS()), len(times))
+        for frame, time in enumerate(times):
+            self.assertEqual(steps.Get(Pipeline.TIME_STEPS(), frame), time)
+            reader.UpdateTimeStep(time)
+            skin, springs = (reader.GetOutputDataObject(0).GetBlock(block) for block in range(2))
+            for grid in (skin, springs):
+                np.testing.assert_array_equal(vtk_to_numpy(grid.GetPoints().GetData()), positions[frame])
+                np.testing.assert_array_equal(vtk_to_numpy(grid.GetPointData().GetArray("velocity")), velocities[frame])
+            self.assertEqual(skin.GetNumberOfCells(), len(self.faces))
+            np.testing.assert_array_equal(vtk_to_numpy(springs.GetCellData().GetArray("material")), self.spring_materials)
+
+
+class Hyperslabs(Case):
+    """What the description refers to, by the rules of XDMF, through h5py."""
+
+    needs = "h5py"
+
+    def item(self, folder, element):
+        if element.get("ItemType") == "HyperSlab":
+            selection, source = element
+            start, stride, count = np.array(selection.text.split(), int).reshape(3, -1)
+            self.assertEqual(selection.get("Dimensions"), f"3 {len(start)}")
+            whole = self.item(folder, source)
+            part = whole[tuple(slice(a, a + s * n, s) for a, s, n in zip(start, stride, count))]
+            return part.reshape([int(n) for n in element.get("Dimensions").split()])
+        import h5py
+        file, _, path = element.text.partition(":")
+        with h5py.File(folder / file) as recording:
+            values = recording[path][()]
+        kind = {"Float": "f", "UInt": "u", "UChar": "u"}[element.get("NumberType")] + element.get("Precision")
+        self.assertEqual(values.dtype, np.dtype(kind))
+        self.assertEqual(values.shape, tuple(int(n) for n in element.get("Dimensions").split()))
+        return values
+
+    def test_slabs_are_the_frames(self):
+        from xml.etree import ElementTree
+        (self.folder / "below").mkdir()
+        file = Path(self.export_motion("below/swim.xdmf", "--every", 3))  # not beside the recording
+        times, positions, velocities = (values[::3] for values in self.recorded())
+        skin, springs = ElementTree.parse(file).getroot().find("Domain")
+        for series, cells in ((skin, self.faces), (springs, self.springs)):
+            self.assertEqual(len(series), len(times))
+            for grid, time, position, velocity in zip(series, times, positions, velocities):
+                self.assertEqual(float(grid.find("Time").get("Value")), time)
+                topology = grid.find("Topology")
+                self.assertEqual(topology.get("NumberOfElements"), str(len(cells)))
+                np.testing.assert_array_equal(self.item(file.parent, topology[0]), cells)
+                np.testing.assert_array_equal(self.item(file.parent, grid.find("Geometry")[0]), position)
+                np.testing.assert_array_equal(self.item(file.parent, grid.find("Attribute[@Name='velocity']")[0]), velocity)
+        material = springs[0].find("Attribute[@Name='material']")
+        np.testing.assert_array_equal(self.item(file.parent, material[0]), self.spring_materials)
+
+
+if __name__ == "__main__":
+    case = globals()[sys.argv[2]]
+    try:
+        importlib.import_module(case.needs)
+    except ImportError as error:
+        print(f"skipped: {error}")
+        sys.exit(77)
+    suite = unittest.defaultTestLoader.loadTestsFromTestCase(case)
+    sys.exit(0 if unittest.TextTestRunner(verbosity=1).run(suite).wasSuccessful() else 1)
