@@ -44,7 +44,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
 void PlainLoop::update_muscles() {
   const std::span<const Material> materials = materials_of(robot_);
   for (std::size_t id = 0; id < materials.size(); ++id)
-    if (measures_.used[id]) factor_[id] = muscle_factor(materials[id].amplitude, phase_at(phases_[id], now_));
+    if (measures_.used[id]) factor_[id] = muscle_factor(materials[id], phase_at(phases_[id], now_));
 }
 
 // Adds each spring's contribution, per_distance_of(squared length, rest length, spring) times d. Returns false if a

@@ -142,9 +142,11 @@ std::uint64_t body_hash(const Robot& robot) {
     add(spring.a), add(spring.b), add(spring.material), add_float(spring.rest_length);
   add_size(robot.faces.size());
   for (const Face& face : robot.faces) add(face.a), add(face.b), add(face.c);
-  for (const Material& material : materials_of(robot))
+  for (const Material& material : materials_of(robot)) {
     add_float(material.stiffness), add_float(material.amplitude), add_float(material.frequency),
         add_float(material.phase);
+    if (material.half_wave) add(1);  // robots without it keep the hash that they had before there was any
+  }
   return hash;
 }
 

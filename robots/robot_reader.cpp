@@ -9,8 +9,8 @@
 namespace mercury {
 namespace {
 
-constexpr std::string_view material_keys[] = {"name", "stiffness", "amplitude", "frequency", "phase"};
-constexpr unsigned unknown_key = 5;
+constexpr std::string_view material_keys[] = {"name", "stiffness", "amplitude", "frequency", "phase", "half_wave"};
+constexpr unsigned half_wave_key = 5, unknown_key = 6;
 
 // Hostile files may have keys of any length; messages show the beginning.
 std::string shown(std::string_view text) {
@@ -49,7 +49,10 @@ void RobotReader::wrong_type(const std::string& given) const {
     refuse("holds " + given + " at " + std::to_string(row_) + ", not " +
            (section_ == materials ? "an object" : "an array"));
   if (section_ == materials) {
-    refuse(std::string(field_ == 0 ? "must be a text" : "must be a number") + ", not " + given);
+    refuse(std::string(field_ == 0               ? "must be a text"
+                       : field_ == half_wave_key ? "must be true or false"
+                                                 : "must be a number") +
+           ", not " + given);
   }
   if (section_ == springs && column_ == 3)
     refuse("the rest length must be a number, not " + given + "; leave it out for the distance at rest");
@@ -86,6 +89,10 @@ void RobotReader::null() {
 void RobotReader::boolean(bool value) {
   if (passes_by(0)) return;
   if (DocumentEvents* const to = part(0)) return to->boolean(value);
+  if (depth_ == 3 && section_ == materials && field_ == half_wave_key) {
+    entry_.material.half_wave = value;
+    return;
+  }
   wrong_type(value ? "true" : "false");
 }
 
@@ -127,7 +134,7 @@ void RobotReader::number(const Number& value) {
     if (value.kind != Number::Kind::natural || value.natural != 1)
       refuse(std::isfinite(value.real) ? shown(to_text(value)) + " is not known; this program reads version 1"
                                        : "is not known; this program reads version 1");
-  } else if (depth_ == 3 && section_ == materials && field_ > 0) {
+  } else if (depth_ == 3 && section_ == materials && field_ > 0 && field_ < half_wave_key) {
     float* const fields[] = {&entry_.material.stiffness, &entry_.material.amplitude, &entry_.material.frequency,
                              &entry_.material.phase};
     *fields[field_ - 1] = finite(value);

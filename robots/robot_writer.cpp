@@ -102,12 +102,13 @@ class RobotWriter {
     const bool has_names = !robot_.material_names.empty();
     for (std::size_t i = 0; i < robot_.materials.size(); ++i) {
       const Material& material = robot_.materials[i];
-      events_.begin_object(has_names ? 5 : 4);
+      events_.begin_object(4u + has_names + material.half_wave);
       if (has_names) field("name", robot_.material_names[i]);
       field("stiffness", material.stiffness);
       field("amplitude", material.amplitude);
       field("frequency", material.frequency);
       field("phase", material.phase);
+      if (material.half_wave) events_.key("half_wave"), events_.boolean(true);
       events_.end_object();
     }
     events_.end_array();

@@ -125,7 +125,8 @@ std::vector<Actuator> actuators_of(const Robot& robot) {
     if (!used[i] || materials[i].amplitude == 0) continue;
     const auto moves_alike = [&](const Actuator& actuator) {
       const Material& first = materials[actuator.materials.front()];
-      return first.frequency == materials[i].frequency && first.phase == materials[i].phase;
+      return first.frequency == materials[i].frequency && first.phase == materials[i].phase &&
+             first.half_wave == materials[i].half_wave;
     };
     const auto known = std::ranges::find_if(found, moves_alike);
     if (known != found.end())

@@ -26,8 +26,9 @@ constexpr Material mean(const Material& a, const Material& b) {
     const float sum = (a.amplitude != 0 ? of_a : 0) + (b.amplitude != 0 ? of_b : 0);
     return moving > 0 ? sum / moving : 0;
   };
+  const auto whole_wave = [](const Material& one) { return one.amplitude != 0 && !one.half_wave; };
   return {(a.stiffness + b.stiffness) / 2, (a.amplitude + b.amplitude) / 2, over_moving(a.frequency, b.frequency),
-          over_moving(a.phase, b.phase)};
+          over_moving(a.phase, b.phase), moving > 0 && !whole_wave(a) && !whole_wave(b)};
 }
 
 struct Defaults {

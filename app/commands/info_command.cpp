@@ -58,6 +58,15 @@ void print_actuators(const Inspection& inspection) {
   if (actuators.size() > shown) print_line("", fmt::format("and {} more", actuators.size() - shown));
 }
 
+// "1200 muscles", "1200 muscles, 300 by half waves"
+std::string muscles_text(const Inspection& inspection) {
+  std::size_t by_half_waves = 0;
+  for (const MaterialUse& use : inspection.materials)
+    if (use.material.half_wave && use.material.amplitude != 0) by_half_waves += use.springs;
+  return fmt::format("{} muscles{}", inspection.muscles,
+                     by_half_waves > 0 ? fmt::format(", {} by half waves", by_half_waves) : "");
+}
+
 std::string surface_text(const Inspection& inspection) {
   if (inspection.faces == 0) return "none";
   std::string text = inspection.closed ? "closed" : fmt::format("open at {} edges", inspection.open_edges);
@@ -105,8 +114,8 @@ void describe(const Robot& robot, const std::filesystem::path&) {
   print_line("masses",
              fmt::format("{}{}", found.masses,
                          found.loose_masses > 0 ? fmt::format(", {} without a spring", found.loose_masses) : ""));
-  print_line("springs", fmt::format("{}, {:.1f} per mass, {:.3g} to {:.3g} m, {} muscles", found.springs,
-                                    found.springs_a_mass, found.shortest_spring, found.longest_spring, found.muscles));
+  print_line("springs", fmt::format("{}, {:.1f} per mass, {:.3g} to {:.3g} m, {}", found.springs, found.springs_a_mass,
+                                    found.shortest_spring, found.longest_spring, muscles_text(found)));
   print_line("faces", fmt::to_string(found.faces));
   print_line("surface", surface_text(found));
   print_line("materials", materials_text(found));

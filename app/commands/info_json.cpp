@@ -34,6 +34,7 @@ Json json_of(const MaterialUse& use) {
           {"amplitude", shortest(use.material.amplitude)},
           {"frequency", shortest(use.material.frequency)},
           {"phase", shortest(use.material.phase)},
+          {"half_wave", use.material.half_wave},
           {"springs", use.springs}};
 }
 

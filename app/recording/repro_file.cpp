@@ -38,13 +38,15 @@ Json json_of(std::span<const Perturbation> perturbations) {
   return list;
 }
 
-// The materials that changed, as [id, stiffness, amplitude, frequency, phase].
+// The materials that changed, as [id, stiffness, amplitude, frequency, phase], and true behind it for half waves.
 Json changes_of(std::span<const Material> before, std::span<const Material> after) {
   Json list = Json::array();
   for (std::size_t id = 0; id < after.size(); ++id)
-    if (id >= before.size() || before[id] != after[id])
+    if (id >= before.size() || before[id] != after[id]) {
       list.push_back({id, shortest(after[id].stiffness), shortest(after[id].amplitude), shortest(after[id].frequency),
                       shortest(after[id].phase)});
+      if (after[id].half_wave) list.back().push_back(true);
+    }
   return list;
 }
 
@@ -110,11 +112,14 @@ std::vector<Perturbation> perturbations_of(const Json& json, const Robot& robot)
 
 void change_materials(const Json& json, std::vector<Material>& materials) {
   for (const Json& one : json) {
-    if (!one.is_array() || one.size() != 5) throw InputError("[id, stiffness, amplitude, frequency, phase] is missing");
+    if (!one.is_array() || one.size() < 5 || one.size() > 6)
+      throw InputError("[id, stiffness, amplitude, frequency, phase] is missing");
+    if (one.size() == 6 && !one[5].is_boolean()) throw InputError("true or false is missing for half_wave");
     const std::int64_t id = step_of(one[0], 0);
     if (id >= static_cast<std::int64_t>(materials.size())) throw InputError(fmt::format("there is no material {}", id));
     Material& material = materials[static_cast<std::size_t>(id)];
-    material = {number_of(one[1]), number_of(one[2]), number_of(one[3]), number_of(one[4])};
+    material = {number_of(one[1]), number_of(one[2]), number_of(one[3]), number_of(one[4]),
+                one.size() == 6 && one[5].get<bool>()};
     validate(material, fmt::format("material {}", id));
   }
 }

@@ -70,9 +70,25 @@ std::vector<Spring> read_springs(hid_t robot) {
   return springs;
 }
 
+// Recordings without such materials, as all that older programs wrote, lack the field.
+void read_half_waves(hid_t group, std::vector<Material>& materials) {
+  const Handle type(H5Dget_type(open_dataset(group, "materials")));
+  if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_member_index(type, "half_wave") < 0) {
+    H5Eclear2(H5E_DEFAULT);
+    return;
+  }
+  const Handle field(H5Tcreate(H5T_COMPOUND, 1));
+  checked(H5Tinsert(field, "half_wave", 0, H5T_NATIVE_UINT8));
+  const auto half_waves = read_rows<std::uint8_t>(group, "materials", field, {});
+  for (std::size_t i = 0; i < materials.size(); ++i) materials[i].half_wave = half_waves[i] != 0;
+}
+
 // A robot without materials of its own has the default table, so a table that equals it is dropped.
 void read_materials(hid_t group, Robot& robot) {
-  robot.materials = read_rows<Material>(group, "materials", material_type(), {});
+  for (const auto& [stiffness, amplitude, frequency, phase] :
+       read_rows<std::array<float, 4>>(group, "materials", material_type(false), {}))
+    robot.materials.push_back({stiffness, amplitude, frequency, phase});
+  read_half_waves(group, robot.materials);
   if (has_member(group, "material_names")) robot.material_names = read_texts_dataset(group, "material_names");
   const auto has_default_name = [&, id = 0](const std::string& name) mutable {
     return name == default_material_name(static_cast<MaterialId>(id++));

@@ -156,8 +156,8 @@ void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
   const hsize_t chunk = std::clamp<hsize_t>(static_cast<hsize_t>(header.expected_frames), 1, 1024);
   create_growing(parameters_, "step", H5T_STD_I64LE, {.chunk = chunk});
   write_unit(create_growing(parameters_, "time", H5T_IEEE_F64LE, {.chunk = chunk}), "s");
-  write_dataset(parameters_, "materials", material_type(), material_type(), {default_materials().size()},
-                default_materials().data());
+  write_dataset(parameters_, "materials", material_type(false), material_memory_type(false),
+                {default_materials().size()}, default_materials().data());
   std::vector<std::string> names;
   for (std::size_t id = 0; id < default_materials().size(); ++id)
     names.push_back(default_material_name(static_cast<MaterialId>(id)));
@@ -232,7 +232,9 @@ void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std:
     link(parameters_, "material_names", particles, "material_names");
     return;
   }
-  write_dataset(particles, "materials", material_type(), material_type(), {materials.size()}, materials.data());
+  const bool half_wave = std::ranges::any_of(materials, &Material::half_wave);
+  write_dataset(particles, "materials", material_type(half_wave), material_memory_type(half_wave), {materials.size()},
+                materials.data());
   if (!robot.material_names.empty()) write_text_dataset(particles, "material_names", robot.material_names);
 }
 

@@ -2,6 +2,7 @@
 #include "evolution/genomes/material_genes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
@@ -40,10 +41,14 @@ MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint6
   return of_a.size() == of_b.size() ? cross_muscle_laws(of_a, of_b, seed) : a;
 }
 
+// A stiffness has no sign, so its sign says that the material moves by half waves. Genomes without such materials have
+// the bytes that they had before there were any.
 void write(ByteWriter& writer, const MaterialGenes& genes) {
   writer.add(static_cast<std::uint8_t>(genes.size()));
-  for (const auto& [stiffness, amplitude, frequency, phase] : genes)
-    for (const float number : {stiffness, amplitude, frequency, phase}) writer.add(number);
+  for (const Material& gene : genes) {
+    const float stiffness = std::copysign(gene.stiffness, gene.half_wave ? -1.f : 1.f);
+    for (const float number : {stiffness, gene.amplitude, gene.frequency, gene.phase}) writer.add(number);
+  }
 }
 
 MaterialGenes read_material_genes(ByteReader& reader) {
@@ -53,6 +58,8 @@ MaterialGenes read_material_genes(ByteReader& reader) {
   for (std::size_t i = 0; i < genes.size(); ++i) {
     for (float* number : {&genes[i].stiffness, &genes[i].amplitude, &genes[i].frequency, &genes[i].phase})
       *number = reader.read<float>();
+    genes[i].half_wave = std::signbit(genes[i].stiffness);
+    genes[i].stiffness = std::abs(genes[i].stiffness);
     validate(genes[i], "genome: base material " + std::to_string(i + 1));
   }
   return genes;
@@ -64,6 +71,7 @@ void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vec
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (only_used && !in_use[i]) continue;
     for (const float number : {all[i].stiffness, all[i].amplitude, all[i].frequency, all[i].phase}) hash.add(number);
+    if (all[i].half_wave) hash.add(std::uint8_t{1});
   }
 }
 

@@ -114,6 +114,7 @@ nb::dict info(const SharedRobot& self) {
     entry["amplitude"] = use.material.amplitude;
     entry["frequency"] = use.material.frequency;
     entry["phase"] = use.material.phase;
+    entry["half_wave"] = use.material.half_wave;
     entry["springs"] = use.springs;
     materials.append(entry);
   }
@@ -171,10 +172,11 @@ masses     (n, 3): positions at rest [m], within 1e6 m of the origin; 1 to 65,53
 springs    (m, 3) or (m, 4): the indices of two masses, a material, and the rest length [m] (default: their distance);
            or a structured array with the fields a, b, material, rest_length
 faces      (k, 3): indices of masses, counter-clockwise seen from outside
-materials  (l, 4): stiffness [N/m], amplitude [1], frequency [rad/s], phase [rad]; or a structured array with these
-           fields. Row 0 stands for air, which no spring has. Default: the 254 default materials
+materials  (l, 4) or (l, 5): stiffness [N/m], amplitude [1], frequency [rad/s], phase [rad], and 1 for muscles that move
+           by the negative half of the sine alone, else 0; or a structured array with the fields stiffness, amplitude,
+           frequency, phase, half_wave. Row 0 stands for air, which no spring has. Default: the 254 default materials
 actuators  {name: springs}: groups of springs that a program drives together, as indices or as a mask with one bool
-           per spring. Default: muscles of the same frequency and phase belong together
+           per spring. Default: muscles of the same frequency, phase and half wave belong together
 name       a text
 
 Everything that NumPy makes an array of is accepted, and copied. Raises InputError for a robot that breaks a rule.)";
@@ -222,6 +224,10 @@ void bind_robot(nb::module_& module) {
                    nb::sig("def materials(self) -> numpy.typing.NDArray[numpy.float32]"),
                    "Materials, (materials, 4) float32: stiffness [N/m], amplitude [1], frequency [rad/s], phase [rad]. "
                    "Row 0 is air. Read-only; shares memory with the robot.")
+      .def_prop_ro("half_wave", &view_of<half_wave_view>,
+                   nb::sig("def half_wave(self) -> numpy.typing.NDArray[numpy.bool_]"),
+                   "Whether only the negative half of the sine moves a material, (materials,) bool. Read-only; shares "
+                   "memory with the robot.")
       .def_prop_ro("origin", &origin, nb::sig("def origin(self) -> dict[str, typing.Any] | None"),
                    "How the robot was made; None if that is unknown.")
       .def_prop_ro("actuators", &actuators, nb::sig("def actuators(self) -> dict[str, list[int]]"),

@@ -205,7 +205,7 @@ std::vector<Face> faces_from(nb::handle array, const Robot& robot) {
 }
 
 std::vector<Material> materials_from(nb::handle array) {
-  const Table table("materials", array, {"stiffness", "amplitude", "frequency", "phase"});
+  const Table table("materials", array, {"stiffness", "amplitude", "frequency", "phase", "half_wave"}, 1);
   if (table.rows() > max_materials)
     throw InputError("/materials", std::to_string(table.rows()) + " materials, at most 256 are accepted");
   if (table.rows() == 0) throw InputError("/materials", "a table needs at least row 0, which stands for air");
@@ -214,6 +214,10 @@ std::vector<Material> materials_from(nb::handle array) {
     const double* row = table.row(i);
     materials[i] = {static_cast<float>(row[0]), static_cast<float>(row[1]), static_cast<float>(row[2]),
                     static_cast<float>(row[3])};
+    if (table.columns() < 5) continue;
+    if (row[4] != 0 && row[4] != 1)
+      throw InputError("/materials/" + std::to_string(i), "half_wave must be 0 or 1, not " + text_of(row[4]));
+    materials[i].half_wave = row[4] != 0;
   }
   return materials;
 }
@@ -272,9 +276,17 @@ nb::object faces_view(nb::handle owner, const Robot& robot) {
 }
 
 nb::object materials_view(nb::handle owner, const Robot& robot) {
-  static_assert(sizeof(Material) == 16);
+  static_assert(offsetof(Material, phase) == 12 && sizeof(Material) % sizeof(float) == 0);
   const std::span<const Material> materials = materials_of(robot);
-  return view(owner, materials.data(), materials.size(), "float32", 4);
+  return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<2>>(
+      &materials.data()->stiffness, {materials.size(), 4}, owner,
+      {static_cast<std::int64_t>(sizeof(Material) / sizeof(float)), 1}));
+}
+
+nb::object half_wave_view(nb::handle owner, const Robot& robot) {
+  const std::span<const Material> materials = materials_of(robot);
+  return nb::cast(nb::ndarray<nb::numpy, const bool, nb::ndim<1>>(
+      &materials.data()->half_wave, {materials.size()}, owner, {static_cast<std::int64_t>(sizeof(Material))}));
 }
 
 }  // namespace mercury::python

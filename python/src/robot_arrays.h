@@ -20,7 +20,7 @@ std::vector<Vec3> masses_from(nanobind::handle array);  // (n, 3)
 // distance of the masses. Needs the robot's masses and materials.
 std::vector<Spring> springs_from(nanobind::handle array, const Robot& robot);
 std::vector<Face> faces_from(nanobind::handle array, const Robot& robot);  // (k, 3)
-// (l, 4): stiffness, amplitude, frequency, phase; or fields of these names.
+// (l, 4) or (l, 5): stiffness, amplitude, frequency, phase, half_wave (0 or 1); or fields of these names.
 std::vector<Material> materials_from(nanobind::handle array);
 
 VoxelGrid grid_from(nanobind::handle array);  // (x, y, z): materials 0 to 22
@@ -33,5 +33,6 @@ nanobind::object masses_view(nanobind::handle owner, const Robot& robot);     //
 nanobind::object springs_view(nanobind::handle owner, const Robot& robot);    // (m,) a, b, material, rest_length
 nanobind::object faces_view(nanobind::handle owner, const Robot& robot);      // (k, 3) uint16
 nanobind::object materials_view(nanobind::handle owner, const Robot& robot);  // (l, 4) float32
+nanobind::object half_wave_view(nanobind::handle owner, const Robot& robot);  // (l,) bool
 
 }  // namespace mercury::python

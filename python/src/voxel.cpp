@@ -50,9 +50,8 @@ void bind_voxel(nb::module_& module) {
               "materials: numpy.typing.ArrayLike | None = None) -> Robot"),
       "The largest connected body of a grid of voxels as a robot.\n\n"
       "grid: (x, y, z), a base material (1 to 22) for each voxel, 0 = air. edge: of a voxel [m].\n"
-      "materials: (2 to 23, 4), stiffness [N/m], amplitude [1], frequency [rad/s] and phase [rad] of air (row 0)\n"
-      "and the base materials; None or missing rows = the default ones. Springs at the border of two materials have\n"
-      "their means. Raises InputError.");
+      "materials: (2 to 23, 4 or 5) of air (row 0) and the base materials, as in Robot(); None or missing rows = the\n"
+      "default ones. Springs at the border of two materials have their means. Raises InputError.");
 }
 
 }  // namespace mercury::python

@@ -64,6 +64,27 @@ def test_a_structured_array_of_materials():
     np.testing.assert_array_equal(robot.materials, [[0, 0, 0, 0], [100, 0.25, 6, 0], [200, 0, 0, 0]])
 
 
+def test_half_waves_are_a_fifth_column():
+    table = np.array([[0, 0, 0, 0, 0], [100, 0.25, 6, 0, 1], [200, 0, 0, 0, 0]], np.float32)
+    springs = SPRINGS.copy()
+    springs[:, 2] = [1, 1, 2, 2, 2, 2]
+    robot = tetrahedron(materials=table, springs=springs)
+    np.testing.assert_array_equal(robot.materials, table[:, :4])
+    assert robot.half_wave.dtype == bool and robot.half_wave.tolist() == [False, True, False]
+    assert not tetrahedron(materials=table[:, :4], springs=springs).half_wave.any()
+    assert tetrahedron(materials=table[:, :4], springs=springs) != robot
+    assert [material["half_wave"] for material in robot.info()["materials"]] == [True, False]
+    fields = ["stiffness", "amplitude", "frequency", "phase", "half_wave"]
+    structured = np.zeros(3, dtype=[(field, "f4") for field in fields])
+    for field, column in zip(fields, table.T, strict=True):
+        structured[field] = column
+    assert tetrahedron(materials=structured, springs=springs) == robot
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    table[1, 4] = 0.5
+    with pytest.raises(mercurysim.InputError, match=r"/materials/1: half_wave must be 0 or 1, not 0.5"):
+        tetrahedron(materials=table, springs=springs)
+
+
 def test_the_robot_copies_what_it_is_given():
     masses = TETRAHEDRON.astype(np.float32)
     robot = tetrahedron(masses=masses)
@@ -71,7 +92,7 @@ def test_the_robot_copies_what_it_is_given():
     np.testing.assert_array_equal(robot.masses, TETRAHEDRON.astype(np.float32))
 
 
-@pytest.mark.parametrize("name", ["masses", "springs", "faces", "materials"])
+@pytest.mark.parametrize("name", ["masses", "springs", "faces", "materials", "half_wave"])
 def test_views_are_read_only_and_share_memory(name):
     robot = tetrahedron()
     view = getattr(robot, name)

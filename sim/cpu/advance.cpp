@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/layout/scalar_forces.h"
@@ -33,8 +32,7 @@ class FactorCache {
  private:
   bool is_table_of(const Body& body) const {
     return body.materials.size() == table_.size() &&
-           (body.materials.data() == table_.data() ||
-            std::memcmp(body.materials.data(), table_.data(), table_.size_bytes()) == 0);
+           (body.materials.data() == table_.data() || std::ranges::equal(body.materials, table_));
   }
 
   Muscles& muscles_;

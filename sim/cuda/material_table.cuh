@@ -41,11 +41,10 @@ class MaterialTable {
   // Writes the length factors of this many steps after the launch's first.
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
-      const float amplitude = materials_[chunk * lanes + lane_].amplitude;
-      if (step > 0 && !__any_sync(0xffffffffu, amplitude != 0)) continue;
+      const Material& material = materials_[chunk * lanes + lane_];
+      if (step > 0 && !__any_sync(0xffffffffu, material.amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-      spread(chunk, &Parameters::length_factor,
-             muscle_factor(amplitude, phase_at(phases_[chunk * lanes + lane_], now)));
+      spread(chunk, &Parameters::length_factor, muscle_factor(material, phase_at(phases_[chunk * lanes + lane_], now)));
     }
   }
 

@@ -2,7 +2,8 @@
 // A muscle that a program drives: L = L0 (1 + dL0 u) with u in [-1, 1] instead of the sine.
 //
 // The muscle law (muscle.h) gives this length without any change: with frequency 0, the angle is the phase, and with
-// the phase arcsin u the sine is u. So a drive is a change of the material, and no kernel knows of it.
+// the phase arcsin u the sine is u. So a drive is a change of the material, and no kernel knows of it. Half waves are a
+// property of the sine that the drive replaces: a driven muscle takes u of either sign.
 #pragma once
 
 #include <cmath>
@@ -53,6 +54,7 @@ MERCURY_HOST_DEVICE Material actuated(const Material& own, const ActuatorSetting
   if (std::isfinite(setting.drive)) {
     now.frequency = 0;
     now.phase = arcsine(setting.drive);
+    now.half_wave = false;
   }
   return now;
 }

@@ -18,7 +18,7 @@
 //    precision, about 1e-19 turns, times n: 1e-9 rad after 1e9 steps.
 // 3. The phase depends on the number of the step alone. Runs are the same bit for bit however their steps are divided
 //    into calls.
-// 4. It costs one integer product per material and step, and nothing per spring.
+// 4. It costs one integer product per material and step, and nothing per spring. Springs do not know of half waves.
 #pragma once
 
 #include <cmath>
@@ -79,16 +79,24 @@ MERCURY_HOST_DEVICE float cosine_of_phase(std::uint64_t phase) {
   return sine_of_phase(phase + (std::uint64_t{1} << 62));  // a quarter turn ahead
 }
 
-// L(t) / L0 [1]
-MERCURY_HOST_DEVICE float muscle_factor(float amplitude, std::uint64_t phase) {
-  return multiply_add(amplitude, sine_of_phase(phase), 1.0f);
+// L(t) / L0 [1] of a muscle by its sine. A muscle that moves by half waves takes min(0, sine) in its place (as
+// voxcraft-sim without EnableExpansion): its highest sine is 0. That of all others is above every sine.
+MERCURY_HOST_DEVICE float highest_sine(const Material& material) { return material.half_wave ? 0.0f : 2.0f; }
+template <class Number>
+MERCURY_HOST_DEVICE Number length_factor(Number amplitude, Number sine, Number highest) {
+  return multiply_add(amplitude, select(sine < highest, sine, highest), Number(1.0f));
+}
+MERCURY_HOST_DEVICE float muscle_factor(const Material& material, std::uint64_t phase) {
+  return length_factor(material.amplitude, sine_of_phase(phase), highest_sine(material));
 }
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, const Clock& clock) {
-  return muscle_factor(material.amplitude, phase_at(muscle_phase(material, clock), clock.step - clock.base_step));
+  return muscle_factor(material, phase_at(muscle_phase(material, clock), clock.step - clock.base_step));
 }
 // Its rate [1/s]: L(t) / L0 = 1 + dL0 sin(theta) with theta = omega t + phi, so d(L / L0) / dt = dL0 omega cos(theta).
+// In the half of the wave that does not act it is 0.
 MERCURY_HOST_DEVICE float muscle_rate(const Material& material, std::uint64_t phase) {
-  return material.amplitude * material.frequency * cosine_of_phase(phase);
+  const float rate = material.amplitude * material.frequency * cosine_of_phase(phase);
+  return sine_of_phase(phase) < highest_sine(material) ? rate : 0.0f;
 }
 // At t = step dt.
 MERCURY_HOST_DEVICE float muscle_factor(const Material& material, double dt, std::int64_t step) {

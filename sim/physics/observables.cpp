@@ -13,7 +13,7 @@ namespace mercury {
 MaterialNow material_at(const Material& material, const Environment& environment, const Clock& clock) {
   const std::uint64_t phase = phase_at(muscle_phase(material, clock), clock.step - clock.base_step);
   return {.stiffness = stiffness_scale_of(environment) * material.stiffness,
-          .length_factor = muscle_factor(material.amplitude, phase),
+          .length_factor = muscle_factor(material, phase),
           .length_rate = muscle_rate(material, phase)};
 }
 
@@ -30,7 +30,8 @@ std::vector<MaterialNow> materials_at(std::span<const Material> table, const Env
 }
 
 float contraction(const Material& material, double time) {
-  return -material.amplitude * sine_of_phase(muscle_phase(material, Clock{.base_time = time}).at_base);
+  const float sine = sine_of_phase(muscle_phase(material, Clock{.base_time = time}).at_base);
+  return -material.amplitude * std::min(sine, highest_sine(material));
 }
 
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,

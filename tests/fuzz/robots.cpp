@@ -27,6 +27,7 @@ Robot small_robot() {
   Robot robot = random_voxel_robot({.smallest = {1, 1, 1}, .largest = {1, 1, 1}, .air = 0}, 1);
   const auto defaults = default_materials();
   robot.materials.assign(defaults.begin(), defaults.begin() + 3);
+  robot.materials[2].half_wave = true;
   robot.material_names = {"air", "a", "b"};
   for (Spring& spring : robot.springs) spring.material = 1;
   return robot;
@@ -89,6 +90,7 @@ std::vector<std::string> repro_seeds() {
     repro.perturbations = {{.mass = 1, .target = {1, 2, 3}, .stiffness = 40}};
     ReproChange change{.step = 3, .configuration = repro.configuration};
     change.materials = repro.robot.materials;
+    change.materials->back().half_wave = true;
     change.perturbations = repro.perturbations;
     repro.changes = {change, {.step = 4}};
     repro.exploded_at = 0.01;

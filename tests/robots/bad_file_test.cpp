@@ -2,6 +2,8 @@
 // Robot documents that break a rule are refused in one line that says where and why.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
 
@@ -138,6 +140,20 @@ TEST(BadRobotFiles, MaterialsNamesAndOrigin) {
             "/materials/0/name: must be a text, not a number");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":-5}])"}),
             "/materials/1: stiffness must be a finite number >= 0 N/m");
+  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":1,"half_wave":false}])"}), "no error");
+  const auto half_wave = [](const std::string& value) {
+    return refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"half_wave":)" + value + R"(,"stiffness":1}])"});
+  };
+  for (const auto& [value, named] : std::map<std::string, std::string>{{"1", "a number"},
+                                                                       {"0.0", "a number"},
+                                                                       {"\"true\"", "a text"},
+                                                                       {"null", "null"},
+                                                                       {"[true]", "an array"},
+                                                                       {"{}", "an object"}})
+    EXPECT_EQ(half_wave(value), "/materials/1/half_wave: must be true or false, not " + named);
+  EXPECT_EQ(half_wave("true,\"half_wave\":true"), "/materials/1/half_wave: appears twice");
+  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":true}])"}),
+            "/materials/0/stiffness: must be a number, not true");
   std::string many = R"(,"materials":[{"stiffness":0})";
   for (int i = 0; i < 256; ++i) many += R"(,{"stiffness":0})";
   EXPECT_EQ(refusal_of({.rest = many + "]"}), "/materials: more than 256 materials, at most 256 are accepted");

@@ -59,7 +59,7 @@ class RobotFiles : public testing::Test {
 Robot robot_with_hard_values() {
   Robot robot;
   robot.name = "Zitteraal \"ä\"\n\t\\ \x01 鰻";
-  robot.materials = {{}, {50, 0.14f, 1, std::nextafter(1.f, 2.f)}, {1e-30f, -0.5f, -3, 7e7f}};
+  robot.materials = {{}, {50, 0.14f, 1, std::nextafter(1.f, 2.f)}, {1e-30f, -0.5f, -3, 7e7f, true}};
   robot.material_names = {"air", "", "µ"};
   robot.masses = {{0.1f, -0.f, 1e-45f}, {1.f / 3, 999999.94f, 16777216.f / 32}, {-1.17549435e-38f, 5, 3e-5f}};
   robot.springs = {{0, 1, 1, 0.001f}, {2, 1, 2, 1e6f}};
@@ -77,6 +77,16 @@ TEST_F(RobotFiles, EveryValueComesBackBitForBit) {
     EXPECT_EQ(loaded, robot) << name;
     EXPECT_TRUE(std::signbit(loaded.masses[0].y)) << name;
   }
+}
+
+TEST_F(RobotFiles, NameHalfWavesOnlyWhereAMaterialHasThem) {
+  Robot robot{.materials = {{}, {50, 0.1f, 1, 0}}, .masses = {{0, 0, 0}, {0, 3, 4}}, .springs = {{0, 1, 1, 5}}};
+  EXPECT_THAT(serialize_robot(robot, RobotFormat::json), testing::Not(testing::HasSubstr("half_wave")));
+  EXPECT_THAT(serialize_robot(robot, RobotFormat::cbor), testing::Not(testing::HasSubstr("half_wave")));
+  robot.materials[1].half_wave = true;
+  const std::string json = serialize_robot(robot, RobotFormat::json);
+  EXPECT_THAT(json, testing::HasSubstr(R"("half_wave":true)"));
+  EXPECT_EQ(json.find("half_wave"), json.rfind("half_wave")) << "air has none";
 }
 
 TEST_F(RobotFiles, VoxelRobotsComeBackWithTheirGrid) {

@@ -18,6 +18,7 @@ Robot small_robot() {
   Robot robot = random_voxel_robot({.smallest = {2, 1, 1}, .largest = {2, 1, 1}, .air = 0}, 1);
   const auto defaults = default_materials();
   robot.materials.assign(defaults.begin(), defaults.begin() + 3);
+  robot.materials[2].half_wave = true;
   robot.material_names = {"air", "a", "b"};
   for (Spring& spring : robot.springs) spring.material = 1;
   return robot;
@@ -37,9 +38,27 @@ std::string document_with_actuators(RobotFormat format) {
 
 std::string mutated(std::string document, Random& random) {
   const auto place = [&] { return static_cast<std::size_t>(random.below(document.size())); };
-  constexpr std::string_view pieces[] = {
-      "[",    "]",    "{",    "}",    ",",    ":",    "\"",   "-",   "1e9", "null", "0.0", "99999999999999999999",
-      "\x9f", "\xbf", "\xff", "\xfb", "\x1b", "\x7f", "\xf9", "\xc1"};
+  constexpr std::string_view pieces[] = {"[",
+                                         "]",
+                                         "{",
+                                         "}",
+                                         ",",
+                                         ":",
+                                         "\"",
+                                         "-",
+                                         "1e9",
+                                         "null",
+                                         "true",
+                                         "0.0",
+                                         "99999999999999999999",
+                                         "\x9f",
+                                         "\xbf",
+                                         "\xff",
+                                         "\xfb",
+                                         "\x1b",
+                                         "\x7f",
+                                         "\xf9",
+                                         "\xc1"};
   const auto edits = 1 + random.below(4);
   for (std::uint64_t edit = 0; edit < edits && !document.empty(); ++edit) {
     const std::size_t at = place();

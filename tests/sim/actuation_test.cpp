@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -38,6 +39,7 @@ std::vector<Robot> crowd() {
   add_actuator(halves, "left", left);
   add_actuator(halves, "right", right);
   robots.push_back(halves);
+  robots.push_back(bodies::with_half_waves(robots[2]));
   return robots;
 }
 
@@ -124,7 +126,7 @@ TEST_P(ActuationOf, EqualsMaterialsWithTheseValues) {
         driven.write(arrays.frequency, i, a, frequency);
         driven.write(arrays.phase, i, a, 0.1f * n);
         for (const MaterialId id : actuators[a].materials)
-          changed[i].materials[id] = {materials[id].stiffness, amplitude, frequency, 0.1f * n};
+          changed[i].materials[id] = {materials[id].stiffness, amplitude, frequency, 0.1f * n, materials[id].half_wave};
       }
     }
     SharedBatch expected = this->batch({.solver = solver}, changed);
@@ -135,6 +137,30 @@ TEST_P(ActuationOf, EqualsMaterialsWithTheseValues) {
   }
 }
 
+// Half waves are a property of the sine. A drive replaces the sine, so it has both signs.
+TEST_P(ActuationOf, ByADriveHasNoHalfWaves) {
+  const Material muscle{50, 0.3f, 4, 1};
+  const std::vector<Robot> robots = {bodies::pair(muscle), bodies::with_half_waves(bodies::pair(muscle))};
+  SharedBatch batch = this->batch({.environment = empty_space()}, robots);
+  const Actuation& arrays = batch->actuation();
+  for (const float drive : {0.7f, -0.4f}) {
+    batch.write(arrays.drive, {drive, drive});
+    batch->step(20);
+    EXPECT_EQ(batch->hash(1), batch->hash(0)) << drive;
+  }
+  // Without the drive it moves by half waves again: sin(4 t + 1) > 0 at the first of these times, < 0 at the second.
+  for (const std::int64_t first : {100, 800}) {
+    batch.write(arrays.drive, {nan_value, nan_value});
+    batch->step(first - batch->steps());
+    const double time = batch->time(), sine = std::sin(4 * time + 1), whole = 1 + double{0.3f} * sine;
+    batch->set_state(0, robots[0].masses, std::vector<Vec3>(2));
+    batch->set_state(1, robots[1].masses, std::vector<Vec3>(2));
+    const auto telemetry = batch->telemetry();
+    EXPECT_NEAR(telemetry[0].elastic_energy, 25 * std::pow(whole - 1, 2), 1e-5) << time;
+    EXPECT_NEAR(telemetry[1].elastic_energy, sine > 0 ? 0 : 25 * std::pow(whole - 1, 2), 1e-5) << time;
+  }
+}
+
 // A drive is constant during a step, as the length of a muscle is.
 TEST_P(ActuationOf, ByASineIsTheSine) {
   const std::vector<Robot> robots = crowd();
@@ -142,9 +168,16 @@ TEST_P(ActuationOf, ByASineIsTheSine) {
   const Actuation& arrays = driven->actuation();
   const auto frequency = driven.read(arrays.frequency), phase = driven.read(arrays.phase);
   std::vector<float> drives(phase.size());
+  std::vector<double> highest(phase.size(), 1);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const auto actuators = actuators_of(robots[i]);
+    for (std::size_t a = 0; a < actuators.size(); ++a)
+      if (materials_of(robots[i])[actuators[a].materials.front()].half_wave) highest[i * arrays.drive.columns + a] = 0;
+  }
   for (int step = 0; step < 200; ++step) {
     for (std::size_t i = 0; i < drives.size(); ++i)
-      drives[i] = static_cast<float>(std::sin(double{frequency[i]} * driven->time() + double{phase[i]}));
+      drives[i] =
+          static_cast<float>(std::min(std::sin(double{frequency[i]} * driven->time() + double{phase[i]}), highest[i]));
     driven.write(arrays.drive, drives);
     driven->step_in_stream(1, nullptr);
   }
@@ -212,7 +245,7 @@ TEST_P(ActuationOf, GoesOnForRobotsThatStay) {
   changing->step(30);
   changing->add(bodies::random_voxels({.x = 4, .y = 4, .z = 4}, 9));
   changing->step(30);
-  changing->keep(std::array<std::size_t, 4>{5, 4, 0, 2});
+  changing->keep(std::array<std::size_t, 4>{6, 4, 0, 2});
   changing->step_in_stream(30, nullptr);
   all->step(90);
   EXPECT_EQ(changing->hash(1), all->hash(4));
@@ -233,10 +266,10 @@ TEST_P(ActuationOf, AResetRobotMovesAsANewOne) {
     each->write(arrays.drive, drives);
   }
   batch->step(30);
-  batch->reset_in_stream(batch.shared({1, 0, 1, 1, 1}).get(), nullptr);
+  batch->reset_in_stream(batch.shared({1, 0, 1, 1, 1, 1}).get(), nullptr);
   batch->step(40);
   fresh->step(40);
-  for (const std::size_t i : {0u, 2u, 3u, 4u}) EXPECT_EQ(batch->hash(i), fresh->hash(i)) << i;
+  for (const std::size_t i : {0u, 2u, 3u, 4u, 5u}) EXPECT_EQ(batch->hash(i), fresh->hash(i)) << i;
 }
 
 TEST_P(ActuationOf, NamingActuatorsChangesNoBit) {

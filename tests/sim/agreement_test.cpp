@@ -2,6 +2,8 @@
 // Every pair of solver and environment follows an independent calculation in double precision.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "backend.h"
 #include "bodies.h"
 #include "mercury/cuda_devices.h"
@@ -40,6 +42,11 @@ TEST_P(Agreement, RandomVoxelRobotFollowsTheReferenceFromRest) {
   EXPECT_LT(deviation_over_a_second(configuration(), bodies::random_voxels({}, 1)), tolerance());
 }
 
+TEST_P(Agreement, RobotThatMovesByHalfWavesFollowsTheReference) {
+  EXPECT_LT(deviation_over_a_second(configuration(), bodies::with_half_waves(bodies::random_voxels({}, 1))),
+            tolerance());
+}
+
 TEST_P(Agreement, ShakenRobotFollowsTheReference) {
   const Robot robot = bodies::random_voxels({}, 2);
   State start = bodies::shaken(robot, 0.01f, 0.5f, 3);
@@ -71,18 +78,20 @@ TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const std::string_view environment : environment_names()) {
-      const Robot robot = bodies::random_voxels({}, 6);
+      const std::array robots = {bodies::random_voxels({}, 6), bodies::with_half_waves(bodies::random_voxels({}, 7))};
       Configuration configuration{.solver = solver, .environment = environment_named(environment)};
       configuration.device.kind = DeviceKind::cpu;
-      Simulation cpu(configuration, {&robot, 1});
+      Simulation cpu(configuration, robots);
       configuration.device.kind = DeviceKind::cuda;
-      Simulation cuda(configuration, {&robot, 1});
+      Simulation cuda(configuration, robots);
       cpu.step(1000);
       cuda.step(1000);
-      const auto expected = cpu.positions(0), actual = cuda.positions(0);
-      float largest = 0;
-      for (std::size_t i = 0; i < expected.size(); ++i) largest = std::max(largest, length(expected[i] - actual[i]));
-      EXPECT_LT(largest, 1e-4f) << name_of(solver) << " " << environment;
+      for (std::size_t robot = 0; robot < robots.size(); ++robot) {
+        const auto expected = cpu.positions(robot), actual = cuda.positions(robot);
+        float largest = 0;
+        for (std::size_t i = 0; i < expected.size(); ++i) largest = std::max(largest, length(expected[i] - actual[i]));
+        EXPECT_LT(largest, 1e-4f) << name_of(solver) << " " << environment << ", robot " << robot;
+      }
     }
 }
 

@@ -99,6 +99,13 @@ Robot random_voxels(const Grid& grid, std::uint64_t seed) {
   return robot;
 }
 
+Robot with_half_waves(Robot robot) {
+  const std::vector<Material> table(materials_of(robot).begin(), materials_of(robot).end());
+  robot.materials = table;
+  for (std::size_t id = 1; id < robot.materials.size(); id += 2) robot.materials[id].half_wave = true;
+  return robot;
+}
+
 void rotate(Robot& robot, const std::array<Vec3, 3>& rows) {
   for (Vec3& x : robot.masses) x = {dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)};
 }

@@ -31,6 +31,8 @@ struct Grid {
 Robot voxels(const Grid& grid, const Material& material);
 // The same with the default table and a random material from 1..253 per spring.
 Robot random_voxels(const Grid& grid, std::uint64_t seed);
+// The robot with a table of its own, in which every second material moves by half waves.
+Robot with_half_waves(Robot robot);
 
 // Rotates the rest pose. `rows` are the rows of the rotation matrix.
 void rotate(Robot& robot, const std::array<Vec3, 3>& rows);

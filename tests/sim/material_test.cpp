@@ -53,6 +53,19 @@ TEST(Materials, APassivePartnerLowersTheAmplitudeNotTheFrequency) {
   EXPECT_EQ(materials[combine(tissue, bone)], (Material{70, 0, 0, 0}));
 }
 
+TEST(Materials, APairMovesByHalfWavesIfAllThatMovesDoes) {
+  const auto defaults = default_materials();
+  std::vector<Material> bases(defaults.begin() + 1, defaults.begin() + 1 + base_material_count);
+  bases[0].half_wave = bases[1].half_wave = bases[tissue - 1].half_wave = true;
+  const auto table = material_table(std::span<const Material, base_material_count>(bases));
+  EXPECT_TRUE(table[1].half_wave);
+  EXPECT_TRUE(table[combine(1, 2)].half_wave);
+  EXPECT_TRUE(table[combine(1, bone)].half_wave);
+  EXPECT_FALSE(table[combine(1, 3)].half_wave) << "3 moves by whole waves";
+  EXPECT_FALSE(table[combine(3, tissue)].half_wave);
+  EXPECT_FALSE(table[combine(tissue, bone)].half_wave) << "nothing moves";
+}
+
 TEST(Materials, ATableOfTheDefaultBasesIsTheDefaultTable) {
   const auto materials = default_materials();
   const auto bases = materials.subspan<1, base_material_count>();

@@ -25,6 +25,7 @@ inline std::vector<Robot> mixed_robots(std::size_t lanes) {
       for (Material& material : robot.materials) {
         material.stiffness *= 1 + 0.01f * static_cast<float>(seed);
         material.phase += 0.1f * static_cast<float>(seed);
+        material.half_wave = seed % 8 == 0;
       }
     }
   }

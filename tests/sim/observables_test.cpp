@@ -36,6 +36,16 @@ TEST(Observables, AMaterialFollowsItsMuscleCurveAndTheEnvironmentScalesItsStiffn
   }
 }
 
+TEST(Observables, AHalfWaveIsInTheContraction) {
+  Material half = muscle;
+  half.half_wave = true;
+  for (const double time : {0.0, 0.7, 1.5, 2.2}) {
+    const double sine = std::min(0.0, std::sin(3 * time + double{muscle.phase}));
+    EXPECT_NEAR(contraction(half, time), -0.14 * sine, 1e-6) << time;
+    EXPECT_NEAR(materials_at(std::array{half}, Ocean{}, time).at(0).length_factor, 1 + 0.14 * sine, 1e-6) << time;
+  }
+}
+
 TEST(Observables, AClockGivesTheSameAsItsTime) {
   const Clock clock{.dt = 2e-3, .base_time = 1.25, .base_step = 700, .step = 1950};
   const std::vector<Material> table{{}, muscle};

@@ -11,7 +11,8 @@ Vector vector_of(Vec3 v) { return {v.x, v.y, v.z}; }
 
 double rest_length(const Material& material, double rest_length, double time) {
   const double omega = material.frequency, phi = material.phase, amplitude = material.amplitude;
-  return rest_length * (1 + amplitude * std::sin(omega * time + phi));
+  const double sine = std::sin(omega * time + phi);
+  return rest_length * (1 + amplitude * (material.half_wave ? std::min(0.0, sine) : sine));
 }
 
 Reference::Reference(const Configuration& configuration, const Robot& robot)
@@ -193,7 +194,9 @@ double Reference::muscle_power() const {
   for (const Spring& spring : robot_.springs) {
     const Material& material = materials_of(robot_)[spring.material];
     const double rest = spring.rest_length, amplitude = material.amplitude, omega = material.frequency;
-    const double rate = rest * amplitude * omega * std::cos(omega * time() + double{material.phase});
+    const double angle = omega * time() + double{material.phase};
+    if (material.half_wave && std::sin(angle) >= 0) continue;
+    const double rate = rest * amplitude * omega * std::cos(angle);
     sum -= stiffness(spring) * ((x_[spring.b] - x_[spring.a]).norm() - length_now(spring)) * rate;
   }
   return sum;

@@ -31,7 +31,8 @@ double power_of(double length, const Configuration& configuration, const Robot& 
 
 TEST_P(TelemetryOf, AMovingRobotAgreesWithAnIndependentCalculation) {
   const std::vector<Robot> robots = {bodies::random_voxels({}, 1), bodies::random_voxels({.x = 3, .y = 1, .z = 2}, 2),
-                                     bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1})};
+                                     bodies::point({1, 2, 3}), bodies::pair({50, 0.3f, 4, 1}),
+                                     bodies::with_half_waves(bodies::random_voxels({}, 4))};
   Simulation simulation(configuration(), robots);
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const State start = bodies::shaken(robots[i], 0.01f, 0.2f, 3);

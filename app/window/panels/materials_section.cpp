@@ -91,6 +91,9 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
                     {0, 0.6f, "%.3f"});
   changed |= slider("frequency", "omega", material.frequency, original.frequency, {0, 25, "%.2f rad/s"});
   changed |= slider("phase", "phi", material.phase, original.phase, {-pi, 2 * pi, "%.2f rad"});
+  row("half wave", "only the negative half of the sine acts: the muscle shortens and comes back");
+  changed |= ImGui::Checkbox("##half wave", &material.half_wave);
+  context.log.item("materials.half_wave");
   if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
 }
 

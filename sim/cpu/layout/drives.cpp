@@ -12,7 +12,7 @@ namespace mercury::cpu {
 namespace {
 
 bool move_alike(const Material& a, const Material& b) {
-  return a.amplitude == b.amplitude && a.frequency == b.frequency && a.phase == b.phase;
+  return a.amplitude == b.amplitude && a.frequency == b.frequency && a.phase == b.phase && a.half_wave == b.half_wave;
 }
 
 // The setting of an actuator with the drive as the sine that stands for it, so that this is computed once for all its
@@ -66,6 +66,7 @@ void read_drives(Body& body, Muscles& muscles) {
     if (!previous || previous->actuator != driven.actuator) setting = setting_of(body.drives, driven.actuator);
     Material& now = body.changed_materials[driven.id];
     now = actuated(driven.own, setting);
+    if (std::isfinite(body.drives.drive[driven.actuator])) now.half_wave = false;  // as in actuated()
     muscles.drive(driven.factor, now);
     previous = &driven;
   }

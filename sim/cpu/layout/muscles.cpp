@@ -13,7 +13,7 @@ constexpr std::size_t max_lanes = 16;
 
 Muscles::Muscles() {
   movements_.push_back({});
-  factor_of_.emplace(Movement{0, 0, 0}, FactorId{0});
+  factor_of_.emplace(movement_of({}), FactorId{0});
 }
 
 void Muscles::add(std::span<const Material> table, const std::array<bool, max_materials>& wanted,
@@ -21,7 +21,7 @@ void Muscles::add(std::span<const Material> table, const std::array<bool, max_ma
   for (std::size_t id = 0; id < table.size(); ++id) {
     if (!wanted[id]) continue;
     const Material& m = table[id];
-    const Movement movement = m.amplitude == 0 ? Movement{0, 0, 0} : movement_of(m);
+    const Movement movement = movement_of(m.amplitude == 0 ? Material{} : m);
     const auto [found, is_new] = factor_of_.emplace(movement, static_cast<FactorId>(movements_.size()));
     if (is_new) {
       movements_.push_back(m);
@@ -46,6 +46,7 @@ void Muscles::drive(FactorId factor, const Material& material) {
 void Muscles::place(std::size_t factor) {
   const MusclePhase muscle = muscle_phase(movements_[factor], clock_);
   amplitude[factor] = movements_[factor].amplitude;
+  highest[factor] = highest_sine(movements_[factor]);
   phase[factor] = phase_at(muscle, clock_.step - clock_.base_step);
   per_step[factor] = muscle.per_step;
 }
@@ -64,6 +65,7 @@ void Muscles::move_to(const Clock& clock) {
   current_ = true;
   const std::size_t padded = (size() + max_lanes - 1) / max_lanes * max_lanes;
   amplitude.assign(padded, 0);
+  highest.assign(padded, 0);
   phase.assign(padded, 0);
   per_step.assign(padded, 0);
   for (std::size_t i = 0; i < size(); ++i) place(i);

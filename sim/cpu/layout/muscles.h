@@ -36,14 +36,14 @@ class Muscles {
   void move_to(const Clock& clock);
 
   // By factor, padded to a multiple of any number of lanes with factors that do not move.
-  Aligned<float> amplitude;
+  Aligned<float> amplitude, highest;       // highest_sine()
   Aligned<std::uint64_t> phase, per_step;  // as in MusclePhase; `phase` is that of `step`
   std::int64_t step = 0;
 
  private:
-  using Movement = std::tuple<float, float, float>;  // amplitude, frequency, phase
+  using Movement = std::tuple<float, float, float, bool>;  // amplitude, frequency, phase, half wave
   static Movement movement_of(const Material& material) {
-    return {material.amplitude, material.frequency, material.phase};
+    return {material.amplitude, material.frequency, material.phase, material.half_wave};
   }
   void place(std::size_t factor);
 

@@ -52,8 +52,9 @@ struct Robot {
 std::span<const Material> materials_of(const Robot& robot);
 
 // The actuators that a program drives: those that the robot names. If it names none, muscles that move alike belong to
-// one actuator: those materials with an amplitude, of at least one spring, that have the same frequency and phase. Such
-// actuators are in the order of their first material and have its name ("muscle 3"; "material 3" if it has none).
+// one actuator: those materials with an amplitude, of at least one spring, that have the same frequency, phase and half
+// wave. Such actuators are in the order of their first material and have its name ("muscle 3"; "material 3" if it has
+// none).
 std::vector<Actuator> actuators_of(const Robot& robot);
 
 // Makes an actuator of these springs, by their indices. Springs of an actuator need materials that no other springs

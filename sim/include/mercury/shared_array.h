@@ -30,7 +30,8 @@ enum class StateArray {
 //   L    = L0 (1 + amplitude drive)                        otherwise
 //
 // A number that is not finite means that there is none: materials then keep their own amplitude, frequency or phase,
-// and follow the sine. Amplitudes are limited to (-1, 1), drives to [-1, 1].
+// and follow the sine, or its half wave, which a drive replaces too. Amplitudes are limited to (-1, 1), drives to [-1,
+// 1].
 struct Actuation {
   SharedArray<float> amplitude;  // [1]
   SharedArray<float> frequency;  // [rad/s]

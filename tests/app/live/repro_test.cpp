@@ -39,6 +39,7 @@ class LiveRepro : public test::FolderTest {
     Material muscle = scene.materials(robot)[2];
     muscle.frequency *= 3;
     muscle.phase = 0.7f;
+    muscle.half_wave = true;
     scene.set_material({robot}, 2, muscle);
     step(33);
     scene.scale_materials({robot}, {.stiffness = 1.5f});
@@ -218,6 +219,17 @@ TEST_F(LiveRepro, InvalidReproIsReportedInOneLine) {
     changed["start"][name] = "x";
     EXPECT_TRUE(refused(changed.dump())) << name;
   }
+  auto changed = document;
+  for (auto& change : changed["changes"])
+    if (change.contains("materials")) {
+      ASSERT_EQ(change["materials"][0].size(), 6u);
+      EXPECT_TRUE(change["materials"][0][5].get<bool>());
+      for (const auto& odd : {nlohmann::json(1), nlohmann::json(), nlohmann::json("true")}) {
+        change["materials"][0][5] = odd;
+        EXPECT_TRUE(refused(changed.dump())) << odd;
+      }
+      break;
+    }
   write("bad.repro", "{}");
   const test::Outcome run = test::mercury({"run", path("bad.repro")});
   EXPECT_EQ(run.status, 2);

@@ -29,7 +29,7 @@ inline Robot small_voxel_robot(std::uint64_t index) {
 // A robot with its own materials, named.
 inline Robot own_materials(const std::string& name) {
   Robot robot = pair(name);
-  robot.materials = {{}, {30, 0.2f, 3, 0.5f}, {70, 0, 0, 0}};
+  robot.materials = {{}, {30, 0.2f, 3, 0.5f, true}, {70, 0, 0, 0}};
   robot.material_names = {"air", "fast muscle", "cord"};
   robot.actuators = {{"both", {2, 1}}};
   return robot;

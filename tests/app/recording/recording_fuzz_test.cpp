@@ -289,6 +289,45 @@ TEST_F(RecordingChanged, ActuatorsThatBreakARuleAreNamedWithTheRule) {
   EXPECT_EQ(with({0, 1, 0, 7}), place + "/actuators/0: material 7 is out of range, the table has 3");
 }
 
+// As other programs may write the table: half_wave as a number, of any size.
+TEST_F(RecordingChanged, HalfWavesMayBeNumbers) {
+  const auto with = [&](hid_t type, const void* rows) {
+    return refusal_after([&](hid_t file) {
+      put_dataset(file, "/particles/own/materials", type, {3});
+      const Handle dataset(H5Dopen2(file, "/particles/own/materials", H5P_DEFAULT));
+      checked(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows));
+    });
+  };
+  struct Row {
+    float stiffness, amplitude, frequency, phase;
+    std::int32_t half_wave;
+  };
+  const Row rows[] = {{0, 0, 0, 0, 0}, {30, 0.2f, 3, 0.5f, 1}, {70, 0, 0, 0, 200}};
+  const Handle type(H5Tcreate(H5T_COMPOUND, sizeof(Row)));
+  int offset = 0;
+  for (const char* name : {"stiffness", "amplitude", "frequency", "phase"}) {
+    checked(H5Tinsert(type, name, static_cast<std::size_t>(offset), H5T_NATIVE_FLOAT));
+    offset += 4;
+  }
+  const Handle without(H5Tcopy(type));
+  checked(H5Tinsert(type, "half_wave", offsetof(Row, half_wave), H5T_NATIVE_INT32));
+  const auto half_waves = [&] {
+    const TrajectoryReader reader(path("changed.h5"));
+    std::vector<bool> found;
+    for (const RecordedRobot& recorded : reader.robots())
+      if (recorded.robot.name == "own")
+        for (const Material& material : recorded.robot.materials) found.push_back(material.half_wave);
+    return found;
+  };
+  EXPECT_EQ(with(type, rows), "");
+  EXPECT_EQ(half_waves(), (std::vector<bool>{false, true, true}));
+  EXPECT_EQ(with(without, rows), "") << "as older programs wrote it";
+  EXPECT_EQ(half_waves(), (std::vector<bool>{false, false, false}));
+  const Handle text(H5Tcopy(H5T_C_S1)), wrong(H5Tcopy(without));
+  checked(H5Tinsert(wrong, "half_wave", offsetof(Row, half_wave), text));
+  EXPECT_NE(with(wrong, rows), "");
+}
+
 TEST_F(RecordingChanged, ARecordingOfAnOlderProgramHasNoActuators) {
   EXPECT_EQ(refusal_after([](hid_t file) {
               remove(file, "/particles/own/actuators");

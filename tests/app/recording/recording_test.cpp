@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "app/recording/trajectory_hdf5.h"
 #include "app/recording/trajectory_playback.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
@@ -73,6 +74,31 @@ TEST_F(Recording, HoldsTheRobotsAsTheyWere) {
   EXPECT_EQ(reader.every(), 1);
   EXPECT_EQ(reader.device_name(), simulation.device_name());
   EXPECT_THAT(reader.program(), testing::StartsWith("mercury "));
+}
+
+// Whether the table of a recorded robot has the field.
+bool has_half_wave(const std::string& path, const std::string& robot) {
+  const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  const hdf5::Handle dataset(H5Dopen2(file, ("/particles/" + robot + "/materials").c_str(), H5P_DEFAULT));
+  const hdf5::Handle type(H5Dget_type(dataset));
+  return H5Tget_member_index(type, "half_wave") >= 0;
+}
+
+TEST_F(Recording, HalfWavesComeBackAndAreWrittenOnlyWhereThereAreAny) {
+  Robot whole = own_materials("whole"), half = own_materials("half");
+  whole.materials[1].half_wave = false;
+  const std::vector<Robot> robots{whole, half, pair("defaults")};
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 400, 400);  // sin(3 t + 0.5) is below 0 at its end
+  TrajectoryReader reader(file());
+  EXPECT_EQ(robots_of(reader), robots);
+  EXPECT_FALSE(same_bits(simulation.positions(0), simulation.positions(1)));
+  Simulation again(reader.configuration(), robots_of(reader));
+  again.step(400);
+  EXPECT_TRUE(same_bits(reader.positions(1), all_positions(again)));
+  EXPECT_TRUE(has_half_wave(file(), "half"));
+  EXPECT_FALSE(has_half_wave(file(), "whole"));
+  EXPECT_FALSE(has_half_wave(file(), "defaults"));
 }
 
 TEST_F(Recording, ActuatorsComeBackInTheirOrder) {

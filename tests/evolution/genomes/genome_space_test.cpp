@@ -232,6 +232,12 @@ TEST(GenomeSpaces, FoundersKeepTheirOwnMaterials) {
   EXPECT_EQ(space->random(1, 0)->grow("a").materials, founder.materials);
   EXPECT_EQ(space->random(1, 5)->grow("a").materials, founder.materials);
   EXPECT_EQ(space->decode(space->random(1, 0)->encode())->grow("a").materials, founder.materials);
+  bases[4].half_wave = bases[20].half_wave = true;
+  const Robot half = with_base_materials(founder, bases);
+  const auto halves = make_genome_space({.genes = Genes::both, .founders = {half}});
+  EXPECT_EQ(halves->random(1, 0)->grow("a").materials, half.materials);
+  EXPECT_EQ(halves->decode(halves->random(1, 0)->encode())->grow("a").materials, half.materials);
+  EXPECT_TRUE(halves->random(1, 0)->mutate(2, 3)->grow("a").materials[5].half_wave);
   // A table in which pairs have materials of their own.
   founder.materials[100].frequency = 17;
   const auto other = make_genome_space({.genes = Genes::both, .founders = {founder}});
@@ -285,6 +291,13 @@ TEST(GenomeIdentity, IsThatOfTheBodyThatGrows) {
   };
   EXPECT_EQ(with_amplitude(7), space->random(1, 1)->identity());
   EXPECT_NE(with_amplitude(3), space->random(1, 1)->identity());
+  const auto by_half_waves = [&](std::size_t muscle) {
+    std::vector<Material> bases = base_materials_of(without);
+    bases[muscle - 1].half_wave = true;
+    return make_genome_space({.founders = {with_base_materials(without, bases)}})->random(1, 0)->identity();
+  };
+  EXPECT_EQ(by_half_waves(7), space->random(1, 1)->identity());
+  EXPECT_NE(by_half_waves(3), space->random(1, 1)->identity());
 }
 
 }  // namespace
