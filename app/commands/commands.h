@@ -24,6 +24,7 @@ void add_new_command(CLI::App& program, const Choose& choose);
 void add_mutate_command(CLI::App& program, const Choose& choose);
 void add_cross_command(CLI::App& program, const Choose& choose);
 void add_grow_command(CLI::App& program, const Choose& choose);
+void add_import_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);
 void add_export_command(CLI::App& program, const Choose& choose);
 void add_info_command(CLI::App& program, const Choose& choose);

@@ -80,6 +80,7 @@ class Program {
     add_cross_command(app_, choose);
     add_grow_command(app_, choose);
     add_export_command(app_, choose);
+    add_import_command(app_, choose);
     add_bench_command(app_, choose);
     add_info_command(app_, choose);
     add_help_command();

@@ -29,6 +29,7 @@ ALLOWED = {
     "robots/api": "sim/api",
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",
+    "robots/importers": "sim/api robots/api robots",
     "evolution/api": "sim/api robots/api",
     "evolution": "sim/api robots/api robots evolution/api",
     "render": "",
@@ -63,7 +64,7 @@ SUBJECTS = {
     "OpenGL": (r"(GL|GLES\d?|EGL|KHR|GLFW|epoxy)/|osmesa|imgui", {"render", "app", "bench"}),
     "CUDA-OpenGL interop": (r"cuda_gl_interop|cuda_egl_interop|cudaGL|cudaEGL", {"app"}),
     "CUDA": (r"cuda|cooperative_groups|cub/|thrust/|nvrtc|device_launch", {"sim", "app", "bench"}),
-    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|png|toml", {"robots", "evolution", "render", "app", "python", "bench"}),
+    "files": (r"fstream$|filesystem$|nlohmann/|hdf5|H5|pugixml|zlib|png|toml", {"robots", "evolution", "render", "app", "python", "bench"}),
     "CGAL": (r"CGAL/", {"robots"}),
     "muParser": (r"muParser", {"evolution"}),
 }

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury import: robots from files of other simulators.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/base/file_name.h"
+#include "app/base/interrupt.h"
+#include "app/base/messages.h"
+#include "app/base/progress.h"
+#include "app/base/version.h"
+#include "app/commands/commands.h"
+#include "app/commands/dry_run.h"
+#include "app/commands/results_file.h"
+#include "app/options/option_values.h"
+#include "app/options/output_options.h"
+#include "mercury/error.h"
+#include "mercury/import.h"
+#include "mercury/robot_file.h"
+
+namespace mercury {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportCommandOptions {
+  std::vector<std::string> paths;
+  std::string output, format = "json", base;
+  bool recursive = false, keep_going = false, json = false, brief = false;
+  ImportOptions reading;
+  OutputOptions outputs;
+};
+
+// A file with its robots, and the names of the files to write.
+struct ImportedFile {
+  Import import;
+  std::vector<std::string> robot_files;
+  std::string configuration_file;
+};
+
+bool is_base(const fs::path& file) { return file.filename() == "base.vxa" || file.filename() == "env.rsc"; }
+
+// The files of a folder that can be imported, sorted by name; those on which others build are left out.
+void add_files_of(const fs::path& folder, bool recursive, std::vector<fs::path>& files) {
+  std::vector<fs::path> own, folders;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (!entry->is_directory(ignored))
+      own.push_back(entry->path());
+    else if (!entry->is_symlink(ignored))
+      folders.push_back(entry->path());
+  }
+  if (error) throw InputError(folder.string(), error.message());
+  const auto has = [&](std::string_view extension) {
+    return std::ranges::any_of(own, [&](const fs::path& file) { return file.extension() == extension; });
+  };
+  std::ranges::sort(own);
+  const auto others = std::ranges::count_if(own, [](const fs::path& f) { return f.extension() == ".rsc"; });
+  for (const fs::path& file : own) {
+    if (!import_format_of(file)) continue;
+    const bool builds = file.extension() == ".rsc" ? others > 1 : has(".vxd");
+    if (is_base(file) && builds)
+      say_detail(fmt::format("{}: the base of the files beside it", file.string()));
+    else
+      files.push_back(file);
+  }
+  if (!recursive) return;
+  std::ranges::sort(folders);
+  for (const fs::path& inner : folders) add_files_of(inner, recursive, files);
+}
+
+std::vector<fs::path> files_in(const ImportCommandOptions& options) {
+  std::vector<fs::path> files;
+  for (const fs::path path : options.paths) {
+    std::error_code ignored;
+    if (!fs::is_directory(path, ignored)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t before = files.size();
+    add_files_of(path, options.recursive, files);
+    if (files.size() == before)
+      throw InputError(path.string(),
+                       "the folder holds no file of another simulator: .vxa, .vxc, .vxd, .rsc, or .json of EvoGym");
+  }
+  return files;
+}
+
+std::vector<ImportedFile> read(const ImportCommandOptions& options, const std::vector<fs::path>& files,
+                               bool& complete) {
+  std::vector<ImportedFile> imports;
+  Progress progress("importing", "files", static_cast<std::int64_t>(files.size()));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    throw_if_interrupted();
+    try {
+      imports.push_back({import_file(files[i], options.reading), {}, {}});
+    } catch (const ParameterError&) {
+      throw;
+    } catch (const InputError& error) {
+      if (!options.keep_going) throw;
+      complete = false;
+      warn(fmt::format("left out: {}", error.what()));
+    }
+    progress.update(static_cast<std::int64_t>(i + 1));
+  }
+  if (imports.empty()) throw InputError("no file is left that can be imported");
+  return imports;
+}
+
+// A name that no other file has: hopper, hopper-2, ...
+std::string own_name(std::set<std::string>& taken, const std::string& wanted) {
+  std::string name = wanted;
+  for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}-{}", wanted, number);
+  return name;
+}
+
+void name_files(std::vector<ImportedFile>& imports, const ImportCommandOptions& options) {
+  std::set<std::string> robots, configurations{"import"};
+  for (ImportedFile& file : imports) {
+    std::vector<std::string>& names = file.import.report.robots;
+    for (std::size_t i = 0; i < file.import.robots.size(); ++i) {
+      names[i] = own_name(robots, file_name_of(names[i]));
+      file.import.robots[i].name = names[i];
+      file.robot_files.push_back((fs::path(options.output) / (names[i] + "." + options.format)).string());
+    }
+    if (file.import.robots.empty()) continue;
+    file.configuration_file =
+        (fs::path(options.output) /
+         (own_name(configurations, file_name_of(fs::path(file.import.report.file).stem().string())) + ".toml"))
+            .string();
+  }
+}
+
+// One configuration for all robots, if their worlds are alike: the smallest time step, the means of damping and drag,
+// which depend on the robot.
+std::optional<ImportedSettings> common_settings(const std::vector<ImportedFile>& imports) {
+  std::vector<ImportedSettings> all;
+  for (const ImportedFile& file : imports)
+    if (!file.import.robots.empty()) all.push_back(file.import.settings);
+  if (all.size() < 2) return std::nullopt;
+  ImportedSettings common = all.front();
+  common.damping = common.drag_coefficient = common.lift_coefficient = 0;
+  common.seconds.reset();
+  common.settle.reset();
+  for (const ImportedSettings& settings : all) {
+    if (settings.environment != common.environment || settings.gravity != common.gravity ||
+        settings.friction != common.friction || settings.self_collision != common.self_collision)
+      return std::nullopt;
+    const double share = 1 / static_cast<double>(all.size());
+    common.dt = std::min(common.dt, settings.dt);
+    common.damping += share * settings.damping;
+    common.drag_coefficient += share * settings.drag_coefficient;
+    common.lift_coefficient += share * settings.lift_coefficient;
+  }
+  return common;
+}
+
+void print_report(const ImportReport& report, bool brief) {
+  fmt::print("{}: {}{}\n", printable(report.file, 10000), report.format,
+             report.base.empty() ? "" : fmt::format(", on the base {}", printable(report.base, 10000)));
+  std::map<ImportOutcome, std::size_t> count;
+  std::size_t place = 7, value = 5;
+  for (const ImportedElement& element : report.elements) {
+    ++count[element.outcome];
+    place = std::min<std::size_t>(72, std::max(place, element.place.size()));
+    value = std::min<std::size_t>(32, std::max(value, element.value.size()));
+  }
+  fmt::print("  {} element{}: {} mapped, {} approximated, {} ignored\n", report.elements.size(),
+             report.elements.size() == 1 ? "" : "s", count[ImportOutcome::mapped], count[ImportOutcome::approximated],
+             count[ImportOutcome::ignored]);
+  fmt::print("  scale: 1 m there is {:.4g} m here, 1 s there is {:.4g} s here\n", report.length_scale,
+             report.time_scale);
+  for (const std::string& note : report.notes) fmt::print("  note: {}\n", printable(note));
+  if (brief) return;
+  for (const ImportedElement& element : report.elements)
+    fmt::print("  {:<{}}  {:<{}}  {:<12}  {}\n", printable(element.place), place, printable(element.value, 32), value,
+               name_of(element.outcome), printable(element.reason));
+}
+
+// The text, or null if it is empty.
+nlohmann::ordered_json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
+nlohmann::ordered_json json_of(const ImportedFile& file) {
+  const ImportReport& report = file.import.report;
+  nlohmann::ordered_json elements = nlohmann::ordered_json::array();
+  for (const ImportedElement& element : report.elements)
+    elements.push_back({{"place", element.place},
+                        {"value", element.value},
+                        {"outcome", name_of(element.outcome)},
+                        {"reason", element.reason}});
+  nlohmann::ordered_json json;
+  json["file"] = report.file;
+  json["format"] = report.format;
+  json["base"] = text_or_null(report.base);
+  json["robots"] = file.robot_files;
+  json["configuration"] = text_or_null(file.configuration_file);
+  json["length_scale"] = report.length_scale;
+  json["time_scale"] = report.time_scale;
+  json["notes"] = report.notes;
+  json["elements"] = std::move(elements);
+  return json;
+}
+
+void print_json(const std::vector<ImportedFile>& imports, const std::string& common) {
+  nlohmann::ordered_json json;
+  json["program"] = program_version;
+  json["configuration"] = text_or_null(common);
+  json["files"] = nlohmann::ordered_json::array();
+  for (const ImportedFile& file : imports) json["files"].push_back(json_of(file));
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_reports(const std::vector<ImportedFile>& imports, const std::string& common,
+                   const ImportCommandOptions& options) {
+  if (options.json) return print_json(imports, common);
+  for (const ImportedFile& file : imports) {
+    print_report(file.import.report, options.brief);
+    for (const std::string& robot : file.robot_files) fmt::print("  wrote {}\n", printable(robot, 10000));
+    if (!file.configuration_file.empty()) fmt::print("  wrote {}\n", printable(file.configuration_file, 10000));
+  }
+  if (!common.empty()) fmt::print("for all robots: {}\n", printable(common, 10000));
+}
+
+std::string common_toml(const ImportedSettings& settings, const std::vector<ImportedFile>& imports) {
+  ImportReport report = imports.front().import.report;
+  report.file = fmt::format("{} files", imports.size());
+  return to_toml(settings, report);
+}
+
+int import_files(ImportCommandOptions options) {
+  options.reading.base = options.base;
+  validate(options.reading);
+  if (options.paths.empty()) throw InputError("give files or folders to import");
+  bool complete = true;
+  const std::vector<fs::path> files = files_in(options);
+  OutputFiles outputs = options.outputs.files();
+  for (const fs::path& file : files) outputs.add_input(file);
+  outputs.add_folder("-o", options.output);
+  outputs.check();  // the folder, before the work
+  std::vector<ImportedFile> imports = read(options, files, complete);
+  name_files(imports, options);
+  const std::optional<ImportedSettings> settings = common_settings(imports);
+  const std::string common = settings ? (fs::path(options.output) / "import.toml").string() : "";
+  std::size_t robots = 0;
+  for (const ImportedFile& file : imports) {
+    robots += file.robot_files.size();
+    for (const std::string& robot : file.robot_files) outputs.add_stream("-o", robot);
+    if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file);
+  }
+  if (!common.empty()) outputs.add_stream("-o", common);
+  outputs.check();
+  if (options.outputs.dry_run())
+    return print_dry_run(
+        "import",
+        {{"files", fmt::to_string(imports.size())}, {"robots", fmt::to_string(robots)}, {"write", options.output}});
+  outputs.make_folders();
+  for (const ImportedFile& file : imports) {
+    for (std::size_t i = 0; i < file.robot_files.size(); ++i) save_robot(file.robot_files[i], file.import.robots[i]);
+    if (!file.configuration_file.empty())
+      write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
+    if (file.robot_files.empty())
+      warn(fmt::format("{}: no robot in it; the report says why", printable(file.import.report.file)));
+  }
+  if (!common.empty()) write_results(common, common_toml(*settings, imports));
+  print_reports(imports, common, options);
+  return complete ? 0 : 1;
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& program, const Choose& choose) {
+  auto options = std::make_shared<ImportCommandOptions>();
+  CLI::App* command = program.add_subcommand("import", "Make robots from files of other simulators");
+  command
+      ->add_option("FILES", options->paths,
+                   "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json), and "
+                   "folders of them")
+      ->type_name("PATH")
+      ->required();
+  add_text(*command, "-o,--output", options->output, "Folder for the robots and their configurations", "FOLDER")
+      ->required();
+  add_choice(*command, "--format", options->format, {"json", "cbor"}, "Of the robot files (default json)");
+  add_text(*command, "--base", options->base,
+           "File that a .vxd or .rsc builds on (default: base.vxa or env.rsc beside it)", "FILE");
+  add_number(*command, "--depth", options->reading.depth, "Thickness of flat robots of EvoGym in voxels (default 1)",
+             "N");
+  add_number(*command, "--materials", options->reading.most_materials,
+             "Most materials of a robot; with 22 or fewer its body can mutate and evolve (default 255)", "N");
+  command->add_flag("--recursive", options->recursive, "Also import the folders inside folders");
+  command->add_flag("--keep-going", options->keep_going, "Report files that cannot be used, and go on (exit status 1)");
+  command->add_flag("--brief", options->brief, "Print no line per element");
+  command->add_flag("--json", options->json, "Print the report as JSON instead of a table");
+  options->outputs.add_to(*command);
+  command->footer(
+      "Writes each robot as a robot file and, beside it, its world as a configuration (NAME.toml: environment, "
+      "gravity,\n"
+      "friction, time step). Prints what became of every element of the file: mapped, approximated or ignored, and "
+      "why.\n"
+      "If the worlds of several files agree, import.toml serves all robots.\n\n"
+      "Examples:\n"
+      "  mercury import hopper.vxa -o robots\n"
+      "  mercury run robots/hopper.json --config robots/hopper.toml\n"
+      "  mercury import generation-12/ -o robots --keep-going --json > report.json\n"
+      "  mercury import robot.vxd --base base.vxa -o robots --materials 22\n"
+      "  mercury import world.json -o robots --depth 3");
+  command->callback([options, choose] { choose([options] { return import_files(*options); }); });
+}
+
+}  // namespace mercury

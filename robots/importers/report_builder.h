@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts that all importers share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mercury/import.h"
+#include "robots/importers/substances.h"
+#include "robots/importers/voxel_body.h"
+
+namespace mercury {
+
+// Robots of all bodies of a grid, the largest first: NAME, NAME-2, NAME-3, ... Rounding and several bodies become
+// notes.
+void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
+                const ImportOptions& options, Import& import);
+
+// The environment on the floor with this stiffness scale, as in water it is 1.
+inline constexpr double land_stiffness_scale = 200;
+
+Import import_vxa(std::string_view text, const std::string& name, const ImportOptions& options);
+Import import_vxd(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options);
+Import import_rsc(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options);
+Import import_evogym(std::string_view text, const std::string& name, const ImportOptions& options);
+
+// Whether the text is a JSON document with the parts of an EvoGym world.
+bool looks_like_evogym(std::string_view text);
+
+// Puts the parts of a VXD into the document of its base, as voxcraft-sim does: each child with an attribute "replace",
+// such as "VXA.VXC.Structure", takes the place of that element. Elements of the VXD itself that change nothing are
+// listed in `report`. Throws InputError for a path that names no element.
+class XmlDocument;
+void merge_vxd(const XmlDocument& changes, XmlDocument& base, std::vector<ImportedElement>& report);
+
+}  // namespace mercury

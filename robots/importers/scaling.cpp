@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/importers/scaling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "robots/importers/voxel_body.h"
+
+namespace mercury {
+namespace {
+
+// Bound on the squared frequencies of a robot of unit masses [1/s2], by Gershgorin: a row of the stiffness matrix has
+// the terms k |n_i n_j| of each spring at its mass twice, once on the diagonal.
+double largest_eigenvalue(const Robot& robot, double stiffness_scale) {
+  const auto table = materials_of(robot);
+  std::vector<std::array<double, 3>> rows(robot.masses.size());
+  for (const Spring& spring : robot.springs) {
+    const Vec3 &a = robot.masses[spring.a], &b = robot.masses[spring.b];
+    const std::array d{std::abs(static_cast<double>(b.x) - a.x), std::abs(static_cast<double>(b.y) - a.y),
+                       std::abs(static_cast<double>(b.z) - a.z)};
+    const double length = std::hypot(d[0], d[1], d[2]), sum = d[0] + d[1] + d[2];
+    if (!(length > 0)) continue;
+    const double k = static_cast<double>(table[spring.material].stiffness) * stiffness_scale / (length * length);
+    for (const std::uint16_t mass : {spring.a, spring.b})
+      for (std::size_t axis = 0; axis < 3; ++axis) rows[mass][axis] += 2 * k * d[axis] * sum;
+  }
+  double largest = 0;
+  for (const auto& row : rows) largest = std::max({largest, row[0], row[1], row[2]});
+  return largest;
+}
+
+}  // namespace
+
+Scaling::Scaling(double edge) : length(imported_edge / edge), time(std::sqrt(length)) {}
+
+double Scaling::stiffness(double elastic_modulus, double density) const {
+  // A lattice of springs k between the corners of cubes of edge L has the elastic modulus 2.7 k / L, and with masses of
+  // 1 kg the density 1 kg / L^3.
+  constexpr double lattice_modulus = 2.7;
+  const double speed = std::sqrt(elastic_modulus / density) * length / time;
+  return speed * speed / (imported_edge * imported_edge * lattice_modulus);
+}
+
+double stable_time_step(std::span<const Robot> robots, double stiffness_scale) {
+  double largest = 0;
+  for (const Robot& robot : robots) largest = std::max(largest, largest_eigenvalue(robot, stiffness_scale));
+  constexpr double longest = 1e-3, share = 0.5;  // of the limit 2 / omega, where a step is no longer stable
+  const double limit = share * 2 / std::sqrt(std::max(largest, 1e-12));
+  for (double decade = longest; decade > 1e-9; decade /= 10)
+    for (const double digit : {1.0, 0.5, 0.2})
+      if (digit * decade <= limit) return digit * decade;
+  return 1e-9;
+}
+
+}  // namespace mercury

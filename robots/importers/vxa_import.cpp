@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// VXA files: from what they say to robots and settings. docs/import.md describes the mapping.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "mercury/error.h"
+#include "robots/importers/report_builder.h"
+#include "robots/importers/scaling.h"
+#include "robots/importers/vxa_reader.h"
+
+namespace mercury {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double largest_amplitude = 0.9;  // a rest length must stay above 0
+
+class VxaImport {
+ public:
+  VxaImport(XmlDocument& document, bool is_voxcraft, std::string name, const ImportOptions& options)
+      : document_(document), model_(read_vxa(document, is_voxcraft)), scaling_(model_.edge), name_(std::move(name)),
+        options_(options) {
+    for (const std::uint8_t cell : model_.cells)
+      if (cell > 0) ++voxels_;
+    if (voxels_ == 0) throw InputError("/VXA/VXC/Structure", "all voxels are empty");
+    density_ = mean([&](std::size_t cell) { return material_of_cell(cell).density; });
+  }
+
+  Import run() {
+    Import import;
+    import.report.format = model_.is_voxcraft ? "VXA of voxcraft-sim" : "VXA of VoxCAD or evosoro";
+    import.report.length_scale = scaling_.length;
+    import.report.time_scale = scaling_.time;
+    import.settings = settings();
+    stiffness_scale_ = import.settings.stiffness_scale;
+    const Provenance provenance{.file = name_,
+                                .format = import.report.format,
+                                .length_scale = scaling_.length,
+                                .time_scale = scaling_.time,
+                                .environment = import.settings.environment};
+    add_bodies(body(import.report), name_, provenance, options_, import);
+    import.settings.dt = stable_time_step(import.robots, import.settings.stiffness_scale);
+    if (import.settings.environment == "ocean") set_drag(import);
+    import.report.elements = document_.elements(known_vxa_element);
+    return import;
+  }
+
+ private:
+  const VxaMaterial& material_of_cell(std::size_t cell) const { return model_.materials[model_.cells[cell] - 1u]; }
+
+  double modulus_of_cell(std::size_t cell) const {
+    return model_.elastic_modulus.empty() ? material_of_cell(cell).elastic_modulus : model_.elastic_modulus[cell];
+  }
+
+  // Over the voxels.
+  template <class Value>
+  double mean(const Value& value) const {
+    double sum = 0;
+    for (std::size_t cell = 0; cell < model_.cells.size(); ++cell)
+      if (model_.cells[cell] > 0) sum += value(cell);
+    return sum / static_cast<double>(voxels_);
+  }
+
+  ImportedSettings settings() const {
+    ImportedSettings settings;
+    settings.self_collision = model_.self_collision;
+    settings.gravity = model_.gravity_enabled ? scaling_.acceleration(model_.gravity) : 0;
+    settings.environment = model_.in_fluid ? "ocean" : model_.floor_enabled ? "land" : "ocean-simple";
+    if (model_.in_fluid) settings.gravity = 0;
+    if (settings.environment == "land") {
+      settings.stiffness_scale = land_stiffness_scale;
+      settings.friction = mean([&](std::size_t cell) { return material_of_cell(cell).friction; });
+    }
+    // A voxel of mass m and stiffness k = E L has the force -2 z sqrt(m k) v.
+    settings.damping = mean([&](std::size_t cell) {
+                         return 2 * model_.slow_damping * std::sqrt(modulus_of_cell(cell) / density_) / model_.edge;
+                       }) /
+                       scaling_.time;
+    if (model_.stop_time) settings.seconds = *model_.stop_time * scaling_.time;
+    if (model_.start_time) settings.settle = *model_.start_time * scaling_.time;
+    return settings;
+  }
+
+  // A body that moves along the normals of its faces has the drag of the file, in relation to its mass. evosoro counts
+  // the face in front, Mercury that behind as well. The lift gives the same force across the motion, on average over
+  // all directions of faces: a quarter of the drag coefficient.
+  void set_drag(Import& import) const {
+    double masses = 0;
+    for (const Robot& robot : import.robots) masses += static_cast<double>(robot.masses.size());
+    const double volume = static_cast<double>(voxels_) * std::pow(imported_edge, 3);
+    constexpr double water = 1000;  // [kg/m3]
+    import.settings.drag_coefficient = model_.drag_coefficient * (masses / volume) / density_ / water;
+    import.settings.lift_coefficient = import.settings.drag_coefficient / 4;
+  }
+
+  // The substance of a voxel, apart from its size.
+  Substance substance_of_cell(std::size_t cell) const {
+    const VxaMaterial& material = material_of_cell(cell);
+    Substance substance{.stiffness = scaling_.stiffness(modulus_of_cell(cell), density_) / stiffness_scale_};
+    if (!model_.size.empty()) substance.size = model_.size[cell];
+    double amplitude = material.expansion * model_.temperature_amplitude;
+    if (!model_.amplitude_factor.empty()) amplitude *= model_.amplitude_factor[cell];
+    if (!model_.temperature_varies || amplitude == 0) return substance;
+    const double period = model_.period.empty() ? model_.temperature_period : model_.period[cell];
+    substance.amplitude = std::clamp(amplitude, -largest_amplitude, largest_amplitude);
+    substance.frequency = turn / (period * scaling_.time);
+    substance.half_wave = model_.half_wave;
+    if (!model_.phase_offset.empty())
+      substance.phase = turn * model_.phase_offset[cell];
+    else if (!model_.is_voxcraft)
+      substance.phase = material.phase;
+    return substance;
+  }
+
+  // The grid. Where all voxels of a material have one substance, substances have the numbers of the palette.
+  VoxelBody body(ImportReport& report) {
+    VoxelBody body{.nx = model_.nx, .ny = model_.ny, .nz = model_.nz, .cells = {}, .substances = {}, .names = {}};
+    for (const VxaMaterial& material : model_.materials) {
+      body.substances.emplace_back();
+      body.names.push_back(material.name);
+    }
+    using Key = std::tuple<std::size_t, double, double, double, double, double>;
+    std::map<Key, std::uint32_t> known;
+    std::vector<bool> is_taken(model_.materials.size(), false);
+    bool is_clamped = false;
+    body.cells.reserve(model_.cells.size());
+    for (std::size_t cell = 0; cell < model_.cells.size(); ++cell) {
+      const std::size_t material = model_.cells[cell];
+      if (material == 0) {
+        body.cells.push_back(0);
+        continue;
+      }
+      const Substance substance = substance_of_cell(cell);
+      is_clamped = is_clamped || std::abs(substance.amplitude) == largest_amplitude;
+      const auto [place, is_new] = known.try_emplace(
+          Key{material, substance.stiffness, substance.amplitude, substance.frequency, substance.phase, substance.size},
+          std::uint32_t{0});
+      if (is_new && !is_taken[material - 1]) {
+        is_taken[material - 1] = true;
+        body.substances[material - 1] = substance;
+        place->second = static_cast<std::uint32_t>(material);
+      } else if (is_new) {
+        body.substances.push_back(substance);
+        body.names.push_back(model_.materials[material - 1].name);
+        place->second = static_cast<std::uint32_t>(body.substances.size());
+      }
+      body.cells.push_back(place->second);
+    }
+    if (is_clamped)
+      report.notes.push_back(fmt::format("amplitudes were limited to {}: a spring needs a length", largest_amplitude));
+    return body;
+  }
+
+  XmlDocument& document_;
+  VxaModel model_;
+  Scaling scaling_;
+  std::string name_;
+  ImportOptions options_;
+  std::size_t voxels_ = 0;
+  double density_ = 0;          // mean over the voxels [kg/m3]
+  double stiffness_scale_ = 1;  // of the environment
+};
+
+}  // namespace
+
+Import import_vxa(std::string_view text, const std::string& name, const ImportOptions& options) {
+  XmlDocument document(text);
+  return VxaImport(document, false, name, options).run();
+}
+
+Import import_vxd(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options) {
+  const XmlDocument changes(text);
+  XmlDocument document(base, "base: ");
+  std::vector<ImportedElement> unused;
+  merge_vxd(changes, document, unused);
+  Import import = VxaImport(document, true, name, options).run();
+  import.report.format = "VXD of voxcraft-sim";
+  import.report.elements.insert(import.report.elements.begin(), unused.begin(), unused.end());
+  return import;
+}
+
+}  // namespace mercury

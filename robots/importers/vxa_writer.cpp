@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Voxel robots as VXA, in the form that VoxCAD, evosoro and voxcraft-sim read.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "mercury/error.h"
+#include "mercury/import.h"
+#include "mercury/origin.h"
+#include "robots/importers/encodings.h"
+#include "robots/importers/report_builder.h"
+#include "robots/importers/scaling.h"
+#include "robots/importers/voxel_body.h"
+#include "robots/whole_file.h"
+
+namespace mercury {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double density = 1000;        // one mass of 1 kg for each voxel of 0.1 m [kg/m3]
+constexpr double temperature = 1;       // amplitude: CTE is the amplitude of the muscle [degrees]
+constexpr std::size_t most_ascii = 78;  // up to "~"
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for (const char letter : text) switch (letter) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      default:
+        safe += static_cast<unsigned char>(letter) < ' ' ? ' ' : letter;
+    }
+  return safe;
+}
+
+// The grid with substances grouped by what a palette holds: stiffness and amplitude. Phase and period are layers.
+struct Palette {
+  std::vector<std::size_t> number_of_substance;  // from 1
+  std::vector<std::size_t> substances;           // the first substance of each material
+};
+
+Palette palette_of(const VoxelBody& body) {
+  Palette palette;
+  const bool each_its_own = body.substances.size() <= base_material_count;
+  for (std::size_t i = 0; i < body.substances.size(); ++i) {
+    const auto same = [&](std::size_t other) {
+      const Substance &a = body.substances[i], &b = body.substances[other];
+      return !each_its_own && a.stiffness == b.stiffness && a.amplitude == b.amplitude &&
+             body.names[i] == body.names[other];
+    };
+    auto known = std::ranges::find_if(palette.substances, same);
+    if (known == palette.substances.end()) known = palette.substances.insert(known, i);
+    palette.number_of_substance.push_back(static_cast<std::size_t>(known - palette.substances.begin()) + 1);
+  }
+  if (palette.substances.size() > 255)
+    throw InputError("a palette has at most 255 materials, this robot needs " +
+                     std::to_string(palette.substances.size()));
+  return palette;
+}
+
+class VxaWriter {
+ public:
+  VxaWriter(const VoxelBody& body, double stiffness_scale, std::string environment)
+      : body_(body), palette_(palette_of(body)), environment_(std::move(environment)), scale_(stiffness_scale) {}
+
+  std::string document() {
+    text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VXA Version=\"1.1\">\n";
+    write_world();
+    text_ += "<VXC Version=\"0.94\">\n";
+    text_ += fmt::format("<Lattice>\n<Lattice_Dim>{}</Lattice_Dim>\n</Lattice>\n", imported_edge);
+    write_palette();
+    write_structure();
+    text_ += "</VXC>\n</VXA>\n";
+    return std::move(text_);
+  }
+
+ private:
+  bool moves(const Substance& substance) const { return substance.amplitude != 0; }
+
+  // The period of the first muscle stands for all; others have theirs in a layer.
+  double period() const {
+    for (const Substance& substance : body_.substances)
+      if (moves(substance) && substance.frequency != 0) return turn / substance.frequency;
+    return 1;
+  }
+
+  void write_world() {
+    const bool land = environment_ == "land", half = std::ranges::any_of(body_.substances, &Substance::half_wave);
+    text_ +=
+        "<Simulator>\n<Damping>\n<BondDampingZ>1</BondDampingZ>\n<ColDampingZ>0.8</ColDampingZ>\n"
+        "<SlowDampingZ>0</SlowDampingZ>\n</Damping>\n<Collisions>\n<SelfColEnabled>1</SelfColEnabled>\n"
+        "</Collisions>\n";
+    // Only voxcraft-sim cuts waves off; it does so unless this forbids it.
+    text_ += fmt::format("<EnableExpansion>{}</EnableExpansion>\n</Simulator>\n<Environment>\n", half ? 0 : 1);
+    if (!land)
+      text_ += "<FluidEnvironment>1</FluidEnvironment>\n<AggregateDragCoefficient>500</AggregateDragCoefficient>\n";
+    text_ += fmt::format(
+        "<Gravity>\n<GravEnabled>{0}</GravEnabled>\n<GravAcc>-9.81</GravAcc>\n"
+        "<FloorEnabled>{0}</FloorEnabled>\n</Gravity>\n",
+        land ? 1 : 0);
+    text_ += fmt::format(
+        "<Thermal>\n<TempEnabled>1</TempEnabled>\n<TempAmplitude>{}</TempAmplitude>\n"
+        "<TempBase>25</TempBase>\n<VaryTempEnabled>1</VaryTempEnabled>\n"
+        "<TempPeriod>{:.17g}</TempPeriod>\n</Thermal>\n</Environment>\n",
+        temperature, period());
+  }
+
+  void write_palette() {
+    const Scaling scaling(imported_edge);
+    const double modulus_per_stiffness = density / (scaling.stiffness(1, 1));
+    text_ += "<Palette>\n";
+    for (std::size_t i = 0; i < palette_.substances.size(); ++i) {
+      const Substance& substance = body_.substances[palette_.substances[i]];
+      const double shade = static_cast<double>(i % 4) / 4;
+      text_ += fmt::format(
+          "<Material ID=\"{}\">\n<Name>{}</Name>\n<Display>\n<Red>{}</Red>\n<Green>{}</Green>\n"
+          "<Blue>{}</Blue>\n<Alpha>1</Alpha>\n</Display>\n",
+          i + 1, escaped(body_.names[palette_.substances[i]]), moves(substance) ? 1 : 0, shade,
+          moves(substance) ? 0 : 1);
+      text_ += fmt::format(
+          "<Mechanical>\n<MatModel>0</MatModel>\n<Elastic_Mod>{:.17g}</Elastic_Mod>\n"
+          "<Density>{}</Density>\n<Poissons_Ratio>0.35</Poissons_Ratio>\n<CTE>{:.17g}</CTE>\n"
+          "<uStatic>1</uStatic>\n<uDynamic>0.8</uDynamic>\n</Mechanical>\n</Material>\n",
+          substance.stiffness * scale_ * modulus_per_stiffness, density, substance.amplitude / temperature);
+    }
+    text_ += "</Palette>\n";
+  }
+
+  template <class Write>
+  void write_layers(const Write& write) {
+    for (int z = 0; z < body_.nz; ++z) {
+      text_ += "<Layer><![CDATA[";
+      write(body_.index(0, 0, z), body_.index(0, 0, z) + body_.index(0, body_.ny, 0));
+      text_ += "]]></Layer>\n";
+    }
+  }
+
+  template <class Value>
+  void write_values(const char* name, const Value& value) {
+    text_ += fmt::format("<{}>\n", name);
+    write_layers([&](std::size_t begin, std::size_t end) {
+      for (std::size_t cell = begin; cell < end; ++cell)
+        text_ += fmt::format("{}{:.17g}", cell > begin ? "," : "",
+                             body_.cells[cell] == 0 ? 0 : value(body_.substances[body_.cells[cell] - 1]));
+    });
+    text_ += fmt::format("</{}>\n", name);
+  }
+
+  void write_structure() {
+    const bool readable = palette_.substances.size() <= most_ascii;
+    text_ += fmt::format(
+        "<Structure Compression=\"{}\">\n<X_Voxels>{}</X_Voxels>\n<Y_Voxels>{}</Y_Voxels>\n"
+        "<Z_Voxels>{}</Z_Voxels>\n<Data>\n",
+        readable ? "ASCII_READABLE" : "BASE64", body_.nx, body_.ny, body_.nz);
+    write_layers([&](std::size_t begin, std::size_t end) {
+      std::string layer;
+      for (std::size_t cell = begin; cell < end; ++cell) {
+        const std::size_t number = body_.cells[cell] == 0 ? 0 : palette_.number_of_substance[body_.cells[cell] - 1];
+        layer += static_cast<char>(number + (readable ? '0' : 0));
+      }
+      text_ += readable ? layer : base64_encoded(layer);
+    });
+    text_ += "</Data>\n";
+    write_values("PhaseOffset",
+                 [&](const Substance& substance) { return moves(substance) ? substance.phase / turn : 0; });
+    const double usual = period();
+    const auto own = [&](const Substance& substance) {
+      return moves(substance) && substance.frequency != 0 ? turn / substance.frequency : usual;
+    };
+    if (std::ranges::any_of(body_.substances, [&](const Substance& substance) { return own(substance) != usual; }))
+      write_values("TempPeriod", own);
+    text_ += "</Structure>\n";
+  }
+
+  const VoxelBody& body_;
+  Palette palette_;
+  std::string environment_, text_;
+  double scale_;
+};
+
+}  // namespace
+
+std::string vxa_document(const Robot& robot) {
+  const std::optional<VoxelBody> body = voxel_body_of(robot);
+  if (!body)
+    throw InputError(robot.name,
+                     "has no grid of voxels in its origin, which VXA needs; voxel robots and imported ones have");
+  const std::string environment = environment_of(robot);
+  return VxaWriter(*body, environment == "land" ? land_stiffness_scale : 1, environment).document();
+}
+
+void write_vxa(const Robot& robot, const std::filesystem::path& path) { write_whole_file(path, vxa_document(robot)); }
+
+}  // namespace mercury

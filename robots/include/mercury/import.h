@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots from files of other simulators (docs/import.md): VXA, VXD and VXC of VoxCAD, evosoro and voxcraft-sim, RSC of
+// RISE, worlds and robots of EvoGym; and voxel robots as VXA.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/import_report.h"
+#include "mercury/robot.h"
+
+namespace mercury {
+
+struct ImportOptions {
+  std::filesystem::path base;  // of a .vxd or .rsc; empty = base.vxa or env.rsc beside it
+  int depth = 1;               // voxels that a flat robot of EvoGym is thick
+  int most_materials = 255;    // of a robot; at most 22 give every robot a voxel grid that mutates
+};
+
+// Throws ParameterError("depth", ...), ("materials", ...) for values that cannot be used.
+void validate(const ImportOptions& options);
+
+// What the file says about the world, in Mercury's units and names.
+struct ImportedSettings {
+  std::string environment = "land";
+  double gravity = 0;                                 // along z, negative = down [m/s2]
+  double stiffness_scale = 1;                         // of the environment, for which the robots' stiffnesses are made
+  double friction = 0;                                // of the floor; land only
+  bool self_collision = true;                         // land only
+  double drag_coefficient = 0, lift_coefficient = 0;  // ocean only
+  double dt = 1e-3;                                   // time step that is stable for the stiffest robot [s]
+  double damping = 0;                                 // [1/s]
+  std::optional<double> seconds, settle;  // how long the file's program simulates, and what it waits before [s]
+  friend bool operator==(const ImportedSettings&, const ImportedSettings&) = default;
+};
+
+// The settings as the text of a configuration file (--config).
+std::string to_toml(const ImportedSettings& settings, const ImportReport& report);
+
+struct Import {
+  std::vector<Robot> robots;
+  ImportedSettings settings;
+  ImportReport report;
+};
+
+enum class ImportFormat { vxa, vxd, rsc, evogym };
+
+// The format of a file: by its extension (.vxa, .vxc, .vxd, .rsc, in small letters or capitals), for .json by its
+// content. Nothing for other files, and for those that cannot be read.
+std::optional<ImportFormat> import_format_of(const std::filesystem::path& path);
+
+// Reads a file of another simulator. Throws InputError in one line that says where and why, for a file that cannot be
+// read or breaks a rule: "hopper.vxa: /VXA/VXC/Structure/X_Voxels: ...".
+Import import_file(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// The same for a text. `name` names the robots; `base` is the text of the base of a .vxd or .rsc. Memory follows what
+// the text holds, not the sizes that it claims.
+Import import_text(std::string_view text, ImportFormat format, const std::string& name,
+                   const ImportOptions& options = {}, std::string_view base = {});
+
+// A voxel robot, or one that was imported, as VXA: the grid and the materials of its origin. import_text() gives back
+// the same grid and materials. Throws InputError for a robot whose origin holds no grid.
+std::string vxa_document(const Robot& robot);
+
+// Writes vxa_document() to a file, whole or not at all. Throws InputError as that, and for a file that cannot be
+// written.
+void write_vxa(const Robot& robot, const std::filesystem::path& path);
+
+}  // namespace mercury

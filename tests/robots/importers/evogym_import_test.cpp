@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "mercury/voxel.h"
+#include "tests/robots/importers/documents.h"
+
+namespace mercury {
+namespace {
+
+// A robot of 3 x 2 voxels (below: horizontal, soft, vertical; above: rigid, empty, horizontal), a box, and ground.
+const std::string world = R"({"grid_width": 8, "grid_height": 4, "objects": {
+  "robot": {"indices": [9, 10, 11, 17, 19], "types": [3, 2, 4, 1, 3],
+            "neighbors": {"9": [10, 17], "10": [9, 11], "11": [10, 19], "17": [9], "19": [11]}},
+  "box": {"indices": [14], "types": [2], "neighbors": {"14": []}},
+  "ground": {"indices": [0, 1, 2, 3, 4, 5, 6, 7], "types": [5, 5, 5, 5, 5, 5, 5, 5], "color": "green"}}})";
+
+Import evogym(const ImportOptions& options = {}) { return import_text(world, ImportFormat::evogym, "world", options); }
+
+TEST(Evogym, RobotsAndMovableObjectsBecomeRobots) {
+  const Import import = evogym();
+  EXPECT_EQ(import.report.robots, (std::vector<std::string>{"world-box", "world"}));
+  EXPECT_EQ(import.robots[0].masses.size(), 8u);
+  EXPECT_EQ(import.robots[1].masses.size(), 24u);
+  EXPECT_EQ(element_at(import.report, "/objects/ground/types")->outcome, ImportOutcome::ignored);
+  EXPECT_EQ(element_at(import.report, "/objects/ground/color")->reason, "unknown");
+  EXPECT_EQ(element_at(import.report, "/objects/robot/types")->outcome, ImportOutcome::mapped);
+}
+
+TEST(Evogym, RowsStandUpright) {
+  const Robot robot = evogym().robots[1];
+  // The gap above the soft voxel: no spring joins the corners of its upper side along x.
+  std::set<std::pair<int, int>> upper;
+  for (const Spring& spring : robot.springs) {
+    const Vec3 &a = robot.masses[spring.a], &b = robot.masses[spring.b];
+    if (a.z > 0.05f && b.z > 0.05f && a.y == b.y && a.y < 0)
+      upper.emplace(std::lround(std::min(a.x, b.x) * 10 + 1.5f), std::lround(std::max(a.x, b.x) * 10 + 1.5f));
+  }
+  EXPECT_TRUE(upper.contains({0, 1}));
+  EXPECT_TRUE(upper.contains({2, 3}));
+  EXPECT_FALSE(upper.contains({1, 2}));
+}
+
+TEST(Evogym, ActuatorsMoveTheSpringsAlongTheirAxisAlone) {
+  const Robot robot = evogym().robots[1];
+  ASSERT_EQ(robot.actuators.size(), 3u);
+  EXPECT_EQ(robot.actuators[0].name, "horizontal 0,0");
+  EXPECT_EQ(robot.actuators[1].name, "vertical 2,0");
+  EXPECT_EQ(robot.actuators[2].name, "horizontal 2,1");
+  std::size_t muscles[3] = {};
+  for (const Spring& spring : robot.springs) {
+    const Vec3 &a = robot.masses[spring.a], &b = robot.masses[spring.b];
+    const bool x = std::abs(a.x - b.x) > 0.05f, y = std::abs(a.y - b.y) > 0.05f, z = std::abs(a.z - b.z) > 0.05f;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& ids = robot.actuators[i].materials;
+      if (std::ranges::find(ids, spring.material) == ids.end()) continue;
+      ++muscles[i];
+      EXPECT_FALSE(y);
+      EXPECT_NE(x, z);
+      EXPECT_EQ(x, i != 1);
+    }
+    if (y || x == z) {
+      EXPECT_EQ(robot.materials[spring.material].amplitude, 0);
+    }
+  }
+  // Four edges of a voxel run along an axis.
+  EXPECT_EQ(muscles[0], 4u);
+  EXPECT_EQ(muscles[1], 4u);
+  EXPECT_EQ(muscles[2], 4u);
+}
+
+TEST(Evogym, ActuatorsReachTheShortestLengthOfEvogym) {
+  const Robot robot = evogym().robots[1];
+  for (const Actuator& actuator : robot.actuators)
+    for (const MaterialId id : actuator.materials) EXPECT_FLOAT_EQ(robot.materials[id].amplitude, 0.4f);
+}
+
+TEST(Evogym, DepthExtrudes) {
+  const Import import = evogym({.depth = 3});
+  EXPECT_EQ(import.robots[0].masses.size(), 4u * 4);
+  EXPECT_EQ(import.robots[1].masses.size(), 12u * 4);
+  EXPECT_EQ(import.robots[1].actuators.size(), 3u);
+}
+
+TEST(Evogym, MissingConnectionsAreReported) {
+  std::string text = world;
+  text.replace(text.find("\"9\": [10, 17], \"10\": [9, 11]"), 28, "\"9\": [17], \"10\": [11]");
+  const Import import = import_text(text, ImportFormat::evogym, "world");
+  EXPECT_EQ(element_at(import.report, "/objects/robot/neighbors")->outcome, ImportOutcome::approximated);
+}
+
+TEST(Evogym, TerrainAloneGivesNoRobot) {
+  const Import import = import_text(R"({"grid_width": 2, "grid_height": 1, "objects": {
+      "ground": {"indices": [0, 1], "types": [5, 5], "neighbors": {}}}})",
+                                    ImportFormat::evogym, "flat");
+  EXPECT_TRUE(import.robots.empty());
+  EXPECT_FALSE(import.report.notes.empty());
+}
+
+TEST(BadEvogym, IsRefusedWithItsPlace) {
+  const auto refusal = [](const std::string& text) { return refusal_of(text, ImportFormat::evogym); };
+  const auto object = [&](const std::string& data) {
+    return refusal(R"({"grid_width": 8, "grid_height": 4, "objects": {"a": )" + data + "}}");
+  };
+  EXPECT_NE(refusal("{\"grid_width\": 8").find("not valid JSON"), std::string::npos);
+  EXPECT_EQ(refusal("[]"), "/: a world of EvoGym is a JSON object");
+  EXPECT_EQ(refusal(R"({"grid_width": -8})"), "/grid_width: give a whole number from 1 to 1000000");
+  EXPECT_EQ(refusal(R"({"grid_width": 8, "grid_height": 4})"), "/objects: a world of EvoGym has an object of objects");
+  EXPECT_EQ(object("{}"), "/objects/a/indices: is missing; give a list of numbers");
+  EXPECT_EQ(object(R"({"indices": [1], "types": [1, 2]})"), "/objects/a/types: has 2 values, indices has 1");
+  EXPECT_EQ(object(R"({"indices": [1], "types": [6]})"),
+            "/objects/a/types/0: is no type of voxel; give 0 (empty) to 5 (fixed)");
+  EXPECT_EQ(object(R"({"indices": [-1], "types": [1]})"), "/objects/a/indices/0: give a whole number of at least 0");
+  EXPECT_EQ(object(R"({"indices": [1, 1], "types": [1, 1]})"), "/objects/a/indices/1: the object has this voxel twice");
+  EXPECT_EQ(object(R"({"indices": [], "types": []})"), "/objects/a/indices: the object has no voxels");
+  EXPECT_EQ(object(R"({"indices": [1, 900000000000], "types": [1, 1]})"),
+            "/objects/a: spans 4.5e+11 voxels; at most 4194304 are accepted");
+  EXPECT_EQ(refusal(std::string(100, '[')), "nested deeper than 16 levels");
+}
+
+}  // namespace
+}  // namespace mercury

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Voxel robots as VXA, and back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mercury/error.h"
+#include "mercury/muscle_laws.h"
+#include "mercury/nn_robot.h"
+#include "mercury/random_voxel.h"
+#include "mercury/shell.h"
+#include "mercury/voxel.h"
+#include "tests/robots/importers/documents.h"
+
+namespace mercury {
+namespace {
+
+void expect_same_after_a_round_trip(const Robot& robot, const VoxelGrid& grid) {
+  const Import back = import_text(vxa_document(robot), ImportFormat::vxa, robot.name);
+  ASSERT_EQ(back.robots.size(), 1u);
+  EXPECT_EQ(back.report.length_scale, 1);
+  const auto grid_back = voxel_grid_of(back.robots.front());
+  ASSERT_TRUE(grid_back);
+  EXPECT_EQ(*grid_back, grid);
+  EXPECT_EQ(back.robots.front().masses, robot.masses);
+  for (const MaterialId id : grid.cells) {
+    if (id == air) continue;
+    const Material &there = materials_of(robot)[id], &here = back.robots.front().materials[id];
+    EXPECT_EQ(here.stiffness, there.stiffness) << int{id};
+    EXPECT_EQ(here.amplitude, there.amplitude) << int{id};
+    EXPECT_EQ(here.half_wave, there.half_wave) << int{id};
+    if (there.amplitude == 0) continue;
+    EXPECT_EQ(here.frequency, there.frequency) << int{id};
+    EXPECT_EQ(here.phase, there.phase) << int{id};
+  }
+}
+
+TEST(VxaRoundTrip, KeepsGridAndMaterials) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Robot robot = random_voxel_robot({.frequencies = static_cast<int>(seed % 5) + 1}, seed);
+    expect_same_after_a_round_trip(robot, largest_body(*voxel_grid_of(robot)));
+  }
+}
+
+TEST(VxaRoundTrip, KeepsMutatedMuscles) {
+  const Robot robot = with_mutated_muscles(random_voxel_robot({}, 7), 1, 3);
+  expect_same_after_a_round_trip(robot, largest_body(*voxel_grid_of(robot)));
+}
+
+TEST(VxaRoundTrip, KeepsHalfWaves) {
+  Robot robot = random_voxel_robot({}, 5);
+  std::vector<Material> bases = base_materials_of(robot);
+  for (Material& base : bases) base.half_wave = base.amplitude != 0;
+  robot = with_base_materials(robot, bases);
+  expect_same_after_a_round_trip(robot, largest_body(*voxel_grid_of(robot)));
+}
+
+// More substances than a voxel grid of base materials has: the origin of the import keeps them.
+TEST(VxaRoundTrip, KeepsImportedRobots) {
+  VxaParts parts;
+  parts.lattice = "<Lattice_Dim>0.1</Lattice_Dim>";
+  parts.size = "<X_Voxels>40</X_Voxels><Y_Voxels>1</Y_Voxels><Z_Voxels>1</Z_Voxels>";
+  parts.data = "<Layer>" + std::string(40, '1') + "</Layer>";
+  const std::string phases = phases_along_x(40);
+  parts.layers = "<PhaseOffset><Layer>" + phases + "</Layer></PhaseOffset>";
+  const Robot robot = import_of(parts).robots.front();
+  const Robot back = import_text(vxa_document(robot), ImportFormat::vxa, "test").robots.front();
+  EXPECT_EQ(back.materials, robot.materials);
+  EXPECT_EQ(back.springs, robot.springs);
+}
+
+TEST(VxaRoundTrip, RobotsWithoutAGridAreRefused) { EXPECT_THROW(vxa_document(random_shell_robot({}, 1)), InputError); }
+
+}  // namespace
+}  // namespace mercury
