@@ -206,7 +206,11 @@ class EvogymImport {
                    : "held by fixed voxels, which Mercury has not";
     } else {
       const std::size_t before = import_.robots.size();
-      make(object);
+      try {
+        make(object);
+      } catch (const InputError& error) {
+        throw InputError(place, error.what());
+      }
       became = before + 1 == import_.robots.size() ? "robot " + import_.report.robots.back()
                                                    : fmt::format("{} robots", import_.robots.size() - before);
     }
@@ -289,7 +293,7 @@ class EvogymImport {
     for (std::size_t cell = 0; cell < body.cells.size(); ++cell)
       if (body.cells[cell] == horizontal || body.cells[cell] == vertical) actuators.try_emplace(flat(body, cell), 0);
     if (actuators.size() > most_actuators)
-      throw InputError("/objects", fmt::format("{} has {} actuators; at most {} are accepted", name, actuators.size(),
+      throw InputError(fmt::format("{} has {} actuators; at most {} are accepted", name, actuators.size(),
                                                most_actuators));
     for (auto& [cell, number] : actuators) {
       const auto nx = static_cast<std::size_t>(body.nx);
@@ -316,7 +320,7 @@ class EvogymImport {
       const auto [known, is_new] = materials.try_emplace({actuator, own}, MaterialId{0});
       if (is_new) {
         if (robot.materials.size() == max_materials)
-          throw InputError("/objects", fmt::format("{} needs more than 255 materials", name));
+          throw InputError(fmt::format("{} needs more than 255 materials", name));
         known->second = static_cast<MaterialId>(robot.materials.size());
         robot.materials.push_back(actuator == 0 ? Material{.stiffness = own}
                                                 : muscle(own, body, actuators, actuator - 1));

@@ -259,7 +259,11 @@ class RscImport {
                                 .time_scale = scaling_->time,
                                 .environment = import_.settings.environment};
     const std::size_t before = import_.robots.size();
-    add_bodies(grid, name, provenance, options_, import_);
+    try {
+      add_bodies(grid, name, provenance, options_, import_);
+    } catch (const InputError& error) {
+      refuse(node, error.what());
+    }
     for (std::size_t i = before; i < import_.robots.size(); ++i) name_actuators(import_.robots[i]);
   }
 

@@ -43,7 +43,11 @@ class VxaImport {
                                 .length_scale = scaling_.length,
                                 .time_scale = scaling_.time,
                                 .environment = import.settings.environment};
-    add_bodies(body(import.report), name_, provenance, options_, import);
+    try {
+      add_bodies(body(import.report), name_, provenance, options_, import);
+    } catch (const InputError& error) {
+      throw InputError("/VXA/VXC/Structure", error.what());
+    }
     import.settings.dt = stable_time_step(import.robots, import.settings.stiffness_scale);
     if (import.settings.environment == "ocean") set_drag(import);
     import.report.elements = document_.elements(known_vxa_element);

@@ -29,7 +29,6 @@ ALLOWED = {
     "robots/api": "sim/api",
     "robots": "sim/api robots/api",
     "robots/library": "sim/api robots/api",
-    "robots/importers": "sim/api robots/api robots",
     "evolution/api": "sim/api robots/api",
     "evolution": "sim/api robots/api robots evolution/api",
     "render": "",

@@ -116,7 +116,7 @@ TEST(BadEvogym, IsRefusedWithItsPlace) {
   EXPECT_EQ(object(R"({"indices": [1, 1], "types": [1, 1]})"), "/objects/a/indices/1: the object has this voxel twice");
   EXPECT_EQ(object(R"({"indices": [], "types": []})"), "/objects/a/indices: the object has no voxels");
   EXPECT_EQ(object(R"({"indices": [1, 900000000000], "types": [1, 1]})"),
-            "/objects/a: spans 4.5e+11 voxels; at most 4194304 are accepted");
+            "/objects/a: spans 2.25e+11 voxels; at most 4194304 are accepted");
   EXPECT_EQ(refusal(std::string(100, '[')), "nested deeper than 16 levels");
 }
 

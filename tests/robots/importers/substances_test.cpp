@@ -68,7 +68,7 @@ TEST(SubstanceRounding, RoundsToStepsThatFitAndSaysByHowMuch) {
   for (std::size_t i = 0; i < substances.size(); ++i)
     largest = std::max(
         largest, std::abs(std::remainder(groups.substances[groups.group_of[i]].phase - substances[i].phase, 2 * pi)));
-  EXPECT_DOUBLE_EQ(groups.rounding.phase, largest);
+  EXPECT_NEAR(groups.rounding.phase, largest, 1e-12);
   EXPECT_LT(largest, pi / 200);
   EXPECT_LT(groups.rounding.stiffness, 1e-12);
 }

@@ -65,7 +65,8 @@ TEST(Vxa, PhaseOffsetsAreTurns) {
 TEST(Vxa, NothingMovesWhileTheTemperatureDoesNotVary) {
   VxaParts parts;
   parts.thermal = "<TempEnabled>1</TempEnabled><TempAmp>39</TempAmp><VaryTempEnabled>0</VaryTempEnabled>";
-  for (const Material& material : import_of(parts).robots.front().materials) EXPECT_EQ(material.amplitude, 0);
+  const Robot robot = import_of(parts).robots.front();
+  for (const Material& material : robot.materials) EXPECT_EQ(material.amplitude, 0);
 }
 
 TEST(Vxa, StiffnessFollowsTheElasticModulus) {
