@@ -293,8 +293,8 @@ class EvogymImport {
     for (std::size_t cell = 0; cell < body.cells.size(); ++cell)
       if (body.cells[cell] == horizontal || body.cells[cell] == vertical) actuators.try_emplace(flat(body, cell), 0);
     if (actuators.size() > most_actuators)
-      throw InputError(fmt::format("{} has {} actuators; at most {} are accepted", name, actuators.size(),
-                                               most_actuators));
+      throw InputError(
+          fmt::format("{} has {} actuators; at most {} are accepted", name, actuators.size(), most_actuators));
     for (auto& [cell, number] : actuators) {
       const auto nx = static_cast<std::size_t>(body.nx);
       number = robot.actuators.size();

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <map>
 #include <numbers>
+#include <optional>
+#include <unordered_map>
+#include <utility>
 
 namespace mercury {
 namespace {
@@ -27,6 +29,14 @@ std::complex<double> movement_of(const Substance& substance) {
 double wrapped(double phase) { return phase - turn * std::floor(phase / turn); }
 
 using Key = std::array<std::int64_t, 6>;
+
+struct KeyHash {
+  std::size_t operator()(const Key& key) const {
+    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+    for (const std::int64_t part : key) hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x100000001b3;
+    return static_cast<std::size_t>(hash ^ hash >> 32);
+  }
+};
 
 // Divides a range into steps. Of a range without extent all values are in one step.
 class Steps {
@@ -59,7 +69,7 @@ class Grouping {
   }
 
   SubstanceGroups exact() const {
-    return groups([](const Substance& substance) {
+    return *groups(substances_.size() + 1, [](const Substance& substance) {
       const Material material = material_of(substance);
       const auto bits = [](float value) { return static_cast<std::int64_t>(std::bit_cast<std::uint32_t>(value)); };
       return Key{bits(material.stiffness), bits(material.amplitude), bits(material.frequency),
@@ -68,8 +78,8 @@ class Grouping {
   }
 
   // The phase has twice as many steps, around the turn.
-  SubstanceGroups rounded(int steps) const {
-    SubstanceGroups found = groups([&](const Substance& substance) {
+  std::optional<SubstanceGroups> rounded(int steps, std::size_t most) const {
+    std::optional<SubstanceGroups> found = groups(most, [&](const Substance& substance) {
       const bool is_muscle = moves(substance);
       const std::int64_t around = std::max(1, 2 * steps);
       // A negative amplitude is a positive one half a turn later, except that a half wave acts in the other half.
@@ -83,19 +93,22 @@ class Grouping {
                  substance.half_wave ? (substance.amplitude < 0 ? 2 : 1) : 0,
                  size_.step(substance.size, steps)};
     });
-    found.rounding.steps = std::max(1, steps);
-    measure(found);
+    if (!found) return found;
+    found->rounding.steps = std::max(1, steps);
+    measure(*found);
     return found;
   }
 
  private:
+  // Nothing if there are more than `most` groups.
   template <class KeyOf>
-  SubstanceGroups groups(const KeyOf& key_of) const {
+  std::optional<SubstanceGroups> groups(std::size_t most, const KeyOf& key_of) const {
     SubstanceGroups found;
-    std::map<Key, std::size_t> known;
+    std::unordered_map<Key, std::size_t, KeyHash> known;
     std::vector<std::vector<Substance>> members;
     for (const Substance& substance : substances_) {
       const auto [place, is_new] = known.try_emplace(key_of(substance), members.size());
+      if (is_new && members.size() == most) return std::nullopt;
       if (is_new) members.emplace_back();
       members[place->second].push_back(substance);
       found.group_of.push_back(place->second);
@@ -189,10 +202,10 @@ SubstanceGroups grouped(std::span<const Substance> substances, std::size_t most)
   const Grouping grouping(substances);
   SubstanceGroups found = grouping.exact();
   const std::size_t distinct = found.substances.size();
-  for (double steps = 1024; found.substances.size() > most; steps *= 0.9) {
-    found = grouping.rounded(static_cast<int>(steps));
-    if (steps < 1) break;
-  }
+  std::optional<SubstanceGroups> rounded;
+  for (double steps = 1024; distinct > most && !rounded; steps *= 0.9)
+    rounded = grouping.rounded(static_cast<int>(steps), steps < 1 ? distinct : most);
+  if (rounded) found = *std::move(rounded);
   found.rounding.substances = distinct;
   found.rounding.groups = found.substances.size();
   return found;

@@ -225,7 +225,12 @@ std::vector<VoxelBody> separate_bodies(const VoxelBody& all) {
   if (bodies.size() == 1) return {all};
   std::ranges::stable_sort(bodies, std::greater(), &std::vector<std::size_t>::size);
   std::vector<VoxelBody> separate;
-  for (const std::vector<std::size_t>& members : bodies) separate.push_back(cut_out(all, members));
+  std::size_t cells = 0;
+  for (const std::vector<std::size_t>& members : bodies) {
+    separate.push_back(cut_out(all, members));
+    cells += separate.back().cells.size();
+    if (cells > 2 * most_imported_cells) throw InputError("the voxels form separate bodies that reach too far");
+  }
   return separate;
 }
 

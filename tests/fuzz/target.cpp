@@ -53,7 +53,11 @@ std::span<const Target> targets() {
                                   Target{"genome", "journal", genome_seeds, check_genome},
                                   Target{"configuration", "toml", configuration_file_seeds, check_configuration_file},
                                   Target{"camera", "camera", camera_seeds, check_camera},
-                                  Target{"session", "toml", session_seeds, check_session}};
+                                  Target{"session", "toml", session_seeds, check_session},
+                                  Target{"vxa", "vxa", vxa_seeds, check_vxa},
+                                  Target{"vxd", "vxa", vxd_seeds, check_vxd},
+                                  Target{"rsc", "vxa", rsc_seeds, check_rsc},
+                                  Target{"evogym", "robot", evogym_seeds, check_evogym}};
   return all;
 }
 

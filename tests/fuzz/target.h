@@ -49,6 +49,10 @@ void check_genome(std::string_view input);
 void check_configuration_file(std::string_view input);
 void check_camera(std::string_view input);
 void check_session(std::string_view input);
+void check_vxa(std::string_view input);
+void check_vxd(std::string_view input);
+void check_rsc(std::string_view input);
+void check_evogym(std::string_view input);
 
 std::vector<std::string> robot_json_seeds();
 std::vector<std::string> robot_cbor_seeds();
@@ -60,5 +64,9 @@ std::vector<std::string> genome_seeds();
 std::vector<std::string> configuration_file_seeds();
 std::vector<std::string> camera_seeds();
 std::vector<std::string> session_seeds();
+std::vector<std::string> vxa_seeds();
+std::vector<std::string> vxd_seeds();
+std::vector<std::string> rsc_seeds();
+std::vector<std::string> evogym_seeds();
 
 }  // namespace mercury::fuzz
