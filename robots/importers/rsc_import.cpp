@@ -75,8 +75,8 @@ class RscImport {
     read_palette();
     read_world();
     import_.report.format = "RSC of RISE";
-    import_.report.length_scale = scaling_->length;
-    import_.report.time_scale = scaling_->time;
+    import_.report.length_scale = scaling_->calibration.length_scale;
+    import_.report.time_scale = scaling_->calibration.time_scale;
     const auto [structure, document] = part("Structure");
     if (!structure) throw InputError("/RSC", "has no element Structure, which holds the bodies");
     std::size_t bodies = 0;
@@ -88,7 +88,7 @@ class RscImport {
     if (structure.child("Constraints").child("Constraint"))
       import_.report.notes.push_back("joints have no counterpart: each body is a robot of its own");
     import_.settings.friction = voxels_ > 0 ? friction_ / voxels_ : 0;
-    import_.settings.damping = voxels_ > 0 ? 2 * damping_ * frequency_ / voxels_ / scaling_->time : 0;
+    import_.settings.damping = voxels_ > 0 ? scaling_->damping(damping_, root_modulus_ / voxels_) : 0;
     import_.settings.dt = stable_time_step(import_.robots, import_.settings.stiffness_scale);
     import_.report.elements = own_.elements(known_element);
     if (base_)
@@ -119,8 +119,7 @@ class RscImport {
     const double edge = number_in(voxel, "Size").value_or(0.01);
     if (edge < 1e-9 || edge > 1e3) refuse(voxel.child("Size"), "give 1e-9 to 1000 m");
     document->mark(voxel.child("Size"), mapped, "scaled to voxels of 0.1 m");
-    scaling_.emplace(edge);
-    edge_ = edge;
+    double stiffest = 0, density = 0;
     for (const pugi::xml_node& node : voxel.child("Palette").children("Material")) {
       const std::optional<double> id = number_from(node.attribute("ID").value());
       if (!id || *id != std::floor(*id) || *id < 1 || *id > 255) refuse(node, "needs an ID from 1 to 255");
@@ -138,11 +137,19 @@ class RscImport {
       document->mark(node.child("Name"), mapped, "name of the material");
       document->mark(mechanical.child("ElasticMod"), mapped, "stiffness of springs");
       document->mark(mechanical.child("Density"), approximated,
-                     "every mass is 1 kg: the density goes into the stiffness");
+                     "every mass is 1 kg: the mean of the palette goes into the stiffness");
       document->mark(mechanical.child("FrictionDynamic"), approximated, "friction, the mean over the voxels");
       for (const char* child : {"MaxExpansion", "MinExpansion"})
         document->mark(mechanical.child(child), approximated, "amplitude of actuators, the smaller of the two");
+      stiffest = std::max(stiffest, material.elastic_modulus);
+      density += material.density;
       palette_[static_cast<int>(*id)] = std::move(material);
+    }
+    if (palette_.empty()) refuse(voxel, "has no element Palette/Material");
+    try {
+      scaling_.emplace(edge, stiffest, density / static_cast<double>(palette_.size()), 9.81);
+    } catch (const InputError& error) {
+      refuse(voxel, error.what());
     }
   }
 
@@ -153,8 +160,8 @@ class RscImport {
       if (!world) continue;
       for (const pugi::xml_node& root : world->tree().children()) read_simulator(root.child("Simulator"), *world);
     }
-    settings.gravity = scaling_->acceleration(settings.gravity);
     if (settings.environment != "land") settings.stiffness_scale = 1;
+    settings.contact_stiffness = scaling_->calibration.contact_stiffness / settings.stiffness_scale;
   }
 
   void read_simulator(const pugi::xml_node& simulator, XmlDocument& document) {
@@ -249,14 +256,14 @@ class RscImport {
       }
       grid.cells.push_back(place->second);
       friction_ += material->second.friction;
-      frequency_ += std::sqrt(material->second.elastic_modulus / material->second.density) / edge_;
+      root_modulus_ += std::sqrt(material->second.elastic_modulus / scaling_->model.elastic_modulus);
       ++voxels_;
     }
     if (grid.substances.empty()) refuse(node.child("MaterialID"), "all voxels are empty");
     const Provenance provenance{.file = name_,
                                 .format = "RSC of RISE",
-                                .length_scale = scaling_->length,
-                                .time_scale = scaling_->time,
+                                .length_scale = scaling_->calibration.length_scale,
+                                .time_scale = scaling_->calibration.time_scale,
                                 .environment = import_.settings.environment};
     const std::size_t before = import_.robots.size();
     try {
@@ -269,8 +276,8 @@ class RscImport {
 
   // Signals differ in phase, so that each has materials of its own.
   Substance substance_of_voxel(const RscMaterial& material, bool is_rigid, int signal) const {
-    Substance substance{.stiffness = scaling_->stiffness(material.elastic_modulus, material.density) *
-                                     (is_rigid ? rigid_stiffness : 1) / import_.settings.stiffness_scale};
+    Substance substance{.stiffness = scaling_->stiffness(material.elastic_modulus) * (is_rigid ? rigid_stiffness : 1) /
+                                     import_.settings.stiffness_scale};
     if (signal < 0 || material.expansion == 0) return substance;
     constexpr double largest_amplitude = 0.9, golden = 0.618033988749895;
     substance.amplitude = std::min(material.expansion, largest_amplitude);
@@ -295,7 +302,8 @@ class RscImport {
   Import import_;
   std::optional<Scaling> scaling_;
   std::map<int, RscMaterial> palette_;
-  double edge_ = 0.01, damping_ = 0, friction_ = 0, frequency_ = 0, voxels_ = 0;
+  double damping_ = 0;
+  double friction_ = 0, root_modulus_ = 0, voxels_ = 0;  // sums over the voxels, and their number
   bool has_note_ = false;
 };
 

@@ -33,14 +33,15 @@ double largest_eigenvalue(const Robot& robot, double stiffness_scale) {
 
 }  // namespace
 
-Scaling::Scaling(double edge) : length(imported_edge / edge), time(std::sqrt(length)) {}
+Scaling::Scaling(double edge, double stiffest_modulus, double density, double gravity)
+    : model{.elastic_modulus = stiffest_modulus, .density = density, .edge = edge, .gravity = std::abs(gravity)} {
+  calibration = calibrate(model, gravity_time_scale(edge));
+}
 
-double Scaling::stiffness(double elastic_modulus, double density) const {
-  // A lattice of springs k between the corners of cubes of edge L has the elastic modulus 2.7 k / L, and with masses of
-  // 1 kg the density 1 kg / L^3.
-  constexpr double lattice_modulus = 2.7;
-  const double speed = std::sqrt(elastic_modulus / density) * length / time;
-  return speed * speed / (imported_edge * imported_edge * lattice_modulus);
+double Scaling::damping(double slow_damping, double share) const {
+  BeamModel damped = model;
+  damped.slow_damping = slow_damping;
+  return calibrate(damped, calibration.time_scale).damping * share;
 }
 
 double stable_time_step(std::span<const Robot> robots, double stiffness_scale) {

@@ -4,22 +4,22 @@
 
 #include <span>
 
-#include "mercury/import.h"
 #include "mercury/robot.h"
+#include "robots/importers/calibration.h"
 
 namespace mercury {
 
-// Lengths grow so that voxels have 0.1 m. Times grow with the square root of lengths, so that gravity stays what it is:
-// the robot is the same, seen larger and slower.
+// Stiffness of springs for beams of this elastic modulus and density, and the rest of the calibration: voxels of 0.1 m,
+// and times that scale so that gravity stays what it is. Throws InputError for numbers that are too large or too small.
 struct Scaling {
-  explicit Scaling(double edge);  // of a voxel in the file [m]
-  double length = 1;              // metres here per metre there
-  double time = 1;                // seconds here per second there
+  Scaling(double edge, double stiffest_modulus, double density, double gravity);
+  Calibration calibration;
+  // [N/m]
+  double stiffness(double elastic_modulus) const { return calibration.stiffness_per_modulus * elastic_modulus; }
+  // Damping here [1/s], for voxels whose mean square root of the elastic modulus is this share of that of the stiffest.
+  double damping(double slow_damping, double share) const;
 
-  // Of every spring of a voxel, so that a wave of compression takes as long for a voxel as in the file, in scaled time
-  // [N/m].
-  double stiffness(double elastic_modulus, double density) const;
-  double acceleration(double there) const { return there * length / (time * time); }
+  BeamModel model;
 };
 
 // The largest time step, of the form 1, 2 or 5 times a power of ten, at which the force solver is stable for all

@@ -14,7 +14,10 @@ std::string to_toml(const ImportedSettings& settings, const ImportReport& report
                       settings.environment, settings.gravity, settings.stiffness_scale);
   if (settings.environment == "land") {
     text += fmt::format("friction = {:.9g}\n", settings.friction);
-    if (!settings.self_collision) text += "no-self-collision = true\n";
+    if (settings.self_collision)
+      text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
+    else
+      text += "no-self-collision = true\n";
   } else if (settings.environment == "ocean") {
     text += fmt::format("drag-coefficient = {:.9g}\nlift-coefficient = {:.9g}\n", settings.drag_coefficient,
                         settings.lift_coefficient);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -23,25 +24,31 @@ constexpr double largest_amplitude = 0.9;  // a rest length must stay above 0
 class VxaImport {
  public:
   VxaImport(XmlDocument& document, bool is_voxcraft, std::string name, const ImportOptions& options)
-      : document_(document), model_(read_vxa(document, is_voxcraft)), scaling_(model_.edge), name_(std::move(name)),
-        options_(options) {
+      : document_(document), model_(read_vxa(document, is_voxcraft)), name_(std::move(name)), options_(options) {
     for (const std::uint8_t cell : model_.cells)
       if (cell > 0) ++voxels_;
     if (voxels_ == 0) throw InputError("/VXA/VXC/Structure", "all voxels are empty");
     density_ = mean([&](std::size_t cell) { return material_of_cell(cell).density; });
+    for (std::size_t cell = 0; cell < model_.cells.size(); ++cell)
+      if (model_.cells[cell] > 0) stiffest_ = std::max(stiffest_, modulus_of_cell(cell));
+    try {
+      scaling_.emplace(model_.edge, stiffest_, density_, model_.gravity);
+    } catch (const InputError& error) {
+      throw InputError("/VXA/VXC/Palette", error.what());
+    }
   }
 
   Import run() {
     Import import;
     import.report.format = model_.is_voxcraft ? "VXA of voxcraft-sim" : "VXA of VoxCAD or evosoro";
-    import.report.length_scale = scaling_.length;
-    import.report.time_scale = scaling_.time;
+    import.report.length_scale = scaling_->calibration.length_scale;
+    import.report.time_scale = scaling_->calibration.time_scale;
     import.settings = settings();
     stiffness_scale_ = import.settings.stiffness_scale;
     const Provenance provenance{.file = name_,
                                 .format = import.report.format,
-                                .length_scale = scaling_.length,
-                                .time_scale = scaling_.time,
+                                .length_scale = scaling_->calibration.length_scale,
+                                .time_scale = scaling_->calibration.time_scale,
                                 .environment = import.settings.environment};
     try {
       add_bodies(body(import.report), name_, provenance, options_, import);
@@ -73,46 +80,44 @@ class VxaImport {
   ImportedSettings settings() const {
     ImportedSettings settings;
     settings.self_collision = model_.self_collision;
-    settings.gravity = model_.gravity_enabled ? scaling_.acceleration(model_.gravity) : 0;
+    settings.gravity = model_.gravity_enabled ? std::copysign(scaling_->calibration.gravity, model_.gravity) : 0;
     settings.environment = model_.in_fluid ? "ocean" : model_.floor_enabled ? "land" : "ocean-simple";
     if (model_.in_fluid) settings.gravity = 0;
     if (settings.environment == "land") {
       settings.stiffness_scale = land_stiffness_scale;
       settings.friction = mean([&](std::size_t cell) { return material_of_cell(cell).friction; });
+      settings.contact_stiffness = scaling_->calibration.contact_stiffness / settings.stiffness_scale;
     }
-    // A voxel of mass m and stiffness k = E L has the force -2 z sqrt(m k) v.
-    settings.damping = mean([&](std::size_t cell) {
-                         return 2 * model_.slow_damping * std::sqrt(modulus_of_cell(cell) / density_) / model_.edge;
-                       }) /
-                       scaling_.time;
-    if (model_.stop_time) settings.seconds = *model_.stop_time * scaling_.time;
-    if (model_.start_time) settings.settle = *model_.start_time * scaling_.time;
+    settings.damping = scaling_->damping(
+        model_.slow_damping, mean([&](std::size_t cell) { return std::sqrt(modulus_of_cell(cell) / stiffest_); }));
+    if (model_.stop_time) settings.seconds = *model_.stop_time * scaling_->calibration.time_scale;
+    if (model_.start_time) settings.settle = *model_.start_time * scaling_->calibration.time_scale;
     return settings;
   }
 
-  // A body that moves along the normals of its faces has the drag of the file, in relation to its mass. evosoro counts
-  // the face in front, Mercury that behind as well. The lift gives the same force across the motion, on average over
-  // all directions of faces: a quarter of the drag coefficient.
+  // The drag of the calibration, for the masses that the robots have per voxel.
   void set_drag(Import& import) const {
     double masses = 0;
     for (const Robot& robot : import.robots) masses += static_cast<double>(robot.masses.size());
-    const double volume = static_cast<double>(voxels_) * std::pow(imported_edge, 3);
-    constexpr double water = 1000;  // [kg/m3]
-    import.settings.drag_coefficient = model_.drag_coefficient * (masses / volume) / density_ / water;
-    import.settings.lift_coefficient = import.settings.drag_coefficient / 4;
+    BeamModel model = scaling_->model;
+    model.aggregate_drag = model_.drag_coefficient;
+    model.thickness = 0;  // one mass per voxel
+    const Calibration bulk = calibrate(model, scaling_->calibration.time_scale);
+    import.settings.drag_coefficient = bulk.drag_coefficient * masses / static_cast<double>(voxels_);
+    import.settings.lift_coefficient = bulk.lift_coefficient * masses / static_cast<double>(voxels_);
   }
 
   // The substance of a voxel, apart from its size.
   Substance substance_of_cell(std::size_t cell) const {
     const VxaMaterial& material = material_of_cell(cell);
-    Substance substance{.stiffness = scaling_.stiffness(modulus_of_cell(cell), density_) / stiffness_scale_};
+    Substance substance{.stiffness = scaling_->stiffness(modulus_of_cell(cell)) / stiffness_scale_};
     if (!model_.size.empty()) substance.size = model_.size[cell];
     double amplitude = material.expansion * model_.temperature_amplitude;
     if (!model_.amplitude_factor.empty()) amplitude *= model_.amplitude_factor[cell];
     if (!model_.temperature_varies || amplitude == 0) return substance;
     const double period = model_.period.empty() ? model_.temperature_period : model_.period[cell];
     substance.amplitude = std::clamp(amplitude, -largest_amplitude, largest_amplitude);
-    substance.frequency = turn / (period * scaling_.time);
+    substance.frequency = turn / (period * scaling_->calibration.time_scale);
     substance.half_wave = model_.half_wave;
     if (!model_.phase_offset.empty())
       substance.phase = turn * model_.phase_offset[cell];
@@ -162,11 +167,12 @@ class VxaImport {
 
   XmlDocument& document_;
   VxaModel model_;
-  Scaling scaling_;
+  std::optional<Scaling> scaling_;
   std::string name_;
   ImportOptions options_;
   std::size_t voxels_ = 0;
   double density_ = 0;          // mean over the voxels [kg/m3]
+  double stiffest_ = 0;         // elastic modulus [Pa]
   double stiffness_scale_ = 1;  // of the environment
 };
 

@@ -117,8 +117,7 @@ class VxaWriter {
   }
 
   void write_palette() {
-    const Scaling scaling(imported_edge);
-    const double modulus_per_stiffness = density / (scaling.stiffness(1, 1));
+    const double modulus_per_stiffness = 1 / Scaling(imported_edge, 1e6, density, 9.81).stiffness(1);
     text_ += "<Palette>\n";
     for (std::size_t i = 0; i < palette_.substances.size(); ++i) {
       const Substance& substance = body_.substances[palette_.substances[i]];

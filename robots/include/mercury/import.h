@@ -30,6 +30,7 @@ struct ImportedSettings {
   double stiffness_scale = 1;                         // of the environment, for which the robots' stiffnesses are made
   double friction = 0;                                // of the floor; land only
   bool self_collision = true;                         // land only
+  double contact_stiffness = 100;                     // land only, times the stiffness scale [N/m]
   double drag_coefficient = 0, lift_coefficient = 0;  // ocean only
   double dt = 1e-3;                                   // time step that is stable for the stiffest robot [s]
   double damping = 0;                                 // [1/s]
