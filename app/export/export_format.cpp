@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "mercury/error.h"
+#include "mercury/import.h"
 
 namespace mercury {
 namespace {
@@ -18,6 +19,11 @@ std::vector<std::filesystem::path> beside_obj(const std::filesystem::path& obj) 
 
 std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2) {
   return {mesh_beside(pc2), materials_beside(mesh_beside(pc2))};
+}
+
+// The grid and the materials of the robot's origin; where its masses are does not matter.
+void write_vxa_file(const ExportedRobot& robot, const Pose&, const std::filesystem::path& path, const ExportChoices&) {
+  write_vxa(robot.robot, path);
 }
 
 constexpr std::array formats{
@@ -82,6 +88,12 @@ constexpr std::array formats{
                  .springs = Springs::always,
                  .needs_skin = false,
                  .motion = write_xdmf},
+    ExportFormat{.name = "vxa",
+                 .extension = ".vxa",
+                 .title = "VXA",
+                 .help = "voxels and muscles of a voxel robot for VoxCAD, evosoro and voxcraft-sim",
+                 .needs_skin = false,
+                 .pose = write_vxa_file},
 };
 
 }  // namespace

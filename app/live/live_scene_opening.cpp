@@ -9,6 +9,7 @@
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
+#include "mercury/import.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -62,6 +63,22 @@ void read_recording(const fs::path& file, Opened& opened, Messages& messages) {
                                            robot_count_text(recording.robots().size())));
 }
 
+// Opens the robots of another simulator. Their worlds are not applied: the scene may have others.
+void read_import(const fs::path& file, Opened& opened, Messages& messages) {
+  Import import = import_file(file);
+  for (Robot& robot : import.robots) opened.robots.push_back({"", std::move(robot)});
+  const auto count = [&](ImportOutcome outcome) {
+    return std::ranges::count(import.report.elements, outcome, &ImportedElement::outcome);
+  };
+  messages.add(
+      import.robots.empty() ? Severity::warning : Severity::note,
+      fmt::format("{}: {} imported; {} elements mapped, {} approximated, {} ignored. Its world: {}, dt {:.3g} s; "
+                  "mercury import writes it, and the report",
+                  file.string(), robot_count_text(import.robots.size()), count(ImportOutcome::mapped),
+                  count(ImportOutcome::approximated), count(ImportOutcome::ignored), import.settings.environment,
+                  import.settings.dt));
+}
+
 void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
   if (is_repro_name(file)) {
     if (!alone) throw InputError(file.string(), "is a repro, which has its own time; open it alone");
@@ -75,6 +92,7 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
   }
   if (file.extension() == ".toml")
     throw InputError(file.string(), "holds options, not robots; give it to mercury view --config");
+  if (import_format_of(file)) return read_import(file, opened, messages);
   opened.robots.push_back({file.string(), load_robot(file)});
 }
 

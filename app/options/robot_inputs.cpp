@@ -16,6 +16,7 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "mercury/error.h"
+#include "mercury/import.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -40,6 +41,16 @@ std::string read_standard_input() {
     if (got < 0 && errno != EINTR && errno != EAGAIN)
       throw InputError(standard_input, std::string("standard input cannot be read: ") + std::strerror(errno));
   }
+}
+
+// The robot of a file, or those of a file of another simulator. Their worlds are not applied.
+std::vector<Robot> robots_in(const fs::path& file) {
+  if (!import_format_of(file)) return {load_robot(file)};
+  Import import = import_file(file);
+  if (import.robots.empty()) throw InputError(file.string(), "holds no robot: " + import.report.notes.front());
+  say(fmt::format("{}: imported without its world ({}, dt {:.3g} s); mercury import writes it, and a report",
+                  printable(file.string()), import.settings.environment, import.settings.dt));
+  return std::move(import.robots);
 }
 
 }  // namespace
@@ -108,9 +119,10 @@ std::vector<RobotFromFile> RobotInputs::load(const std::vector<fs::path>& paths,
       if (files[i] == standard_input) {
         load_standard_input(robots, accept);
       } else {
-        Robot robot = load_robot(files[i]);
-        if (accept) accept(robot);
-        robots.push_back({files[i], std::move(robot)});
+        for (Robot& robot : robots_in(files[i])) {
+          if (accept) accept(robot);
+          robots.push_back({files[i], std::move(robot)});
+        }
       }
     } catch (const InputError& error) {
       keep_going_after(error.what());

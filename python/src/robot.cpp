@@ -9,6 +9,7 @@
 
 #include "mercury/error.h"
 #include "mercury/generator.h"
+#include "mercury/import.h"
 #include "mercury/inspect.h"
 #include "mercury/robot_file.h"
 #include "python/src/bindings.h"
@@ -44,10 +45,13 @@ nb::object load(nb::handle given) {
     is_folder = std::filesystem::is_directory(path, ignored);
     if (is_folder)
       robots = load_robots(std::span(&path, 1));
+    else if (import_format_of(path))
+      robots = import_file(path).robots;
     else
       robots.push_back(load_robot(path));
   }
-  if (!is_folder) return nb::cast(shared(std::move(robots.front())));
+  if (!is_folder && robots.empty()) throw InputError(path.string(), "holds no robot, only what cannot move");
+  if (!is_folder && robots.size() == 1) return nb::cast(shared(std::move(robots.front())));
   nb::list list;
   for (Robot& robot : robots) list.append(shared(std::move(robot)));
   return list;
@@ -283,6 +287,9 @@ void bind_robot(nb::module_& module) {
   module.def(
       "load", &load, nb::arg("path").none(), nb::sig("def load(path: str | os.PathLike[str]) -> typing.Any"),
       "The Robot of a file (.json, .cbor), or a list of the robots of a folder, sorted by the names of the files. "
+      "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json) are imported "
+      "without "
+      "their worlds; one that holds several robots gives a list. "
       "Raises InputError with the place: \"eel.json: /springs/7: mass 912 is out of range, the robot has 300\".");
 }
 

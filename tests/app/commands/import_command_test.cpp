@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury import as users call it: robots, configurations and reports, and one line for what cannot be used.
+#include <gmock/gmock.h>
+
+#include <fmt/format.h>
+
+#include "mercury/robot_file.h"
+#include "mercury/voxel.h"
+#include "tests/app/program.h"
+#include "tests/robots/importers/documents.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ImportCommand : public FolderTest {
+ protected:
+  ImportCommand() { write("crawler.vxa", VxaParts{}.text()); }
+  static void refuses(const std::vector<std::string>& arguments, const std::string& message) {
+    std::vector<std::string> all{"import"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = mercury(all);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_EQ(outcome.messages, fmt::format("mercury: {}\n", message));
+  }
+  const std::string terrain_ = R"({"grid_width": 2, "grid_height": 1, "objects": {
+      "ground": {"indices": [0, 1], "types": [5, 5], "neighbors": {}}}})";
+};
+
+TEST_F(ImportCommand, WritesRobotAndWorldThatRunTogether) {
+  const Outcome outcome = mercury({"import", path("crawler.vxa"), "-o", path("robots")});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(listing("robots"), ElementsAre("crawler.json", "crawler.toml"));
+  EXPECT_THAT(outcome.output, HasSubstr("/VXA/VXC/Palette/Material[1]/Mechanical/CTE"));
+  const Robot robot = load_robot(path("robots/crawler.json"));
+  EXPECT_EQ(robot.name, "crawler");
+  EXPECT_EQ(voxel_grid_of(robot)->cells, (std::vector<MaterialId>{1, 2, 0, 3}));
+  const Outcome run = mercury({"run", path("robots/crawler.json"), "--config", path("robots/crawler.toml"), "--seconds",
+                               "0.2", "--device", "cpu", "--json"});
+  ASSERT_EQ(run.status, 0) << run.messages;
+  const auto result = nlohmann::json::parse(run.output);
+  EXPECT_EQ(result["configuration"]["environment"]["name"], "land");
+  EXPECT_EQ(result["robots"][0]["fate"], "sound");
+}
+
+TEST_F(ImportCommand, ReportsAsJson) {
+  const Outcome outcome = mercury({"import", path("crawler.vxa"), "-o", path("robots"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const auto report = nlohmann::json::parse(outcome.output)["files"][0];
+  EXPECT_EQ(report["file"], path("crawler.vxa"));
+  EXPECT_EQ(report["robots"][0], path("robots/crawler.json"));
+  EXPECT_EQ(report["configuration"], path("robots/crawler.toml"));
+  EXPECT_EQ(report["time_scale"], 2);
+  EXPECT_GT(report["elements"].size(), 30u);
+  for (const auto& element : report["elements"]) {
+    EXPECT_THAT(element["outcome"].get<std::string>(), testing::AnyOf("mapped", "approximated", "ignored"));
+    EXPECT_NE(element["reason"], "");
+  }
+}
+
+TEST_F(ImportCommand, FoldersGiveAllRobotsAndOneConfiguration) {
+  std::filesystem::create_directories(path("run"));
+  write("run/base.vxa", VxaParts{}.text());
+  write("run/a.vxd", "<VXD/>");
+  write("run/b.vxd", "<VXD/>");
+  write("run/note.txt", "");
+  write("run/robot.json", "{\"format\": \"mercury-robot\"}");
+  const Outcome outcome = mercury({"import", path("run"), "-o", path("robots"), "--brief"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(listing("robots"), ElementsAre("a.json", "a.toml", "b.json", "b.toml", "import.toml"));
+  EXPECT_THAT(outcome.output, HasSubstr("on the base " + path("run/base.vxa")));
+  EXPECT_THAT(outcome.output, testing::Not(HasSubstr("Mechanical")));
+  EXPECT_EQ(mercury({"run", path("robots"), "--config", path("robots/import.toml"), "--seconds", "0.1"}).status, 0);
+}
+
+TEST_F(ImportCommand, FilesOfOneNameDoNotReplaceEachOther) {
+  std::filesystem::create_directories(path("other"));
+  write("other/crawler.vxa", VxaParts{}.text());
+  ASSERT_EQ(mercury({"import", path("crawler.vxa"), path("other/crawler.vxa"), "-o", path("robots")}).status, 0);
+  EXPECT_THAT(listing("robots"),
+              ElementsAre("crawler-2.json", "crawler-2.toml", "crawler.json", "crawler.toml", "import.toml"));
+}
+
+TEST_F(ImportCommand, TerrainAloneIsReported) {
+  write("world.json", terrain_);
+  const Outcome outcome = mercury({"import", path("world.json"), "-o", path("robots")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.messages, HasSubstr("no robot in it"));
+  EXPECT_THAT(outcome.output, HasSubstr("fixed terrain"));
+}
+
+TEST_F(ImportCommand, KeepGoingLeavesBadFilesOut) {
+  write("bad.vxa", "<VXA/>");
+  const std::vector<std::string> arguments{"import", path("bad.vxa"), path("crawler.vxa"), "-o", path("robots")};
+  EXPECT_EQ(mercury(arguments).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("robots")));
+  std::vector<std::string> going = arguments;
+  going.emplace_back("--keep-going");
+  EXPECT_EQ(mercury(going).status, 1);
+  EXPECT_THAT(listing("robots"), ElementsAre("crawler.json", "crawler.toml"));
+}
+
+TEST_F(ImportCommand, RefusesWhatCannotBeUsed) {
+  write("bad.vxa", "<VXA/>");
+  write("lonely.vxd", "<VXD/>");
+  refuses({path("bad.vxa"), "-o", path("r")}, path("bad.vxa") + ": /VXA: has no element VXC, which holds the voxels");
+  refuses({path("none.vxa"), "-o", path("r")}, path("none.vxa") + ": No such file or directory");
+  refuses({path("lonely.vxd"), "-o", path("r")},
+          path("lonely.vxd") + ": a .vxd changes a base, and no base.vxa is beside it; name one with --base");
+  refuses({path("crawler.vxa"), "-o", path("r"), "--depth", "0"}, "--depth: give 1 to 100 voxels");
+  refuses({path("crawler.vxa"), "-o", path("r"), "--materials", "500"}, "--materials: give 8 to 255 materials");
+  EXPECT_FALSE(std::filesystem::exists(path("r")));
+}
+
+TEST_F(ImportCommand, ExistingFilesAreKept) {
+  ASSERT_EQ(mercury({"import", path("crawler.vxa"), "-o", path("robots")}).status, 0);
+  refuses({path("crawler.vxa"), "-o", path("robots")},
+          "-o: " + path("robots/crawler.json") + " exists already; use --force to replace it, or give another name");
+  EXPECT_EQ(mercury({"import", path("crawler.vxa"), "-o", path("robots"), "--force"}).status, 0);
+}
+
+TEST_F(ImportCommand, CommandsTakeSuchFilesDirectly) {
+  const Outcome outcome = mercury({"run", path("crawler.vxa"), "--seconds", "0.1", "--device", "cpu"});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, HasSubstr("crawler"));
+  EXPECT_THAT(outcome.messages, HasSubstr("imported without its world"));
+  EXPECT_EQ(mercury({"info", path("crawler.vxa")}).status, 0);
+}
+
+TEST_F(ImportCommand, ExportedVoxelRobotsComeBack) {
+  ASSERT_EQ(mercury({"new", "voxel", "--seed", "3", "-o", path("eel.json")}).status, 0);
+  ASSERT_EQ(mercury({"export", path("eel.json"), "-o", path("eel.vxa")}).status, 0);
+  ASSERT_EQ(mercury({"import", path("eel.vxa"), "-o", path("back")}).status, 0);
+  const Robot there = load_robot(path("eel.json")), back = load_robot(path("back/eel.json"));
+  EXPECT_EQ(voxel_grid_of(back)->cells, largest_body(*voxel_grid_of(there)).cells);
+}
+
+}  // namespace
+}  // namespace mercury::test
