@@ -27,7 +27,7 @@ SHORT = {  # appended; the last value of an option counts
 }
 MOST = {"--count": 2, "--best-of": 4, "--ancestors": 3, "--points": 200}  # values that are larger are lowered
 EARLIEST = ("--still", "--from", "--to")  # of export: moments of a recording, which is short
-WRITES = {"render", "new", "mutate", "cross", "grow", "run", "bench", "export"}  # repeated on a page, they replace their files
+WRITES = {"render", "new", "mutate", "cross", "grow", "run", "bench", "export", "import"}  # repeated on a page, they replace their files
 DEADLINE = 60  # seconds
 
 
@@ -102,6 +102,13 @@ def commands(page):
             yield first, re.split(r"\s{2,}(?![\s-])|\s+#\s", text)[0]
 
 
+def write_files_of(page, folder):
+    """Runs the blocks of Python that need nothing but json: they write the files that the page's commands read."""
+    for block in re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
+        if re.findall(r"^(?:import|from) .*", block, re.MULTILINE) == ["import json"]:
+            subprocess.run([sys.executable, "-c", block], cwd=folder, check=True)
+
+
 def is_for_one_host(text):
     return not re.search(r"\.\.\.|\bRUN\b|\bFILE\b|SLURM", text)
 
@@ -132,6 +139,7 @@ def test(program, page):
     with tempfile.TemporaryDirectory(prefix="mercury-docs-") as scratch:
         folder = Path(scratch)
         make_folder(folder, program, [text for _, text in found])
+        write_files_of(page, folder)
         environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
         for line, text in found:
             done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, capture_output=True, text=True)
