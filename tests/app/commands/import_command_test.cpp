@@ -42,7 +42,7 @@ TEST_F(ImportCommand, WritesRobotAndWorldThatRunTogether) {
                                "0.2", "--device", "cpu", "--json"});
   ASSERT_EQ(run.status, 0) << run.messages;
   const auto result = nlohmann::json::parse(run.output);
-  EXPECT_EQ(result["configuration"]["environment"]["name"], "land");
+  EXPECT_EQ(result["configuration"]["environment"], "land");
   EXPECT_EQ(result["robots"][0]["fate"], "sound");
 }
 
