@@ -72,6 +72,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"selected", scene.selection().size()},
                       {"panels", context.preferences.panels},
                       {"color", scene.view().color->key},
+                      {"scale", {scene.picture().scene().scale.low, scene.picture().scene().scale.high}},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
                       {"seconds", dt},

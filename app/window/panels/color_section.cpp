@@ -21,14 +21,16 @@ void color(ViewSettings& view, const ColorQuantity& quantity) {
   view.shown.legend = quantity.has_values();
 }
 
-bool draw_scale(ViewSettings& view) {
+bool draw_scale(ViewSettings& view, const render::Scale& shown, EventLog& log) {
   bool changed = false;
   bool fixed = view.scale.has_value();
-  if (ImGui::Checkbox("Fixed scale", &fixed)) {
-    view.scale = fixed ? std::optional(std::pair(0.0f, 1.0f)) : std::nullopt;
+  const bool clicked = ImGui::Checkbox("Fixed scale", &fixed);
+  log.item("color.fixed");
+  if (clicked) {
+    view.scale = fixed ? std::optional(std::pair(shown.low, shown.high)) : std::nullopt;
     changed = true;
   }
-  tooltip("off: the scale grows with the values seen so far");
+  tooltip("on: the scale stays as it is now; off: it grows with the values seen so far");
   if (view.scale) {
     float ends[2] = {view.scale->first, view.scale->second};
     row("from, to", "the values at the ends of the colour map");
@@ -43,7 +45,7 @@ bool draw_scale(ViewSettings& view) {
 
 }  // namespace
 
-bool draw_color_section(ViewSettings& view, const Environment& environment, EventLog& log) {
+bool draw_color_section(ViewSettings& view, const render::Scale& shown, const Environment& environment, EventLog& log) {
   heading("Colour by");
   bool changed = false;
   constexpr int columns = 3;
@@ -68,7 +70,7 @@ bool draw_color_section(ViewSettings& view, const Environment& environment, Even
     if (!offered) text += fmt::format("; only in: {}", environments_of(quantity));
     tooltip(text.c_str());
   }
-  if (view.color->has_values()) changed |= draw_scale(view);
+  if (view.color->has_values()) changed |= draw_scale(view, shown, log);
   return changed;
 }
 

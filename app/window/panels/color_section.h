@@ -5,11 +5,13 @@
 #include "app/scene/view_settings.h"
 #include "app/window/toolkit/event_log.h"
 #include "mercury/configuration.h"
+#include "render/scene.h"
 
 namespace mercury::window {
 
-// Draws one button per quantity of color_quantities(), and the scale. Returns true if `view` changed.
-bool draw_color_section(ViewSettings& view, const Environment& environment, EventLog& log);
+// Draws one button per quantity of color_quantities(), and the scale, which is fixed as it is `shown` now. Returns true
+// if `view` changed.
+bool draw_color_section(ViewSettings& view, const render::Scale& shown, const Environment& environment, EventLog& log);
 
 // Colours by the quantity with this number, counted from 1 in the order of color_quantities(). Returns false if the
 // environment does not have it.

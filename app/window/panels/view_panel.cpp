@@ -175,7 +175,7 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view) {
 void ViewPanel::draw(PanelContext& context) {
   ViewSettings view = context.scene.view();
   const Environment& environment = context.scene.configuration().environment;
-  bool changed = draw_color_section(view, environment, context.log);
+  bool changed = draw_color_section(view, context.scene.picture().scene().scale, environment, context.log);
   changed |= draw_show_section(view, context.log);
   changed |= draw_arrow_section(view, environment, context.log);
   draw_camera_section(context.camera, context.log);

@@ -78,8 +78,11 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + 0.3f * line, corner.y + size.y}, color_of(toast.tone),
-                                              ImGui::GetStyle().WindowRounding, ImDrawFlags_RoundCornersLeft);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(corner, {corner.x + size.x, corner.y + size.y});  // contents are clipped to the padding
+    list.AddRectFilled(corner, {corner.x + 0.3f * line, corner.y + size.y}, color_of(toast.tone),
+                       ImGui::GetStyle().WindowRounding, ImDrawFlags_RoundCornersLeft);
+    list.PopClipRect();
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();

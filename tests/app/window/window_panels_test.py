@@ -57,6 +57,37 @@ class PanelsTest(WindowCase):
         self.assertLess(share, 0.3)
         self.finish(window)
 
+    def test_fixing_a_color_scale_keeps_its_range(self):
+        window = self.small()
+        window.click("tab.View")
+        since = window.mark()
+        window.click("color.strain")
+        window.frame(lambda frame: frame["color"] == "strain" and frame["time"] > 0.5, since)
+        since = window.mark()
+        window.key("space")
+        still = window.frame(lambda frame: not frame["playing"], since)["scale"]
+        self.assertGreater(still[1], 1, "muscles strain by several per cent")
+        window.click("color.fixed")
+        self.assertEqual(window.frame()["scale"], still)
+        self.finish(window)
+
+    def test_a_message_has_a_bar_in_the_color_of_its_tone(self):
+        window = self.small()
+        bad = numpy.array([0xf0, 0x70, 0x5f]) / 255
+
+        def marked():
+            return int((numpy.abs(window.screenshot() - bad).max(axis=2) < 0.04).sum())
+
+        before = marked()
+        broken = self.folder / "broken.json"
+        broken.write_text("{}")
+        since = window.mark()
+        window.drop(broken)
+        window.wait("message", since, lambda event: event["tone"] == "error")
+        window.frame()
+        self.assertGreater(marked(), before + 40)
+        self.finish(window)
+
     def test_ranking_sorts_and_measurements_are_exported(self):
         window = self.open(str(SAMPLES / "fish.json"), str(SAMPLES / "eel.json"), str(SAMPLES / "ray.json"))
         window.frame(lambda frame: frame["time"] > 1)
