@@ -15,7 +15,7 @@ namespace mercury {
 // Which frames of a recording. Times count from its first frame [s].
 struct FrameRange {
   std::optional<double> from, to;  // the whole recording if absent
-  std::int64_t every = 1;          // takes every so many frames
+  std::int64_t every = 1;          // takes the first of every N frames
 };
 
 class RecordedMotion {
