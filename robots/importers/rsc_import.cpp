@@ -233,7 +233,7 @@ class RscImport {
     mark_layers(document, node.child("MaterialID"), mapped, "voxels, x fastest, then y");
     mark_layers(document, node.child("SegmentType"), approximated, "rigid segments have springs ten times as stiff");
     mark_layers(document, node.child("ExpansionSignalID"), approximated,
-                "all springs of the voxels of a signal are an actuator");
+                "voxels of one signal move together: muscles of one phase");
     std::map<std::tuple<int, bool, int>, std::uint32_t> known;
     std::vector<int> signal_of_substance;
     for (std::size_t cell = 0; cell < materials.size(); ++cell) {
