@@ -42,7 +42,8 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
       const fs::path extension = entry->path().extension();
       std::error_code ignored;
-      if ((extension == ".json" || extension == ".cbor") && !entry->is_directory(ignored))
+      if (entry->is_directory(ignored)) continue;
+      if (extension == ".json" || extension == ".cbor" || import_format_of(entry->path()))
         inside.push_back(entry->path());
     }
     if (error)
