@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/voxel.h"
+#include "robots/document.h"
 
 namespace mercury {
 namespace {
@@ -40,7 +41,15 @@ Json provenance_json(const Provenance& provenance) {
           {"time_scale", provenance.time_scale}};
 }
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+// Numbers in the form that Mercury's own files have, so that the text is the same after a robot was read as CBOR.
+std::string text_of(const Json& json) {
+  std::string cbor, text;
+  CborWriter binary(cbor);
+  read_json(json.dump(-1, ' ', false, Json::error_handler_t::replace), binary);
+  JsonWriter writer(text);
+  read_cbor(cbor, writer);
+  return text;
+}
 
 std::string with_provenance(const std::string& origin, const Provenance& provenance) {
   Json json = Json::parse(origin);

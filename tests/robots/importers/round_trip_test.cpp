@@ -6,8 +6,9 @@
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
-#include "mercury/nn_robot.h"
+#include "mercury/origin.h"
 #include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
 #include "mercury/shell.h"
 #include "mercury/voxel.h"
 #include "tests/robots/importers/documents.h"
@@ -67,6 +68,32 @@ TEST(VxaRoundTrip, KeepsImportedRobots) {
   const Robot back = import_text(vxa_document(robot), ImportFormat::vxa, "test").robots.front();
   EXPECT_EQ(back.materials, robot.materials);
   EXPECT_EQ(back.springs, robot.springs);
+}
+
+// Numbers such as 1e-05, which JSON can write in several ways.
+TEST(VxaRoundTrip, OriginsAreTheSameInBothKindsOfRobotFiles) {
+  VxaParts parts;
+  parts.lattice = "<Lattice_Dim>7.3e-7</Lattice_Dim>";
+  parts.layers =
+      "<PhaseOffset><Layer>1.7e-9,0.3</Layer><Layer>0,1.00000001</Layer></PhaseOffset>"
+      "<InitialVoxelSize><Layer>1e-5,0.3</Layer><Layer>0,0.1</Layer></InitialVoxelSize>";
+  parts.environment = "<GrowthAmplitude>0.1</GrowthAmplitude>";
+  const Robot robot = import_of(parts).robots.front();
+  EXPECT_EQ(kind_of(robot), "import");
+  for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor})
+    EXPECT_EQ(parse_robot(serialize_robot(robot, format), format), robot);
+}
+
+// Rest lengths follow the sizes of the voxels, 1 + GrowthAmplitude times the value.
+TEST(VxaRoundTrip, SizesOfVoxelsAreRestLengths) {
+  VxaParts parts;
+  parts.size = "<X_Voxels>1</X_Voxels><Y_Voxels>1</Y_Voxels><Z_Voxels>1</Z_Voxels>";
+  parts.data = "<Layer>1</Layer>";
+  parts.environment = "<GrowthAmplitude>0.5</GrowthAmplitude>";
+  parts.layers = "<InitialVoxelSize><Layer>0.4</Layer></InitialVoxelSize>";
+  const Robot robot = import_of(parts).robots.front();
+  for (const Spring& spring : robot.springs)
+    EXPECT_NEAR(spring.rest_length, 1.2 * rest_distance(robot, spring.a, spring.b), 1e-6);
 }
 
 TEST(VxaRoundTrip, RobotsWithoutAGridAreRefused) { EXPECT_THROW(vxa_document(random_shell_robot({}, 1)), InputError); }
