@@ -219,7 +219,6 @@ void TrajectoryReader::read_robots() {
   const std::vector<std::string> groups = members(particles_);
   if (groups.empty()) throw Error("holds no robots");
   robots_.resize(groups.size());
-  std::size_t chunk = 1;
   for (const std::string& name : groups) {
     const Handle group = open_group(particles_, name);
     const std::uint64_t index = read_attribute<std::uint64_t>(group, "index");
@@ -228,14 +227,13 @@ void TrajectoryReader::read_robots() {
     try {
       robots_[index] = read_robot(name, group);
       require_frames(group, robots_[index].robot.masses.size());
-      chunk = std::max(chunk, chunk_length(open_dataset(open_group(group, "position"), "value")));
+      chunk_ = std::max(chunk_, chunk_length(open_dataset(open_group(group, "position"), "value")));
     } catch (const std::runtime_error& error) {
       throw Error("/particles/" + name + ": " + error.what());
     }
   }
   offsets_.assign(1, 0);
   for (const RecordedRobot& recorded : robots_) offsets_.push_back(offsets_.back() + recorded.robot.masses.size());
-  frames_per_block_ = std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * offsets_.back()), 1, chunk);
 }
 
 RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group) const {
@@ -267,26 +265,40 @@ void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
 std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }
 std::size_t TrajectoryReader::frame_of_step(std::int64_t step) const { return last_not_above(steps_, step); }
 
+TrajectoryReader::Block& TrajectoryReader::of_robot(Block& block, std::size_t robot) {
+  if (block.robot != robot) block.count = 0;
+  block.robot = robot;
+  return block;
+}
+
+std::size_t TrajectoryReader::mass_count(const Block& block) const {
+  return block.robot == all_robots ? mass_count() : offsets_.at(block.robot + 1) - offsets_.at(block.robot);
+}
+
+std::size_t TrajectoryReader::length_of(const Block& block) const {
+  return std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * mass_count(block)), 1, chunk_);
+}
+
 std::span<const Vec3> TrajectoryReader::read(Block& block, std::size_t frame) {
   if (frame >= frames()) throw std::out_of_range("frame " + std::to_string(frame) + " of " + std::to_string(frames()));
   if (frame < block.first || frame >= block.first + block.count)
-    guarded([&] { read_block(block, frame - frame % frames_per_block_); });
-  return std::span(block.values).subspan((frame - block.first) * mass_count(), mass_count());
+    guarded([&] { read_block(block, frame - frame % length_of(block)); });
+  return std::span(block.values).subspan((frame - block.first) * mass_count(block), mass_count(block));
 }
 
 void TrajectoryReader::read_block(Block& block, std::size_t first) {
   block.count = 0;  // none, in case reading throws
-  const std::size_t count = std::min(frames_per_block_, frames() - first);
-  block.values.resize(count * mass_count());
-  for (std::size_t i = 0; i < robots_.size(); ++i) {
-    const hsize_t masses = offsets_[i + 1] - offsets_[i];
+  const bool all = block.robot == all_robots;
+  const std::size_t count = std::min(length_of(block), frames() - first), width = mass_count(block);
+  const std::size_t first_robot = all ? 0 : block.robot, last_robot = all ? robots_.size() : block.robot + 1;
+  block.values.resize(count * width);
+  for (std::size_t i = first_robot; i < last_robot; ++i) {
+    const hsize_t masses = offsets_[i + 1] - offsets_[i], place = offsets_[i] - offsets_[first_robot];
     const Handle dataset = open_dataset(open_group(open_group(particles_, robots_[i].group), block.element), "value");
-    const Handle stored(H5Dget_space(dataset)),
-        held(H5Screate_simple(3, Extent{count, mass_count(), 3}.data(), nullptr));
+    const Handle stored(H5Dget_space(dataset)), held(H5Screate_simple(3, Extent{count, width, 3}.data(), nullptr));
     const Extent extent{count, masses, 3};
     checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{first, 0, 0}.data(), nullptr, extent.data(), nullptr));
-    checked(
-        H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[i], 0}.data(), nullptr, extent.data(), nullptr));
+    checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, place, 0}.data(), nullptr, extent.data(), nullptr));
     if (unfinished_) require_chunks(dataset, first, count);
     if (unfinished_ && first + count == frames())
       read_last_rows(dataset, H5T_NATIVE_FLOAT, held, stored, block.values.data());

@@ -54,14 +54,23 @@ class TrajectoryReader {
   // order is fastest.
   std::span<const Vec3> positions(std::size_t frame) { return read(positions_, frame); }
   std::span<const Vec3> velocities(std::size_t frame) { return read(velocities_, frame); }
+  // The masses of one robot. Reads only that robot; go through all frames of one before the next.
+  std::span<const Vec3> positions_of(std::size_t robot, std::size_t frame) {
+    return read(of_robot(robot_positions_, robot), frame);
+  }
+  std::span<const Vec3> velocities_of(std::size_t robot, std::size_t frame) {
+    return read(of_robot(robot_velocities_, robot), frame);
+  }
 
  private:
   // Consecutive frames of one element, read together because they are stored together.
   struct Block {
     const char* element;
+    std::size_t robot = all_robots;
     std::size_t first = 0, count = 0;
     std::vector<Vec3> values;
   };
+  static constexpr std::size_t all_robots = static_cast<std::size_t>(-1);
 
   void read_parameters();
   void read_unfinished_times(hid_t parameters);
@@ -69,6 +78,9 @@ class TrajectoryReader {
   void read_robots();
   RecordedRobot read_robot(const std::string& group, hid_t particles) const;
   void require_frames(hid_t robot, std::size_t masses) const;
+  static Block& of_robot(Block& block, std::size_t robot);
+  std::size_t mass_count(const Block& block) const;  // of a frame
+  std::size_t length_of(const Block& block) const;   // frames
   std::span<const Vec3> read(Block& block, std::size_t frame);
   void read_block(Block& block, std::size_t first);
   template <class Work>
@@ -85,8 +97,8 @@ class TrajectoryReader {
   std::vector<double> times_;
   std::vector<RecordedRobot> robots_;
   std::vector<std::size_t> offsets_;
-  std::size_t frames_per_block_ = 1;
-  Block positions_{"position"}, velocities_{"velocity"};
+  std::size_t chunk_ = 1;  // frames that are stored together, at most
+  Block positions_{"position"}, velocities_{"velocity"}, robot_positions_{"position"}, robot_velocities_{"velocity"};
 };
 
 }  // namespace mercury

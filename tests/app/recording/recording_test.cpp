@@ -46,6 +46,21 @@ class Recording : public FolderTest {
   std::string file() const { return path("a.h5"); }
 };
 
+TEST_F(Recording, FramesOfOneRobotAreItsPartOfAllFrames) {
+  Simulation simulation(on_cpu(), std::vector{small_voxel_robot(0), pair("pair"), small_voxel_robot(1)});
+  record(simulation, file(), 200, 2);  // two blocks of frames
+  TrajectoryReader reader(file());
+  const auto offsets = reader.mass_offsets();
+  for (const std::size_t robot : {2u, 0u, 1u})
+    for (std::size_t frame = 0; frame < reader.frames(); ++frame) {
+      const std::size_t first = offsets[robot], masses = offsets[robot + 1] - first;
+      ASSERT_TRUE(same_bits(reader.positions_of(robot, frame), reader.positions(frame).subspan(first, masses)));
+      ASSERT_TRUE(same_bits(reader.velocities_of(robot, frame), reader.velocities(frame).subspan(first, masses)));
+    }
+  EXPECT_THROW(reader.positions_of(3, 0), std::out_of_range);
+  EXPECT_THROW(reader.positions_of(0, reader.frames()), std::out_of_range);
+}
+
 TEST_F(Recording, FramesAreThoseOfTheSimulation) {
   const std::vector<Robot> robots{small_voxel_robot(0), small_voxel_robot(1), pair("pair")};
   Simulation simulation(on_cpu(), robots);
