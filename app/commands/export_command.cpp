@@ -43,28 +43,6 @@ std::vector<std::string> names_of_robots(const std::vector<std::shared_ptr<const
   return names;
 }
 
-std::vector<std::string> names_of_robots(const TrajectoryReader& recording) {
-  std::vector<std::string> names;
-  for (const RecordedRobot& recorded : recording.robots()) names.push_back(recorded.robot.name);
-  return names;
-}
-
-// The indices of the robots that --robot chooses; of all without it.
-std::vector<std::size_t> chosen_robots(const std::string& robot, const std::vector<std::string>& names) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (robot.empty() || names[i] == robot) chosen.push_back(i);
-  for (std::size_t i = 0; chosen.empty() && i < names.size(); ++i)
-    if (std::to_string(i) == robot) chosen.push_back(i);
-  if (chosen.empty())
-    throw InputError("--robot", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", robot,
-                                            names.size() - 1));
-  if (!robot.empty() && chosen.size() > 1)
-    throw InputError("--robot", fmt::format("{} robots are named \"{}\"; give a number from 0 to {}", chosen.size(),
-                                            robot, names.size() - 1));
-  return chosen;
-}
-
 // Where the chosen robots go: one file, or files of their names in a folder.
 class Targets {
  public:
@@ -161,6 +139,10 @@ std::vector<RecordedMotion> motions_of(const ExportOptions& options, const Targe
                                           : RecordedMotion(recording, targets.robot(i), range);
     if (options.still)
       require_pose(targets.format(), motion.robot().robot, options.springs);
+    else if (!holds_motion(targets.format()))
+      throw InputError("--format",
+                       fmt::format("{} holds one pose of a recording; choose its moment (--still), or give {}",
+                                   targets.format().name, format_names(holds_motion)));
     else
       require_motion(targets.format(), motion.robot().robot, options.springs);
     motions.push_back(std::move(motion));
@@ -193,7 +175,7 @@ int export_recording(const ExportOptions& options, const fs::path& file) {
                                         frames * static_cast<double>(done) / static_cast<double>(of));
         }};
     if (options.still)
-      targets.format().pose(motions[i].robot(), motions[i].pose(0), targets.file(i), choices);
+      targets.format().pose(motions[i].robot(), motions[i].pose_with_velocities(0), targets.file(i), choices);
     else
       targets.format().motion(motions[i].robot(), motions[i], targets.file(i), choices);
     print_name(targets.file(i));

@@ -13,11 +13,10 @@ void require_content(const ExportFormat& format, const Robot& robot, bool spring
     throw ParameterError(
         "springs", fmt::format("a {} file holds no springs; give {}", format.extension, format_names(holds_springs)));
   if (format.needs_skin && robot.faces.empty() && !springs)
-    throw InputError(robot.name,
-                     fmt::format("has no skin, which a {} file holds; give --format vtu, or --springs with {}",
-                                 format.extension, format_names([](const ExportFormat& other) {
-                                   return other.springs == ExportFormat::Springs::if_asked;
-                                 })));
+    throw InputError(robot.name, fmt::format("has no skin, which a {} file holds; give vtu, or springs with {}",
+                                             format.extension, format_names([](const ExportFormat& other) {
+                                               return other.springs == ExportFormat::Springs::if_asked;
+                                             })));
 }
 
 }  // namespace
@@ -30,7 +29,7 @@ const ExportFormat& format_for(const std::filesystem::path& file, const std::str
   }
   const ExportFormat& format = export_format(name);
   if (by_extension && by_extension != &format)
-    throw ParameterError("output", fmt::format("{} is the name of a {} file; give one that ends in {}", file.string(),
+    throw ParameterError("output", fmt::format("{} is a name of {} files; give one that ends in {}", file.string(),
                                                by_extension->name, format.extension));
   return format;
 }
@@ -46,10 +45,31 @@ void require_pose(const ExportFormat& format, const Robot& robot, bool springs) 
 
 void require_motion(const ExportFormat& format, const Robot& robot, bool springs) {
   if (!holds_motion(format))
-    throw ParameterError("format", fmt::format("{} holds one pose; choose a moment of the recording with --still S, or "
-                                               "give {}",
-                                               format.name, format_names(holds_motion)));
+    throw ParameterError(
+        "format", fmt::format("{} holds one pose of a recording; choose its moment (still), or give {}", format.name,
+                              format_names(holds_motion)));
   require_content(format, robot, springs);
+}
+
+std::vector<std::string> names_of_robots(const TrajectoryReader& recording) {
+  std::vector<std::string> names;
+  for (const RecordedRobot& recorded : recording.robots()) names.push_back(recorded.robot.name);
+  return names;
+}
+
+std::vector<std::size_t> chosen_robots(const std::string& robot, const std::vector<std::string>& names) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (robot.empty() || names[i] == robot) chosen.push_back(i);
+  for (std::size_t i = 0; chosen.empty() && i < names.size(); ++i)
+    if (std::to_string(i) == robot) chosen.push_back(i);
+  if (chosen.empty())
+    throw ParameterError("robot", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", robot,
+                                              names.size() - 1));
+  if (!robot.empty() && chosen.size() > 1)
+    throw ParameterError("robot", fmt::format("{} robots are named \"{}\"; give a number from 0 to {}", chosen.size(),
+                                              robot, names.size() - 1));
+  return chosen;
 }
 
 void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,

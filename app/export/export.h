@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/base/output_files.h"
 #include "app/export/export_format.h"
@@ -19,6 +20,11 @@ const ExportFormat& format_for(const std::filesystem::path& file, const std::str
 // format cannot hold.
 void require_pose(const ExportFormat& format, const Robot& robot, bool springs);
 void require_motion(const ExportFormat& format, const Robot& robot, bool springs);
+
+// The indices of the robots of these names that are chosen: by a name, or a number from 0; all if `robot` is empty.
+// Throws ParameterError("robot", ...).
+std::vector<std::size_t> chosen_robots(const std::string& robot, const std::vector<std::string>& names);
+std::vector<std::string> names_of_robots(const TrajectoryReader& recording);
 
 // Adds the file and what the format writes beside it to outputs that are checked.
 void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,

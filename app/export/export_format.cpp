@@ -87,6 +87,7 @@ constexpr std::array formats{
                  .help = "describes the recording itself for ParaView, which reads its numbers from there",
                  .springs = Springs::always,
                  .needs_skin = false,
+                 .needs_recording = true,
                  .motion = write_xdmf},
     ExportFormat{.name = "vxa",
                  .extension = ".vxa",

@@ -21,7 +21,8 @@ struct ExportFormat {
   std::string_view title;      // in the window: "Wavefront OBJ"
   std::string_view help;       // what it holds and who reads it, without a full stop
   Springs springs = Springs::never;
-  bool needs_skin = true;  // a robot without faces would be empty
+  bool needs_skin = true;        // a robot without faces would be empty
+  bool needs_recording = false;  // the file refers to the recording, which must stay
   // What it can hold: a pose, a motion, or both; nullptr = it cannot.
   void (*pose)(const ExportedRobot&, const Pose&, const std::filesystem::path&, const ExportChoices&) = nullptr;
   void (*motion)(const ExportedRobot&, RecordedMotion&, const std::filesystem::path&, const ExportChoices&) = nullptr;
@@ -41,6 +42,10 @@ const ExportFormat* export_format_of(const std::filesystem::path& file);
 std::string format_names(bool (*condition)(const ExportFormat&) = [](const ExportFormat&) { return true; });
 inline bool holds_pose(const ExportFormat& format) { return format.pose != nullptr; }
 inline bool holds_motion(const ExportFormat& format) { return format.motion != nullptr; }
+// Those that the window can write, which has no recording.
+inline bool holds_simulated_motion(const ExportFormat& format) {
+  return holds_motion(format) && !format.needs_recording;
+}
 inline bool holds_springs(const ExportFormat& format) { return format.springs != ExportFormat::Springs::never; }
 
 }  // namespace mercury

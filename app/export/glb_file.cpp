@@ -138,7 +138,7 @@ bool fits(std::size_t frames, std::size_t vertices) {
   return frames <= most_targets + 1 && bytes_of(frames, vertices) <= largest_glb;
 }
 
-void require_short(const RecordedMotion& motion, std::size_t vertices) {
+void require_short(const RecordedMotion& motion, std::size_t vertices, const std::filesystem::path& path) {
   const std::size_t frames = motion.frames();
   if (fits(frames, vertices)) return;
   std::size_t every = 2;
@@ -147,7 +147,7 @@ void require_short(const RecordedMotion& motion, std::size_t vertices) {
   while (!fits(first, vertices)) first = std::min(first - 1, most_targets + 1);
   const std::size_t apart = motion.recorded_frame(frames > 1 ? 1 : 0) - motion.recorded_frame(0);
   throw InputError(
-      motion.recording().path().string(),
+      path.string(),
       fmt::format("{} frames of {} vertices are too many for a .glb file, which web viewers hold in memory: "
                   "at most {} fit; give --every {}, or --to {:.4g}",
                   frames, vertices, first, every * apart, motion.time(first - 1) - motion.recording().time(0)));
@@ -184,7 +184,7 @@ void write_glb(const ExportedRobot& robot, const Pose& pose, const std::filesyst
 void write_glb_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                       const ExportChoices& choices) {
   const SkinShape shape = skin_shape(robot.robot, choices.springs);
-  require_short(motion, shape.masses.size());
+  require_short(motion, shape.masses.size(), path);
   Document document = document_of(robot, shape);
   const std::vector<Vec3> first = vertices_of(shape, motion.pose(0).positions);
   const std::size_t positions = document.add_vectors(first);

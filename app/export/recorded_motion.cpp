@@ -47,7 +47,8 @@ RecordedMotion::RecordedMotion(std::shared_ptr<TrajectoryReader> recording, std:
     last = nearest_frame(*recording_, *range.to);
   }
   if (last < first_)
-    throw ParameterError("to", fmt::format("{} is before --from {}; give a later time", *range.to, *range.from));
+    throw ParameterError("to",
+                         fmt::format("{} is before the first moment, {}; give a later one", *range.to, *range.from));
   every_ = static_cast<std::size_t>(std::min<std::int64_t>(range.every, static_cast<std::int64_t>(last) + 1));
   count_ = (last - first_) / every_ + 1;
   end_at_explosion();
@@ -85,11 +86,15 @@ double RecordedMotion::frame_rate() const {
 }
 
 Pose RecordedMotion::pose(std::size_t frame) {
-  const std::size_t recorded = recorded_frame(frame), first = recording_->mass_offsets()[robot_],
-                    masses = recording_->mass_offsets()[robot_ + 1] - first;
-  return {.time = recording_->time(recorded),
-          .positions = recording_->positions(recorded).subspan(first, masses),
-          .velocities = recording_->velocities(recorded).subspan(first, masses)};
+  const std::size_t recorded = recorded_frame(frame);
+  return {
+      .time = recording_->time(recorded), .positions = recording_->positions_of(robot_, recorded), .velocities = {}};
+}
+
+Pose RecordedMotion::pose_with_velocities(std::size_t frame) {
+  Pose pose = this->pose(frame);
+  pose.velocities = recording_->velocities_of(robot_, recorded_frame(frame));
+  return pose;
 }
 
 }  // namespace mercury

@@ -33,8 +33,10 @@ class RecordedMotion {
   double time(std::size_t frame) const { return recording_->time(recorded_frame(frame)); }  // [s]
   // Frames per second, from the first to the last; 0 for a single frame.
   double frame_rate() const;
-  // Valid until the next call. Throws InputError if the recording cannot be read.
+  // Valid until the next call. Throws InputError if the recording cannot be read. Velocities take as long to read as
+  // positions, and few formats have them.
   Pose pose(std::size_t frame);
+  Pose pose_with_velocities(std::size_t frame);
   const std::string& problem() const { return problem_; }  // empty = none
 
   // Where the frames are in the file, for formats that refer to it.

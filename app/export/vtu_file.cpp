@@ -6,8 +6,10 @@
 //
 // A face has the mean strain and force of the springs along its edges, so that the skin can be coloured by them.
 #include <fmt/format.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -138,33 +140,44 @@ class Grid {
   std::vector<std::uint8_t> types_, kinds_, materials_, colors_;
 };
 
-// The frames of a series so far. They are removed unless the series is finished.
+// The frames of a series: in a folder of a temporary name until all are there.
 class FrameFiles {
  public:
-  explicit FrameFiles(const std::filesystem::path& folder)
-      : folder_(folder), made_folder_(std::filesystem::create_directories(folder)) {}
+  explicit FrameFiles(const std::filesystem::path& folder) : folder_(folder), unfinished_(folder) {
+    unfinished_ += fmt::format(".{}.part", getpid());
+    std::filesystem::create_directories(unfinished_);
+  }
   ~FrameFiles() {
     std::error_code ignored;
-    if (kept_) return;
-    for (const auto& file : files_) std::filesystem::remove(file, ignored);
-    if (made_folder_) std::filesystem::remove(folder_, ignored);  // if it is empty
+    std::filesystem::remove_all(unfinished_, ignored);
   }
   FrameFiles(const FrameFiles&) = delete;
   FrameFiles& operator=(const FrameFiles&) = delete;
 
   void write(const Grid& grid, const Pose& pose, const std::string& name) {
-    OutputStream file(folder_ / name);
+    OutputStream file(unfinished_ / name);
     grid.write(file, pose);
     file.close();
     file.keep();
-    files_.push_back(folder_ / name);
+    names_.insert(name);
   }
-  void keep() { kept_ = true; }
+  // Replaces the frames of an earlier series; other files of the folder stay.
+  void keep() {
+    std::filesystem::create_directories(folder_);
+    for (const std::string& name : names_) std::filesystem::rename(unfinished_ / name, folder_ / name);
+    std::vector<std::filesystem::path> earlier;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (is_frame(entry.path()) && !names_.contains(entry.path().filename().string())) earlier.push_back(entry.path());
+    for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
+  }
 
  private:
-  std::filesystem::path folder_;
-  bool made_folder_, kept_ = false;
-  std::vector<std::filesystem::path> files_;
+  static bool is_frame(const std::filesystem::path& file) {
+    return file.extension() == ".vtu" && file.stem().string().find_first_not_of("0123456789") == std::string::npos;
+  }
+
+  std::filesystem::path folder_, unfinished_;
+  std::set<std::string> names_;
 };
 
 }  // namespace
@@ -199,14 +212,14 @@ void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::fi
   const int digits = static_cast<int>(std::to_string(motion.frames() - 1).size());
   for (std::size_t frame = 0; frame < motion.frames(); ++frame) {
     const std::string name = fmt::format("{:0{}}.vtu", frame, digits);
-    frames.write(grid, motion.pose(frame), name);
+    frames.write(grid, motion.pose_with_velocities(frame), name);
     list.print("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", motion.time(frame),
                xml_text((folder.filename() / name).string()));
     choices.watch(frame + 1, motion.frames());
   }
   list.text("</Collection>\n</VTKFile>\n");
-  files.keep();
   frames.keep();
+  files.keep();
 }
 
 }  // namespace mercury

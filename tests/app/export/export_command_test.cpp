@@ -71,6 +71,17 @@ TEST_F(ExportCommand, SeriesHasTheChosenFramesWithTheirTimes) {
     EXPECT_THAT(list, HasSubstr(entry));
 }
 
+TEST_F(ExportCommand, ShorterSeriesRemovesTheFurtherFramesOfAnEarlierOne) {
+  const std::string file = recording();
+  ASSERT_EQ(mercury({"export", file, "--robot", "0", "-o", path("swim.pvd")}).status, 0);
+  EXPECT_EQ(listing("swim-frames").size(), 11u);
+  write("swim-frames/notes.txt", "mine");
+  refuses({file, "--robot", "0", "--to", "0.02", "-o", path("swim.pvd")},
+          "-o: " + path("swim.pvd") + " exists already; use --force to replace it, or give another name");
+  ASSERT_EQ(mercury({"export", file, "--robot", "0", "--to", "0.02", "--force", "-o", path("swim.pvd")}).status, 0);
+  EXPECT_THAT(listing("swim-frames"), ElementsAre("0.vtu", "1.vtu", "notes.txt"));
+}
+
 TEST_F(ExportCommand, SeveralRobotsGoIntoAFolder) {
   ASSERT_EQ(mercury({"export", path("robots"), "--format", "stl", "-o", path("printed")}).status, 0);
   EXPECT_THAT(listing("printed"), ElementsAre("voxel-7-0.stl", "voxel-7-1.stl"));
@@ -97,7 +108,7 @@ TEST_F(ExportCommand, WhatCannotBeUsedIsOneLine) {
                                                names + ", or a folder with --format");
   refuses({robot_, "-o", path("eel")}, "--format: a folder does not say it; give " + names);
   refuses({robot_, "-o", path("eel.obj"), "--format", "stl"},
-          "-o: " + path("eel.obj") + " is the name of a obj file; give one that ends in .stl");
+          "-o: " + path("eel.obj") + " is a name of obj files; give one that ends in .stl");
   refuses({robot_, "-o", path("eel.stl"), "--springs"},
           "--springs: a .stl file holds no springs; give " + format_names(holds_springs));
   refuses({robot_, "-o", path("eel.stl"), "--still", "1"},
@@ -113,12 +124,12 @@ TEST_F(ExportCommand, WhatCannotBeUsedIsOneLine) {
 TEST_F(ExportCommand, WhatARecordingCannotGiveIsOneLine) {
   const std::string file = recording();
   refuses({file, "--robot", "0", "-o", path("eel.stl")},
-          "--format: stl holds one pose; choose a moment of the recording with --still S, or give " +
+          "--format: stl holds one pose of a recording; choose its moment (--still), or give " +
               format_names(holds_motion));
   refuses({file, "--robot", "0", "-o", path("eel.glb"), "--from", "3"},
           "--from: 3 is not accepted; the recording has 0 to 0.2 s");
   refuses({file, "--robot", "0", "-o", path("eel.glb"), "--from", "0.1", "--to", "0.02"},
-          "--to: 0.02 is before --from 0.1; give a later time");
+          "--to: 0.02 is before the first moment, 0.1; give a later one");
   refuses({file, "--robot", "0", "-o", path("eel.glb"), "--every", "0"}, "--every: 0 is not accepted; give 1 or more");
   refuses({file, "--robot", "0", "-o", path("eel.glb"), "--still", "nan"},
           "--still: nan is not accepted; the recording has 0 to 0.2 s");
