@@ -152,6 +152,11 @@ class LiveScene {
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
   SaveResult save_all(const std::vector<RobotId>& robots, const std::filesystem::path& folder, RobotFormat format,
                       bool overwrite = false);
+  // Writes a robot's present pose for other programs; the file's extension says the format (app/export).
+  SaveResult export_pose(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
+  // The same for its motion from time 0 to `seconds`, which is simulated in the background. Returns once it has
+  // begun, with the file; a message says when it is there.
+  SaveResult export_motion(RobotId robot, const std::filesystem::path& path, double seconds, bool overwrite = false);
   // The command line `mercury view ...` or `mercury render ... -o scene.mp4` that makes this scene, and what it cannot
   // express.
   CommandText command(const std::string& subcommand = "view") const;

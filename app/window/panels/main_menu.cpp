@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/export_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/theme.h"
@@ -41,6 +42,11 @@ void Panels::draw_file_menu() {
     menu_item("Open...", Action::open);
     if (ImGui::MenuItem("Open a run...")) choose_run(context_);
     menu_item(scene.selection().empty() ? "Save all..." : "Save selected...", Action::save, !scene.entries().empty());
+    const bool robots = !scene.entries().empty();
+    if (ImGui::MenuItem("Export the pose...", nullptr, false, robots)) export_pose(context_);
+    context_.log.item("menu.export_pose");
+    if (ImGui::MenuItem("Export the motion...", nullptr, false, robots)) export_motion(context_);
+    context_.log.item("menu.export_motion");
     menu_item("Save a screenshot", Action::screenshot);
     if (ImGui::MenuItem("Copy as command")) copy_as_command(context_, "view");
     if (ImGui::MenuItem("Copy as command for a video")) copy_as_command(context_, "render");

@@ -52,6 +52,26 @@ class FilesTest(WindowCase):
         self.assertEqual(info.returncode, 0, info.stderr)
         self.assertIn("eel", info.stdout)
 
+    def test_a_robot_is_exported_for_other_programs(self):
+        window = self.small("--paused")
+        since = window.mark()
+        window.click("menu.File")
+        window.click("menu.export_pose")
+        window.dialog(str(self.folder / "eel.stl"))
+        window.wait("saved", since)
+        faces = len(json.loads((SAMPLES / "eel.json").read_text())["faces"])
+        self.assertEqual((self.folder / "eel.stl").stat().st_size, 84 + 50 * faces)
+
+        since = window.mark()
+        window.click("menu.File")
+        window.click("menu.export_motion")
+        window.dialog("0.1")  # seconds
+        window.place("files.place")
+        window.dialog(str(self.folder / "eel.usda"))
+        window.wait("message", since, lambda event: "exported " in event["text"])
+        self.assertTrue((self.folder / "eel.usda").read_text().startswith("#usda 1.0"))
+        self.finish(window)
+
     def test_an_invalid_robot_file_shows_an_error(self):
         window = self.small("--paused")
         bad = self.folder / "bad.json"
