@@ -49,5 +49,6 @@ void bind_batch(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 void bind_pictures(nb::module_& module);
 void bind_recording(nb::module_& module);
+void bind_export(nb::module_& module);
 
 }  // namespace mercury::python

@@ -15,4 +15,5 @@ NB_MODULE(_mercury, module) {
   bind_evaluate(module);
   bind_pictures(module);
   bind_recording(module);
+  bind_export(module);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands for pictures and recordings in a build without the program (MERCURY_APP=OFF).
+// What stands for pictures, recordings and exports in a build without the program (MERCURY_APP=OFF).
 #include "mercury/error.h"
 #include "python/src/bindings.h"
 
@@ -14,6 +14,10 @@ namespace {
   throw DeviceError("this build cannot read recordings: it was made with MERCURY_APP=OFF");
 }
 
+[[noreturn]] void refuse_export(const nb::args&, const nb::kwargs&) {
+  throw DeviceError("this build cannot export: it was made with MERCURY_APP=OFF");
+}
+
 }  // namespace
 
 void bind_pictures(nb::module_& module) {
@@ -23,5 +27,6 @@ void bind_pictures(nb::module_& module) {
 }
 
 void bind_recording(nb::module_& module) { module.def("Recording", &refuse_recording); }
+void bind_export(nb::module_& module) { module.def("export", &refuse_export); }
 
 }  // namespace mercury::python

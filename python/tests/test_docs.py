@@ -34,7 +34,7 @@ def pictures():
 def recording():
     """Makes the recording of the page."""
     if program := os.environ.get("MERCURY_PROGRAM"):
-        arguments = ["run", "--random", "voxel:4", "--seconds", "1", "--record", "swim.h5"]
+        arguments = ["run", "--random", "voxel:4", "--seconds", "1", "--record", "swim.h5", "--force"]
         subprocess.run([program, *arguments], check=True, capture_output=True)
     return bool(program)
 

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+import struct
+
+import numpy as np
+import pytest
+
+import mercurysim
+
+if not isinstance(mercurysim.Recording, type):
+    pytest.skip("this build exports nothing", allow_module_level=True)
+
+
+@pytest.fixture
+def robots():
+    return mercurysim.random_voxel(2, seed=1)
+
+
+@pytest.fixture
+def recording(robots, tmp_path, mercury):
+    for i, robot in enumerate(robots):
+        robot.save(tmp_path / f"{i}.json")
+    where = ["--record", tmp_path / "run.h5", "--every", 50, "--seconds", 0.2, "--device", "cpu"]
+    mercury("run", tmp_path / "0.json", tmp_path / "1.json", *where)
+    return mercurysim.Recording(tmp_path / "run.h5")
+
+
+def test_a_robot_is_exported_at_rest(robots, tmp_path):
+    mercurysim.export(robots[0], tmp_path / "new/robot.stl")
+    content = (tmp_path / "new/robot.stl").read_bytes()
+    assert struct.unpack_from("<I", content, 80)[0] == len(robots[0].faces)
+    triangle = np.frombuffer(content, "<f4", 9, 84 + 12).reshape(3, 3)
+    assert np.array_equal(triangle, robots[0].masses[robots[0].faces[0]])
+
+
+def test_a_motion_has_the_frames_that_are_asked_for(recording, robots, tmp_path):
+    mercurysim.export(recording, tmp_path / "a.pc2", robot=1, start=0.05, every=2)
+    content = (tmp_path / "a.pc2").read_bytes()
+    points, _, _, samples = struct.unpack_from("<iffi", content, 16)
+    skin = np.unique(robots[1].faces)
+    assert (points, samples) == (len(skin), 2)
+    frames = np.frombuffer(content, "<f4", offset=32).reshape(2, -1, 3)
+    for frame, recorded in zip(frames, (1, 3)):
+        positions = recording.positions(recorded)[recording.offsets[1]:]
+        assert np.array_equal(frame, positions[skin])
+
+
+def test_files_are_replaced_and_folders_must_be_empty(recording, tmp_path):
+    for _ in range(2):
+        mercurysim.export(recording, tmp_path / "a.usda", robot=recording.robots[0].name)
+    mercurysim.export(recording, tmp_path / "a.pvd", robot=0)
+    with pytest.raises(mercurysim.InputError, match="path: .*a-frames is not empty"):
+        mercurysim.export(recording, tmp_path / "a.pvd", robot=0)
+
+
+def test_what_cannot_be_used_is_one_line(recording, robots, tmp_path):
+    def refused(message, *arguments, **options):
+        with pytest.raises(mercurysim.InputError, match=message):
+            mercurysim.export(*arguments, **options)
+
+    refused('format: "gif" is not accepted; give obj, ', robots[0], tmp_path / "a", "gif")
+    refused("format: .* does not say it; give obj, ", robots[0], tmp_path / "a.xyz")
+    refused("path: .* is a name of obj files", robots[0], tmp_path / "a.obj", "stl")
+    refused("format: pc2 holds a motion", robots[0], tmp_path / "a.pc2")
+    refused("springs: a .stl file holds no springs", robots[0], tmp_path / "a.stl", springs=True)
+    refused("choose from a Recording", robots[0], tmp_path / "a.stl", still=0)
+    refused("robot: the recording has 2; give a name or an index", recording, tmp_path / "a.glb")
+    refused("robot: no robot is named \"7\"", recording, tmp_path / "a.glb", robot=7)
+    refused("start: 3 is not accepted; the recording has 0 to 0.2 s", recording, tmp_path / "a.glb", robot=0, start=3)
+    refused("format: stl holds one pose", recording, tmp_path / "a.stl", robot=0)
+    with pytest.raises(TypeError, match="what: must be a Robot or a Recording, not list"):
+        mercurysim.export(robots, tmp_path / "a.stl")
+    assert [path.name for path in tmp_path.iterdir() if path.suffix not in (".h5", ".json")] == []
