@@ -441,3 +441,20 @@ def test_threads_may_share_robots(tmp_path):
     with ThreadPoolExecutor(8) as pool:
         assert list(pool.map(work, range(64))) == alone
     assert all(same for same, *_ in alone)
+
+
+def test_load_imports_files_of_other_simulators(tmp_path):
+    structure = "<X_Voxels>2</X_Voxels><Y_Voxels>1</Y_Voxels><Z_Voxels>1</Z_Voxels>"
+    material = "<Name>Muscle</Name><Mechanical><Elastic_Mod>1e5</Elastic_Mod><Density>1000</Density><CTE>0.01</CTE></Mechanical>"
+    thermal = ("<TempEnabled>1</TempEnabled><VaryTempEnabled>1</VaryTempEnabled><TempAmplitude>20</TempAmplitude>"
+               "<TempPeriod>1</TempPeriod>")
+    (tmp_path / "pair.vxa").write_text(
+        f"<VXA><Environment><Thermal>{thermal}</Thermal></Environment><VXC><Palette><Material>{material}</Material></Palette>"
+        f'<Structure Compression="ASCII_READABLE">{structure}<Data><Layer>11</Layer></Data></Structure></VXC></VXA>')
+    robot = mercurysim.load(tmp_path / "pair.vxa")
+    assert robot.name == "pair"
+    assert len(robot.masses) == 12
+    assert robot.origin["cells"] == [1, 1]
+    (tmp_path / "bad.vxa").write_text("<VXA/>")
+    with pytest.raises(mercurysim.InputError, match="bad.vxa: /VXA: has no element VXC"):
+        mercurysim.load(tmp_path / "bad.vxa")
