@@ -150,6 +150,7 @@ class FrameFiles {
   ~FrameFiles() {
     std::error_code ignored;
     std::filesystem::remove_all(unfinished_, ignored);
+    if (std::filesystem::is_empty(folder_, ignored)) std::filesystem::remove(folder_, ignored);
   }
   FrameFiles(const FrameFiles&) = delete;
   FrameFiles& operator=(const FrameFiles&) = delete;

@@ -94,6 +94,7 @@ TEST_F(ExportMotion, StoppedWorkLeavesNothingBehind) {
   for (const ExportFormat& format : export_formats()) {
     if (!holds_motion(format)) continue;
     RecordedMotion moves = motion();
+    if (format.folder_beside) std::filesystem::create_directories(format.folder_beside(path("run.pvd")));
     const ExportChoices choices{.watch = [](std::size_t done, std::size_t total) {
       if (done > total / 2) throw Stopped();
     }};
