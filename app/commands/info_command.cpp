@@ -182,7 +182,26 @@ void describe(const Repro& repro, const std::filesystem::path& file) {
   print_line("environment", environment_text(repro.configuration));
 }
 
-// Reads what the paths name and hands it on: take(robot, file), take(recording), take(repro, file), take(run).
+void describe(const SceneFile& scene) {
+  constexpr std::size_t shown = 20;
+  const Configuration configuration = configuration_of(scene);
+  const ViewSettings view = scene.view();
+  print_heading(scene.path().string());
+  print_line("robots", fmt::format("{} file{}", scene.robots().size(), scene.robots().size() == 1 ? "" : "s"));
+  for (std::size_t i = 0; i < std::min(shown, scene.robots().size()); ++i)
+    fmt::print("    {}\n", printable(scene.robots()[i]));
+  if (scene.robots().size() > shown) fmt::print("    and {} more\n", scene.robots().size() - shown);
+  for (const RandomRobots& random : scene.random())
+    print_line("random", fmt::format("{} of kind {}, seed {}, from robot {} on", random.count, random.kind, random.seed,
+                                     random.first));
+  print_line("solver", solver_text(configuration));
+  print_line("environment", environment_text(configuration));
+  print_line("camera", std::string(name_of(view.camera.mode)));
+  print_line("colour", std::string(view.color->key));
+}
+
+// Reads what the paths name and hands it on: take(robot, file), take(recording), take(repro, file), take(run),
+// take(scene).
 template <class Take>
 void for_each_subject(const RobotInputs& robots, const Take& take) {
   for (const std::filesystem::path& path : robots.paths()) {
@@ -192,6 +211,8 @@ void for_each_subject(const RobotInputs& robots, const Take& take) {
       take(load_repro(path), path);
     } else if (is_run_folder(path)) {
       take(RunHistory(path));
+    } else if (is_scene_name(path)) {
+      take(SceneFile(path));
     } else {
       for (const auto& [file, robot] : robots.load({path})) take(robot, file);
     }
@@ -205,6 +226,7 @@ class InfoDocument {
   void operator()(const TrajectoryReader& recording) { add("recordings", info_of(recording)); }
   void operator()(const Repro& repro, const std::filesystem::path& file) { add("repros", info_of(repro, file)); }
   void operator()(const RunHistory& run) { add("runs", info_of(run)); }
+  void operator()(const SceneFile& scene) { add("scenes", info_of(scene)); }
 
   void set_machine(const std::vector<Finding>& machine) { document_["machine"] = info_of(machine); }
   void print() const {
@@ -219,7 +241,8 @@ class InfoDocument {
                                    {"robots", nlohmann::ordered_json::array()},
                                    {"recordings", nlohmann::ordered_json::array()},
                                    {"repros", nlohmann::ordered_json::array()},
-                                   {"runs", nlohmann::ordered_json::array()}};
+                                   {"runs", nlohmann::ordered_json::array()},
+                                   {"scenes", nlohmann::ordered_json::array()}};
 };
 
 int info(const InfoOptions& options) {
@@ -241,9 +264,9 @@ void add_info_command(CLI::App& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command =
       program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
-  options->robots.add_to(
-      *command,
-      "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), runs of mercury evolve");
+  options->robots.add_to(*command,
+                         "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), scenes "
+                         "(.toml), runs of mercury evolve");
   command->add_flag("--json", options->json, "Print JSON instead of text");
   add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");

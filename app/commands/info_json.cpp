@@ -9,9 +9,11 @@
 #include "app/options/generator_options.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -218,6 +220,26 @@ Json info_of(const RunHistory& run) {
           {"devices", devices},
           {"best", run.living().empty() ? Json() : json_of(run, run.individuals()[run.living().front()])},
           {"files", files_in(run.folder())}};
+}
+
+Configuration configuration_of(const SceneFile& scene) {
+  std::vector<std::string> environments, notes;
+  for (const std::string& file : scene.robots()) environments.push_back(environment_of(load_robot(file)));
+  for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
+  return scene.configuration(environments, notes);
+}
+
+Json info_of(const SceneFile& scene) {
+  Json random = Json::array();
+  for (const RandomRobots& robots : scene.random())
+    random.push_back({{"kind", robots.kind}, {"count", robots.count}, {"seed", robots.seed}, {"first", robots.first}});
+  const ViewSettings view = scene.view();
+  return {{"file", scene.path().string()},
+          {"robots", scene.robots()},
+          {"random", random},
+          {"configuration", mercury::json_of(configuration_of(scene))},
+          {"color", view.color->key},
+          {"camera", name_of(view.camera.mode)}};
 }
 
 Json info_of(std::span<const Finding> machine) {

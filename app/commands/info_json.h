@@ -7,6 +7,7 @@
 #include <span>
 
 #include "app/commands/machine.h"
+#include "app/options/scene_file.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/robot.h"
@@ -19,6 +20,10 @@ nlohmann::ordered_json info_of(const Robot& robot, const std::filesystem::path& 
 nlohmann::ordered_json info_of(const TrajectoryReader& recording);
 nlohmann::ordered_json info_of(const Repro& repro, const std::filesystem::path& file);
 nlohmann::ordered_json info_of(const RunHistory& run);
+// Reads the robots' files for the environment that they are made for.
+nlohmann::ordered_json info_of(const SceneFile& scene);
+// The configuration of a scene's robots.
+Configuration configuration_of(const SceneFile& scene);
 nlohmann::ordered_json info_of(std::span<const Finding> machine);
 
 }  // namespace mercury

@@ -24,6 +24,7 @@
 #include "app/commands/help_page.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
+#include "app/options/scene_file.h"
 #include "evolution/distribution/launcher.h"
 #include "mercury/error.h"
 
@@ -141,8 +142,52 @@ class Program {
 
   int refuse(const std::string& message) const {
     const std::string helpful = command_ ? with_suggestion(message, *command_) : message;
-    print_message(config_ ? config_->located(helpful) : helpful);
+    print_message(located(config_ ? config_->located(helpful) : helpful));
     return status_bad_input;
+  }
+
+  // With the line of the scene if the error names an option that came from there.
+  std::string located(const std::string& error) const {
+    const std::string name = error.substr(0, error.find(':'));
+    const bool from_scene = std::ranges::any_of(
+        scene_options_, [&](const std::string& option) { return option.substr(0, option.find('=')) == name; });
+    return from_scene ? scene_->located(error) : error;
+  }
+
+  // Puts the robots and the options of a scene in its place among the robots of a command.
+  void expand_scene(const CLI::App& command, std::size_t words, std::vector<std::string>& arguments) {
+    // `info` describes the scene itself.
+    if (!command.get_option_no_throw("ROBOTS") || command.get_name() == "info") return;
+    const std::vector<std::size_t> places = scenes_in(command, words, arguments);
+    if (places.empty()) return;
+    if (places.size() > 1) throw InputError(arguments[places[1]], "is a second scene; give one");
+    scene_.emplace(arguments[places.front()]);
+    if (!scene_->random().empty() && !command.get_option_no_throw("--random"))
+      throw InputError(scene_->path().string(),
+                       fmt::format("has random robots, which {} does not take; give robot files", full_name(command)));
+    scene_options_ = scene_->arguments(command, arguments);
+    const auto place = arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(places.front()));
+    arguments.insert(place, scene_->robots().begin(), scene_->robots().end());
+    arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), scene_options_.begin(),
+                     scene_options_.end());
+  }
+
+  // Which arguments are scenes, and no values of options.
+  static std::vector<std::size_t> scenes_in(const CLI::App& command, std::size_t words,
+                                            const std::vector<std::string>& arguments) {
+    std::vector<std::size_t> places;
+    bool only_files = false;
+    for (std::size_t i = words; i < arguments.size(); ++i) {
+      const std::string& argument = arguments[i];
+      if (only_files || argument.size() < 2 || !argument.starts_with("-")) {
+        if (is_scene_name(argument)) places.push_back(i);
+        continue;
+      }
+      only_files = argument == "--";
+      const CLI::Option* option = command.get_option_no_throw(argument);
+      if (option && option->get_items_expected_max() > 0) ++i;
+    }
+    return places;
   }
 
   void parse(std::vector<std::string> given) {
@@ -153,6 +198,7 @@ class Program {
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
                        config_->arguments().end());
     }
+    expand_scene(*command, words, arguments);
     require_values(*command, arguments);
     try {
       app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -239,6 +285,8 @@ class Program {
   CommandBody body_;
   const CLI::App* command_ = nullptr;  // that the command line names
   std::optional<ConfigFile> config_;
+  std::optional<SceneFile> scene_;
+  std::vector<std::string> scene_options_;  // "--dt=0.002": those that the command took from the scene
   bool quiet_ = false, verbose_ = false;
   std::string config_path_;  // config_path_in() reads it earlier
   std::vector<std::string> words_of_help_;

@@ -70,7 +70,7 @@ std::string shown_text(const Shown& shown) {
   std::vector<std::string> words;
   for (const auto& [name, on] : items)
     if (on) words.push_back(name);
-  return fmt::format("{}", fmt::join(words, ","));
+  return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ","));
 }
 
 std::string cut_text(const render::CutPlane& cut) {
@@ -116,7 +116,8 @@ std::vector<Run> runs_of(const SceneDocument& document) {
   return runs;
 }
 
-// Numbers as they are, other values as quoted text.
+}  // namespace
+
 std::string toml_value(const std::string& text) {
   const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
   const bool decimal = text.find_first_not_of("0123456789.-") == std::string::npos && text.find('.') > 0 &&
@@ -134,8 +135,6 @@ std::string toml_value(const std::string& text) {
   }
   return quoted + "\"";
 }
-
-}  // namespace
 
 OptionValues options_of(const Configuration& configuration) {
   Options options;
@@ -159,10 +158,10 @@ OptionValues options_of(const ViewSettings& settings) {
   Shown shown;
   shown.legend = settings.color->has_values();
   shown.labels = shown.path = race;
-  const std::string text = shown_text(settings.shown);
-  if (!text.empty()) options.text("--show", text, shown_text(shown));
+  options.text("--show", shown_text(settings.shown), shown_text(shown));
   options.text("--caption", settings.caption, "");
   options.text("--theme", settings.theme == render::Theme::light ? "light" : "dark", "dark");
+  options.flag("--plain", settings.plain);
   options.flag("--smooth", settings.smooth);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
   options.text("--layout", race ? "race" : "grid", "grid");

@@ -28,6 +28,9 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
 // A word for the shell, in quotes if it needs them.
 std::string shell_quoted(const std::string& word);
 
+// A value of a TOML file: numbers as they are, all else as text in quotes.
+std::string toml_value(const std::string& text);
+
 // Options as the text of a file for --config, with a comment at its head.
 std::string toml_of(const OptionValues& options, const std::string& comment);
 

@@ -163,8 +163,9 @@ void LiveScene::set_hidden(RobotId robot, bool hidden) {
 std::vector<Work> LiveScene::work() const { return parts_->background.work(); }
 void LiveScene::cancel_work(std::uint64_t work) { parts_->background.cancel(work); }
 void LiveScene::wait_for_work() {
-  parts_->background.wait();
-  parts_->background.finish_done();
+  // A result may begin more work: that of a scene makes its random robots.
+  do parts_->background.wait();
+  while (parts_->background.finish_done());
 }
 void LiveScene::wait_until_done() {
   wait_for_work();

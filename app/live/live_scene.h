@@ -90,7 +90,8 @@ class LiveScene {
   std::vector<RobotId> add(std::vector<Robot> robots, bool unsaved = true);
   // Shows these robots alone, in this configuration (but on the same device), as one edit. They need no saving.
   void show(std::vector<Robot> robots, const Configuration& configuration, const std::string& edit);
-  // Opens robot files, folders of them, the robots of recordings, or one repro, in the background.
+  // Opens robot files, folders of them, the robots of recordings, or one repro or scene, in the background. A scene
+  // takes the place of the present one.
   void open(const std::vector<std::filesystem::path>& paths);
   // Makes random robots in the background. `replace`: they replace all robots.
   void generate(const RandomRobots& generation, bool replace = false);
@@ -152,6 +153,11 @@ class LiveScene {
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
   SaveResult save_all(const std::vector<RobotId>& robots, const std::filesystem::path& folder, RobotFormat format,
                       bool overwrite = false);
+  // Writes the scene as a file (docs/formats.md): robots, configuration and looks. Robots that no file or seed has are
+  // written beside it, into the folder NAME-robots.
+  SaveResult save_scene(const std::filesystem::path& path, bool overwrite = false);
+  // The camera of a scene that was opened since the last call.
+  std::optional<CameraPlan> take_camera();
   // Writes a robot's present pose for other programs; the file's extension says the format (app/export).
   SaveResult export_pose(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
   // The same for its motion from time 0 to `seconds`, which is simulated in the background. Returns once it has

@@ -10,6 +10,7 @@
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
+#include "mercury/origin.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -25,7 +26,8 @@ struct OpenedRobot {
 // What a task has read.
 struct Opened {
   std::vector<OpenedRobot> robots;
-  std::shared_ptr<const Repro> repro;  // replaces the whole scene
+  std::shared_ptr<const Repro> repro;      // replaces the whole scene
+  std::shared_ptr<const SceneFile> scene;  // the same
   fs::path repro_file;
 };
 
@@ -80,6 +82,14 @@ void read_import(const fs::path& file, Opened& opened, Messages& messages) {
                   import.settings.dt));
 }
 
+// That the robots of a scene are made for.
+std::vector<std::string> environments_of(const SceneFile& scene, const std::vector<OpenedRobot>& robots) {
+  std::vector<std::string> environments;
+  for (const OpenedRobot& robot : robots) environments.push_back(environment_of(robot.robot));
+  for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
+  return environments;
+}
+
 void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
   if (is_repro_name(file)) {
     if (!alone) throw InputError(file.string(), "is a repro, which has its own time; open it alone");
@@ -91,8 +101,23 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
     read_recording(file, opened, messages);
     return;
   }
-  if (file.extension() == ".toml")
-    throw InputError(file.string(), "holds options, not robots; give it to mercury view --config");
+  if (is_scene_name(file)) {
+    auto scene = std::make_shared<const SceneFile>(file);
+    if (!alone) throw InputError(file.string(), "is a scene, which takes the place of the present one; open it alone");
+    std::vector<OpenedRobot> robots;
+    for (const std::string& robot : scene->robots()) {
+      if (!import_format_of(robot)) {
+        robots.push_back({robot, load_robot(robot)});
+        continue;
+      }
+      for (Robot& imported : import_file(robot).robots) robots.push_back({"", std::move(imported)});
+    }
+    std::vector<std::string> notes;
+    (void)scene->configuration(environments_of(*scene, robots), notes);  // throws while nothing has changed yet
+    opened.robots = std::move(robots);
+    opened.scene = std::move(scene);
+    return;
+  }
   if (import_format_of(file)) return read_import(file, opened, messages);
   opened.robots.push_back({file.string(), load_robot(file)});
 }
@@ -130,16 +155,36 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
   Parts& parts = *parts_;
   const std::string name = paths.size() == 1 ? "opening " + paths.front().filename().string()
                                              : fmt::format("opening {} files", paths.size());
-  parts.background.begin(name, 0, [&parts, paths](WorkControl& control) -> Background::Finish {
+  parts.background.begin(name, 0, [this, &parts, paths](WorkControl& control) -> Background::Finish {
     auto opened = std::make_shared<Opened>(read_robots(files_of(paths, parts.messages), control, parts.messages));
-    return [&parts, opened] {
+    return [this, &parts, opened] {
       if (opened->repro) parts.replay(opened->repro, opened->repro_file);
+      if (opened->scene) {
+        parts.open_scene(*opened->scene, environments_of(*opened->scene, opened->robots));
+        for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
+        parts.apply_document();
+        for (const RandomRobots& random : opened->scene->random()) generate(random);
+        return;
+      }
       if (opened->robots.empty()) return;
       parts.edit("open " + robot_count_text(opened->robots.size()));
       for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
       parts.apply_document();
     };
   });
+}
+
+void LiveScene::Parts::open_scene(const SceneFile& scene, const std::vector<std::string>& environments) {
+  edit("open " + scene.path().filename().string());
+  document.robots.clear();
+  std::vector<std::string> notes;
+  const Device device = document.configuration.device;
+  document.configuration = scene.configuration(environments, notes);
+  document.configuration.device = device;
+  view = scene.view();
+  camera = view.camera;
+  physics.set_view(view);
+  for (std::string& note : notes) report(Severity::note, std::move(note));
 }
 
 void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const fs::path& file) {

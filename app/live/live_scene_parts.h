@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/live/live_scene.h"
+#include "app/options/scene_file.h"
 
 namespace mercury {
 
@@ -38,6 +39,7 @@ struct LiveScene::Parts {
   bool playing = false;
   std::uint64_t stops = 0;
   double speed = 1;
+  std::optional<CameraPlan> camera;  // of a scene that was opened
   std::optional<LivePerturbation> perturbation;
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
@@ -75,6 +77,8 @@ struct LiveScene::Parts {
   // Reports robots that break a rule and leaves them out.
   void remove_invalid(std::vector<Robot>& robots);
   std::vector<RobotId> append_valid(std::vector<Robot> robots, bool unsaved);
+  // Clears the scene and sets what else the file says. `environments`: those that its robots are made for.
+  void open_scene(const SceneFile& scene, const std::vector<std::string>& environments);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void place_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <utility>
 
 #include "app/base/csv.h"
 #include "app/live/live_scene_parts.h"
+#include "app/live/scene_text.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -58,6 +60,27 @@ SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::pat
     parts_->saved[saved_robots[i]->body.id] = {files[i].path.string(), saved_robots[i]->body};
   return result;
 }
+
+SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
+  Parts& parts = *parts_;
+  std::vector<SceneRobot> robots;
+  for (const DocumentRobot& robot : parts.document.robots)
+    robots.push_back({&robot, parts.is_saved(robot) ? parts.file_of(robot.body.id) : ""});
+  if (robots.empty()) return failed("there is no robot to save in a scene");
+  try {
+    const SceneFiles wanted = scene_files(path, robots, parts.document.configuration, parts.view);
+    const SaveResult result = save_files(wanted.files, overwrite);
+    for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
+      const LiveRobot& body = robots[wanted.beside[i]].robot->body;
+      parts.saved[body.id] = {wanted.files[i].path.string(), body};
+    }
+    return result;
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+std::optional<CameraPlan> LiveScene::take_camera() { return std::exchange(parts_->camera, std::nullopt); }
 
 CommandText LiveScene::command(const std::string& subcommand) const {
   SceneDocument document = parts_->document;

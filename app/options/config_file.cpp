@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
@@ -31,16 +32,6 @@ void collect_keys(CLI::App& command, std::vector<std::string>& keys) {
     for (const std::string& name : option->get_lnames())
       if (name != "config" && name != "help" && name != "version") keys.push_back(name);
   for (CLI::App* child : children_of(command)) collect_keys(*child, keys);
-}
-
-bool is_given(const CLI::Option& option, const std::vector<std::string>& given) {
-  return std::any_of(given.begin(), given.end(), [&](const std::string& argument) {
-    for (const std::string& name : option.get_lnames())
-      if (argument == "--" + name || argument.starts_with("--" + name + "=")) return true;
-    for (const std::string& name : option.get_snames())
-      if (argument.starts_with("-" + name) && !argument.starts_with("--")) return true;
-    return false;
-  });
 }
 
 // A scalar as written on the command line; empty for other nodes.
@@ -88,14 +79,19 @@ bool is_within(const CLI::App* command, const CLI::App& scope) {
   return false;
 }
 
-toml::table parse(const std::string& path) {
+toml::table parse(const std::string& path, ConfigFile::Content content) {
+  const std::string option = content == ConfigFile::Content::scene ? "" : "--config";
+  const auto refuse = [&](const std::string& what) {
+    if (option.empty()) throw InputError(path, what);
+    throw InputError(option, fmt::format("{} {}", path, what));
+  };
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   // Opening a pipe would wait for a writer.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    throw InputError("--config", path + " is not a file; give a TOML file");
+    refuse("is not a file; give a TOML file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError("--config", fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
+  if (!stream) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
   try {
     return toml::parse(stream, path);
   } catch (const toml::parse_error& failure) {
@@ -109,10 +105,77 @@ toml::table parse(const std::string& path) {
 
 }  // namespace
 
+bool is_given(const CLI::Option& option, const std::vector<std::string>& given) {
+  return std::any_of(given.begin(), given.end(), [&](const std::string& argument) {
+    for (const std::string& name : option.get_lnames())
+      if (argument == "--" + name || argument.starts_with("--" + name + "=")) return true;
+    for (const std::string& name : option.get_snames())
+      if (argument.starts_with("-" + name) && !argument.starts_with("--")) return true;
+    return false;
+  });
+}
+
 ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& command,
-                       const std::vector<std::string>& given)
-    : path_(path), command_(command), given_(given) {
-  take(parse(path), program);
+                       const std::vector<std::string>& given, Content content)
+    : path_(path), command_(command), given_(given), content_(content) {
+  toml::table table = parse(path, content);
+  if (content == Content::scene) take_scene(table);
+  take(table, program);
+}
+
+// Takes out what is not an option.
+template <class Table>
+void ConfigFile::take_scene(Table& table) {
+  const toml::node* const format = table.get("format");
+  if (!format || format->template value<std::string>() != "mercury-scene")
+    throw InputError(path_,
+                     "is not a scene: format = \"mercury-scene\" is missing; options alone are given by --config");
+  const toml::node* const version = table.get("version");
+  if (!version || version->template value<std::int64_t>() != 1)
+    throw InputError(version ? where(*version) : path_, "is not of version 1, which this program reads");
+  if (const toml::node* const robots = table.get("robots")) {
+    const toml::array* const list = robots->as_array();
+    if (!list) throw InputError(where(*robots), "robots must be a list of files, as in [\"eel.json\"]");
+    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+    for (const toml::node& file : *list) {
+      const auto name = file.value<std::string>();
+      if (!name || name->empty() || name->find('\0') != std::string::npos)
+        throw InputError(where(file), "robots must be a list of files, each a text that is not empty");
+      const std::string relative = (folder / *name).string();
+      robots_.push_back(relative.starts_with("-") ? "./" + relative : relative);
+    }
+  }
+  if (const toml::node* const camera = table.get("camera")) {
+    const auto file = camera->template value<std::string>();
+    if (const toml::table* const members = camera->as_table()) take_camera(*members);
+    // A camera file stands beside the scene, as robots do.
+    if (file && file->ends_with(".json"))
+      take_camera_option((std::filesystem::path(path_).parent_path() / *file).string(), *camera);
+    if (camera->is_table() || (file && file->ends_with(".json"))) table.erase("camera");
+  }
+  for (const char* own : {"format", "version", "robots"}) table.erase(own);
+}
+
+// As the text of a camera file, which --camera takes too.
+template <class Table>
+void ConfigFile::take_camera(const Table& camera) {
+  const std::vector<std::string> known{"mode",          "robot",  "azimuth", "elevation", "zoom",
+                                       "field_of_view", "period", "target",  "distance"};
+  for (const auto& [key, value] : camera)
+    if (std::ranges::find(known, key.str()) == known.end())
+      throw InputError(where(value), fmt::format("\"{}\" is not a key of [camera]{}", key.str(),
+                                                 suggestion(std::string(key.str()), known)));
+  std::ostringstream text;
+  text << toml::json_formatter{camera};
+  std::string json = text.str();
+  std::ranges::replace(json, '\n', ' ');
+  take_camera_option(json, camera);
+}
+
+template <class Node>
+void ConfigFile::take_camera_option(const std::string& value, const Node& node) {
+  arguments_.push_back("--camera=" + value);
+  lines_["--camera"] = static_cast<unsigned>(node.source().begin.line);
 }
 
 // Tables come after the keys above them, which they override.
@@ -129,6 +192,8 @@ void ConfigFile::take(const Table& table, CLI::App& scope) {
       std::vector<std::string> names;
       for (const CLI::App* one : children)
         if (!one->get_group().empty()) names.push_back(one->get_name());
+      if (content_ == Content::scene)
+        throw InputError(where(value), fmt::format("[{}] is not a table of a scene; it has [camera]", key.str()));
       throw InputError(where(value), fmt::format("[{}] is not a command of {}{}", key.str(), full_name(scope),
                                                  suggestion(std::string(key.str()), names)));
     }
@@ -140,6 +205,10 @@ template <class Node>
 void ConfigFile::take_key(const std::string& key, const Node& value, CLI::App& scope) {
   std::vector<std::string> known;
   collect_keys(scope, known);
+  if (content_ == Content::scene) known.insert(known.end(), {"format", "version", "robots", "camera"});
+  if (std::ranges::find(known, key) == known.end() && content_ == Content::scene)
+    throw InputError(where(value),
+                     fmt::format("\"{}\" is not a key of a scene{}; see docs/formats.md", key, suggestion(key, known)));
   if (std::ranges::find(known, key) == known.end())
     throw InputError(where(value),
                      fmt::format("\"{}\" is not an option of {}{}; see {} --help", key, full_name(scope),
@@ -150,6 +219,8 @@ void ConfigFile::take_key(const std::string& key, const Node& value, CLI::App& s
   const std::string name = "--" + key;
   try {
     const std::vector<std::string> taken = arguments_of(*option, name, value);
+    if (content_ == Content::scene && std::ranges::find(taken, name + "=") != taken.end())
+      throw std::invalid_argument("is empty; leave the key out");
     std::erase_if(arguments_, [&](const std::string& old) { return old == name || old.starts_with(name + "="); });
     arguments_.insert(arguments_.end(), taken.begin(), taken.end());
     lines_[name] = static_cast<unsigned>(value.source().begin.line);

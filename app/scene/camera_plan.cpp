@@ -71,6 +71,7 @@ class Reader {
     return Eigen::Vector3f(number((*value)[0], key), number((*value)[1], key), number((*value)[2], key));
   }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    if (path_.empty()) throw ParameterError("camera", fmt::format("/{} {}", key, what));
     throw InputError(path_, fmt::format("/{} {}", key, what));
   }
 
@@ -87,7 +88,34 @@ std::string_view name_of(CameraMode mode) {
   return {};
 }
 
+namespace {
+
+CameraPlan plan_from(const Reader& read) {
+  CameraPlan plan;
+  if (const auto name = read.text("mode")) {
+    const auto mode = mode_named(*name);
+    if (!mode) read.fail("mode", "must be one of " + mode_names());
+    plan.mode = *mode;
+  }
+  plan.robot = read.text("robot").value_or("");
+  plan.azimuth = read.number("azimuth");
+  plan.elevation = read.number("elevation");
+  plan.zoom = read.positive("zoom").value_or(plan.zoom);
+  plan.field_of_view = read.positive("field_of_view").value_or(plan.field_of_view);
+  plan.period = read.positive("period").value_or(static_cast<float>(plan.period));
+  plan.target = read.vector("target");
+  plan.distance = read.positive("distance");
+  return plan;
+}
+
+}  // namespace
+
 CameraPlan camera_named(const std::string& text) {
+  if (text.starts_with("{")) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) throw ParameterError("camera", "is not valid JSON");
+    return plan_from(Reader("", json));
+  }
   if (text.ends_with(".json")) return load_camera(text);
   const std::size_t colon = text.find(':');
   const auto mode = mode_named(text.substr(0, colon));
@@ -105,21 +133,7 @@ CameraPlan load_camera(const std::filesystem::path& path) {
     throw InputError(path.string(), "is not a camera file; its \"format\" must be \"mercury-camera\"");
   const Reader read(path.string(), json);
   if (json.value("version", Json()) != 1) read.fail("version", "must be 1");
-  CameraPlan plan;
-  if (const auto name = read.text("mode")) {
-    const auto mode = mode_named(*name);
-    if (!mode) read.fail("mode", "must be one of " + mode_names());
-    plan.mode = *mode;
-  }
-  plan.robot = read.text("robot").value_or("");
-  plan.azimuth = read.number("azimuth");
-  plan.elevation = read.number("elevation");
-  plan.zoom = read.positive("zoom").value_or(plan.zoom);
-  plan.field_of_view = read.positive("field_of_view").value_or(plan.field_of_view);
-  plan.period = read.positive("period").value_or(static_cast<float>(plan.period));
-  plan.target = read.vector("target");
-  plan.distance = read.positive("distance");
-  return plan;
+  return plan_from(read);
 }
 
 void save_camera(const std::filesystem::path& path, const CameraPlan& plan) {

@@ -36,7 +36,8 @@ struct CameraPlan {
 // "group", "follow", "turntable", "top", "still".
 std::string_view name_of(CameraMode mode);
 
-// "turntable", "follow:eel", or the name of a camera file (*.json). Throws ParameterError("camera", ...).
+// "turntable", "follow:eel", the name of a camera file (*.json), or its members as text, {"mode": "still", ...}. Throws
+// ParameterError("camera", ...).
 CameraPlan camera_named(const std::string& text);
 
 // A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1],

@@ -85,6 +85,7 @@ void set_race(ViewSettings& settings) {
 
 Shown shown_from(const std::string& text) {
   Shown shown{.skin = false, .clock = false};
+  if (text == "nothing") return shown;
   const std::vector<std::pair<std::string_view, bool*>> items{{"skin", &shown.skin},
                                                               {"springs", &shown.springs},
                                                               {"masses", &shown.masses},

@@ -8,6 +8,9 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/base/interrupt.h"
 #include "app/live/live_run.h"
@@ -76,6 +79,7 @@ class Viewer {
   void draw_frame(const std::vector<InputEvent>& events, double dt);
   bool skips_picture() const;
   void update_renderer();
+  std::optional<std::size_t> followed(const CameraPlan& plan) const;
   void draw_picture(double dt);
   void present();
   void update_screenshot();
@@ -216,6 +220,7 @@ void Viewer::frame(double dt) {
   const auto scene_begin = Clock::now();
   scene_.frame(area_.aspect());
   run_.frame();
+  if (scene_.take_camera()) camera_placed_ = false;
   for (const Message& message : scene_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
   for (const Message& message : run_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
   times_.scene = since(scene_begin);
@@ -256,6 +261,14 @@ bool Viewer::skips_picture() const {
   return window_.input().has_backlog() && since(shown_at_) < skip_factor * draw_seconds_;
 }
 
+// The index of the robot that a plan names, by name or number; none = the group, or no such robot.
+std::optional<std::size_t> Viewer::followed(const CameraPlan& plan) const {
+  const std::vector<RobotEntry> entries = scene_.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (!plan.robot.empty() && (entries[i].name == plan.robot || std::to_string(i) == plan.robot)) return i;
+  return std::nullopt;
+}
+
 // Hands changed robots, quality and size to the renderer.
 void Viewer::update_renderer() {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
@@ -272,10 +285,10 @@ void Viewer::update_renderer() {
     redraws_ = 3;
   }
   if (!camera_placed_ && !live.bounds().empty()) {
-    camera_.set_orbit(
-        direction_of(scene_.view().camera, std::holds_alternative<Land>(scene_.configuration().environment)));
+    const CameraPlan& plan = scene_.view().camera;
+    camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
     camera_.start(live.bounds(), area_.aspect());
-    camera_.set_mode(scene_.view().camera.mode);
+    camera_.begin(plan, followed(plan));
     camera_placed_ = true;
   }
 }

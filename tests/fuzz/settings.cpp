@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration files, camera files, and what the window remembers.
+// Configuration files, camera files, scenes, and what the window remembers.
 #include <filesystem>
 
+#include "app/live/scene_text.h"
 #include "app/live/session_settings.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
+#include "app/options/scene_file.h"
 #include "app/options/simulation_options.h"
 #include "app/scene/camera_plan.h"
 #include "mercury/error.h"
@@ -79,6 +81,46 @@ void check_session(std::string_view input) {
   save_session_settings(second, load_session_settings(first, messages), messages);
   for (const Message& message : messages.take()) fail("what was written is not read: " + message.text);
   require(content_of(first) == content_of(second), "the settings do not read back as they were written");
+}
+
+namespace {
+
+// What a scene says, as the window writes it for this one robot.
+std::string written_scene(const std::string& path, const SceneFile& scene) {
+  Robot robot;
+  robot.name = "point";
+  robot.masses = {{0, 0, 0}};
+  DocumentRobot document{.body = {.id = 1, .name = "point"}, .source = {.file = "point.json"}};
+  document.body.robot = std::make_shared<const Robot>(robot);
+  std::vector<std::string> notes;
+  const std::vector<SceneRobot> robots{{&document, "point.json"}};
+  return scene_files(path, robots, scene.configuration({}, notes), scene.view()).files.back().content;
+}
+
+}  // namespace
+
+void check_scene(std::string_view input) {
+  const std::string path = scratch_file(input, "input.toml"), first = scratch_folder() + "/first.toml";
+  const SceneFile scene(path);
+  std::string written;
+  try {
+    written = written_scene(first, scene);
+  } catch (const InputError&) {
+    return;  // a text that is no UTF-8
+  }
+  scratch_file(written, "first.toml");
+  require(written_scene(first, SceneFile(scratch_folder() + "/first.toml")) == written,
+          "the scene does not read back as it was written");
+}
+
+std::vector<std::string> scene_seeds() {
+  return {
+      "format = \"mercury-scene\"\nversion = 1\nrobots = [\"eel.json\", \"a/b.cbor\"]\n"
+      "random = [\"voxel:12:7\", \"shell:2\"]\nenvironment = \"land\"\nfriction = 0.5\nsolver = \"xpbd\"\n"
+      "dt = 0.002\ncolor = \"strain\"\nshow = \"skin,labels\"\nlayout = \"race\"\n",
+      "format = \"mercury-scene\"\nversion = 1\nrobots = []\ncut = \"y:0.2\"\nscale = \"-1,1\"\nplain = true\n\n"
+      "[camera]\nmode = \"still\"\nazimuth = -1.3\nelevation = 0.2\ntarget = [0, 0.5, 1.0]\ndistance = 3\n",
+      "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\ncamera = \"follow:eel\"\n"};
 }
 
 std::vector<std::string> session_seeds() {

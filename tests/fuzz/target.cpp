@@ -57,7 +57,8 @@ std::span<const Target> targets() {
                                   Target{"vxa", "vxa", vxa_seeds, check_vxa},
                                   Target{"vxd", "vxa", vxd_seeds, check_vxd},
                                   Target{"rsc", "vxa", rsc_seeds, check_rsc},
-                                  Target{"evogym", "robot", evogym_seeds, check_evogym}};
+                                  Target{"evogym", "robot", evogym_seeds, check_evogym},
+                                  Target{"scene", "toml", scene_seeds, check_scene}};
   return all;
 }
 

@@ -53,6 +53,7 @@ void check_vxa(std::string_view input);
 void check_vxd(std::string_view input);
 void check_rsc(std::string_view input);
 void check_evogym(std::string_view input);
+void check_scene(std::string_view input);
 
 std::vector<std::string> robot_json_seeds();
 std::vector<std::string> robot_cbor_seeds();
@@ -68,5 +69,6 @@ std::vector<std::string> vxa_seeds();
 std::vector<std::string> vxd_seeds();
 std::vector<std::string> rsc_seeds();
 std::vector<std::string> evogym_seeds();
+std::vector<std::string> scene_seeds();
 
 }  // namespace mercury::fuzz

@@ -9,6 +9,7 @@
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/panels/saving.h"
+#include "app/window/panels/scene_commands.h"
 
 namespace mercury::window {
 namespace {
@@ -96,14 +97,16 @@ void end_evolution(PanelContext& context, std::function<void()> quit) {
 
 void open_robots(PanelContext& context) {
   context.dialogs.ask_files({.kind = FileRequest::Kind::open,
-                             .title = "Open robots",
+                             .title = "Open robots or a scene",
                              .button = "Open",
                              .extensions = {".json", ".cbor", ".repro", ".h5", ".toml"},
                              .folder = context.preferences.open_folder,
                              .name = "",
                              .formats = {}},
                             [&context](const FileChoice& answer) {
-                              context.preferences.open_folder = answer.paths.front().parent_path().string();
+                              const fs::path& first = answer.paths.front();
+                              context.preferences.open_folder = first.parent_path().string();
+                              if (first.extension() == ".toml") context.preferences.scene = first.string();
                               open_paths(context, answer.paths);
                             });
 }
@@ -120,6 +123,32 @@ void save_robots(PanelContext& context) {
   }
   for (const RobotEntry& entry : context.scene.entries())
     if (entry.id == robots.front()) save_one(context, entry);
+}
+
+void save_scene(PanelContext& context) {
+  if (context.scene.entries().empty()) {
+    context.toasts.show(Tone::info, "there are no robots to save in a scene");
+    return;
+  }
+  const fs::path last = context.preferences.scene;
+  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
+                             .title = "Save the scene",
+                             .button = "Save",
+                             .extensions = {".toml"},
+                             .folder = last.empty() ? fs::path(context.preferences.save_folder) : last.parent_path(),
+                             .name = last.empty() ? "scene.toml" : last.filename().string(),
+                             .formats = {}},
+                            [&context](const FileChoice& answer) {
+                              const fs::path path = answer.paths.front();
+                              context.preferences.save_folder = path.parent_path().string();
+                              context.preferences.scene = path.string();
+                              save_with_confirmation(context, "scene", [&context, path](bool overwrite) {
+                                SaveResult result;
+                                with_window_camera(context,
+                                                   [&] { result = context.scene.save_scene(path, overwrite); });
+                                return result;
+                              });
+                            });
 }
 
 void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens and saves robots through the file dialog.
+// Opens and saves robots and scenes through the file dialog.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,8 @@ namespace mercury::window {
 
 // Asks for files and opens them.
 void open_robots(PanelContext& context);
+// Asks where to save the scene: robots, environment, solver, camera and looks.
+void save_scene(PanelContext& context);
 // Asks where to save the selected robots, or all robots if none is selected.
 void save_robots(PanelContext& context);
 // Calls `quit`, after asking the user if changes to robots would be lost.

@@ -41,7 +41,9 @@ void Panels::draw_file_menu() {
     const LiveScene& scene = context_.scene;
     menu_item("Open...", Action::open);
     if (ImGui::MenuItem("Open a run...")) choose_run(context_);
-    menu_item(scene.selection().empty() ? "Save all..." : "Save selected...", Action::save, !scene.entries().empty());
+    menu_item("Save the scene...", Action::save_scene, !scene.entries().empty());
+    menu_item(scene.selection().empty() ? "Save all robots..." : "Save selected robots...", Action::save,
+              !scene.entries().empty());
     const bool robots = !scene.entries().empty();
     if (ImGui::MenuItem("Export the pose...", nullptr, false, robots)) export_pose(context_);
     context_.log.item("menu.export_pose");

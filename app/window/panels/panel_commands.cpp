@@ -33,6 +33,7 @@ void Panels::execute(const Command& command) {
     case Action::undo:
     case Action::redo:
     case Action::open:
+    case Action::save_scene:
     case Action::save:
       change_robots(command.action);
       break;
@@ -94,6 +95,7 @@ void Panels::change_robots(Action action) {
   if (action == Action::evolve) evolve_selected(context_);
   if (action == Action::select_all) scene.select_all();
   if (action == Action::open) open_robots(context_);
+  if (action == Action::save_scene) save_scene(context_);
   if (action == Action::save) save_robots(context_);
   if (action == Action::undo) {
     if (scene.can_undo()) context_.toasts.show(Tone::info, "undone: " + scene.undo_name());

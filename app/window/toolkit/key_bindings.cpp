@@ -32,8 +32,9 @@ constexpr KeyBinding table[] = {
     {Action::deselect, "Esc", "close a dialog, or clear the selection", "Robots", 0, GLFW_KEY_ESCAPE, false, false},
     {Action::undo, "Ctrl Z", "undo", "Robots", U'z', 0, true, true},
     {Action::redo, "Ctrl Y", "redo", "Robots", U'y', 0, true, true},
-    {Action::open, "Ctrl O", "open robots", "Robots", U'o', 0, true, false},
-    {Action::save, "Ctrl S", "save robots", "Robots", U's', 0, true, false},
+    {Action::open, "Ctrl O", "open robots or a scene", "Robots", U'o', 0, true, false},
+    {Action::save_scene, "Ctrl S", "save the scene", "Robots", U's', 0, true, false},
+    {Action::save, "Ctrl Shift S", "save robots", "Robots", U's', 0, true, false},
 
     {Action::drag_arrows, "D", "drag arrows", "Picture", U'd', 0, false, false},
     {Action::color, "1 - 9", "colour by a quantity, numbered as in the View panel", "Picture", U'1', 0, false, false},
@@ -80,6 +81,7 @@ std::optional<Command> command_of(const KeyPress& press) {
     if ((!typed && !pressed) || binding.control != press.control) continue;
     if (press.repeated && !binding.repeats) return std::nullopt;
     if (binding.action == Action::undo && press.shift) return Command{Action::redo};
+    if (binding.action == Action::save_scene && press.shift) return Command{Action::save};
     return Command{binding.action};
   }
   return std::nullopt;

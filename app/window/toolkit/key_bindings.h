@@ -32,7 +32,8 @@ enum class Action {
   undo,
   redo,
   open,
-  save,
+  save_scene,
+  save,  // robots
   drag_arrows,
   color,  // with a number: the position of the colour quantity
   springs,

@@ -19,6 +19,7 @@ struct Preferences {
   render::Quality quality = render::Quality::automatic;
   std::string folder;                    // last shown in the browser
   std::string open_folder, save_folder;  // last used in the file dialogs
+  std::string scene;                     // file that was opened or saved last; not kept for the next start
   bool pause_on_explosion = false;
 };
 

@@ -73,6 +73,14 @@ void OrbitController::start(std::span<const render::Bounds> robots, float aspect
   glide_ = 0;
 }
 
+void OrbitController::begin(const CameraPlan& plan, std::optional<std::size_t> robot) {
+  turn_period = static_cast<float>(plan.period);
+  if (plan.target) orbit_.target = *plan.target;
+  if (plan.distance) orbit_.distance = *plan.distance;
+  robot_ = robot;
+  set_mode(plan.mode);
+}
+
 CameraPlan OrbitController::plan() const {
   CameraPlan plan{.mode = mode_, .field_of_view = field_of_view, .period = static_cast<double>(turn_period)};
   if (mode_ == CameraMode::follow && robot_) plan.robot = std::to_string(*robot_);

@@ -33,6 +33,9 @@ class OrbitController {
   // The same without a glide.
   void start(std::span<const render::Bounds> robots, float aspect);
 
+  // Begins as a plan says, `robot` being the one that it follows. Call start() before.
+  void begin(const CameraPlan& plan, std::optional<std::size_t> robot);
+
   // Advances the camera by `dt` seconds and returns it. Call once per picture. `robots`: one box per robot, which may
   // be empty.
   render::Camera at(std::span<const render::Bounds> robots, float aspect, double dt);

@@ -39,6 +39,16 @@ TEST_F(InfoCommand, ListsNamedActuators) {
               HasSubstr("chain: 4 masses, 3 springs, 0 faces, 2 actuators"));
 }
 
+TEST_F(InfoCommand, CountsMusclesThatMoveByHalfWaves) {
+  write("chain.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0],[1,0,0],[2,0,0]],"faces":[],
+    "springs":[[0,1,1],[1,2,2]],"materials":[{"stiffness":0},{"stiffness":50,"amplitude":0.1,"half_wave":true},
+    {"stiffness":50,"amplitude":0.1}]})");
+  EXPECT_THAT(mercury({"info", path("chain.json")}).output, HasSubstr("2 muscles, 1 by half waves"));
+  const auto document = nlohmann::json::parse(mercury({"info", "--json", path("chain.json")}).output);
+  EXPECT_EQ(document["robots"][0]["materials"][0]["half_wave"], true);
+  EXPECT_EQ(document["robots"][0]["materials"][1]["half_wave"], false);
+}
+
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
   const Outcome outcome = mercury({"info"});
   EXPECT_EQ(outcome.status, 0);

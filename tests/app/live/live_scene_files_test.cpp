@@ -121,7 +121,7 @@ TEST_F(LiveFiles, DroppedFilesAreOpenedOrReported) {
   ASSERT_THAT(messages, SizeIs(4));
   EXPECT_THAT(messages[0].text, HasSubstr("empty: the folder holds no robot"));
   EXPECT_THAT(messages[1].text, HasSubstr("picture.png"));
-  EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: holds options, not robots; give it to mercury view --config"));
+  EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: is not a scene: format = \"mercury-scene\" is missing"));
   EXPECT_THAT(messages[3].text, HasSubstr("cut.cbor"));
   scene.undo();
   scene.wait_until_done();

@@ -18,7 +18,7 @@ class FilesTest(WindowCase):
         window.frame(lambda frame: frame["selected"] == 1)
         for expected in ("saved", "asks"):  # the second time, the file exists
             since = window.mark()
-            window.key("ctrl+s")
+            window.key("ctrl+shift+s")
             window.dialog(str(self.folder / "new.json"))
             window.wait(expected, since)
         window.until("the question alone", lambda: "files.place" not in window.items)  # both dialogs have a dialog.cancel
@@ -39,7 +39,7 @@ class FilesTest(WindowCase):
 
     def test_all_robots_are_saved_as_cbor(self):
         window = self.small("--paused")
-        window.key("ctrl+s")
+        window.key("ctrl+shift+s")
         window.click("files.format")
         window.choose_next("files.format")
         since = window.mark()
@@ -71,6 +71,60 @@ class FilesTest(WindowCase):
         window.wait("message", since, lambda event: "exported " in event["text"])
         self.assertTrue((self.folder / "eel.usda").read_text().startswith("#usda 1.0"))
         self.finish(window)
+
+    def test_a_scene_is_saved_and_comes_back(self):
+        window = self.small("--paused", "--fresh", "--environment", "land", "--solver", "xpbd", "--color", "strain")
+        window.key("b")  # light
+        window.key("ctrl+a", "m")  # two children, which no file has
+        window.wait("robots", 0, lambda event: event["count"] == 4)
+        window.key("t", "t")  # the turntable moves the camera from where it began
+        shown = window.frame(lambda frame: frame["theme"] == "light" and frame["camera"] == "still")
+        scene = self.folder / "scene.toml"
+        for expected in ("saved", "asks"):  # the second time, the file exists
+            since = window.mark()
+            window.key("ctrl+s")
+            window.dialog(str(scene) if expected == "saved" else "")
+            window.wait(expected, since)
+        since = window.mark()
+        window.click("dialog.accept")
+        files = window.wait("saved", since)["files"]
+        names = window.wait("robots", 0, lambda event: event["count"] == 4)["names"]
+        self.assertEqual(len(files), 1, "the children have files now")
+        self.assertEqual(len(list((self.folder / "scene-robots").iterdir())), 2)
+        shown = window.frame()
+        self.finish(window)
+
+        again = self.window_in(self.folder, str(scene), "--paused", "--fresh")
+        robots = again.wait("robots", 0, lambda event: event["count"] == 4)
+        self.assertEqual(robots["names"], names)
+
+        def is_as_saved(frame):
+            return (all(frame[key] == shown[key] for key in ("camera", "theme", "color"))
+                    and abs(frame["azimuth"] - shown["azimuth"]) < 1e-5
+                    and abs(frame["distance"] - shown["distance"]) < 1e-4)
+
+        self.assertEqual((shown["theme"], shown["color"]), ("light", "strain"))
+        again.frame(is_as_saved)
+        self.finish(again)
+
+        # Opened in a window that shows something else, it takes its place.
+        other = self.small("--paused", "--fresh")
+        since = other.mark()
+        other.drop(scene)
+        other.wait("robots", since, lambda event: event["count"] == 4)
+        other.frame(is_as_saved)
+        self.finish(other)
+
+        for arguments in (["info", scene, "--json"], ["run", scene, "--seconds", "0.01", "--json"],
+                          ["render", scene, "--seconds", "0.1", "--size", "160x120", "-o", str(self.folder / "frames/")]):
+            result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            if "--json" not in arguments:
+                continue
+            document = json.loads(result.stdout)
+            configuration = document.get("configuration") or document["scenes"][0]["configuration"]
+            self.assertEqual((configuration["environment"], configuration["solver"]), ("land", "xpbd"))
+        self.assertGreater(len(list((self.folder / "frames").iterdir())), 1)
 
     def test_an_invalid_robot_file_shows_an_error(self):
         window = self.small("--paused")

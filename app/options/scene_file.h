@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as a file (docs/formats.md): robots, environment, solver, camera and looks.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/scene/view_settings.h"
+#include "mercury/configuration.h"
+#include "mercury/generator.h"
+
+namespace mercury {
+
+// Whether the name is that of a scene: *.toml, in small letters or capitals, other than run.toml of a run.
+bool is_scene_name(const std::filesystem::path& path);
+
+class SceneFile {
+ public:
+  // Reads and checks the whole file, except for the robots' own files. Throws InputError with the line and the key:
+  // "scene.toml:7: --dt: -1 is not accepted; ...".
+  explicit SceneFile(const std::filesystem::path& path);
+  ~SceneFile();
+  SceneFile(SceneFile&&) noexcept;
+  SceneFile& operator=(SceneFile&&) noexcept;
+
+  const std::filesystem::path& path() const;
+  // Robot files, as paths from the working folder, and random robots, which follow them.
+  const std::vector<std::string>& robots() const;
+  std::vector<RandomRobots> random() const;
+  // Without `environment` in the file, the robots choose: `environments` are those that they are made for. Appends to
+  // `notes` what the user should know about that. The device is the default one.
+  Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
+  ViewSettings view() const;
+
+  // What the file says as options of a command ("--dt=0.002"): those that the command has, and that are not on its
+  // command line `given`. If that names another environment, the file's parameters of its own are left out.
+  std::vector<std::string> arguments(const CLI::App& command, const std::vector<std::string>& given) const;
+  // The error's text, preceded by file and line if it begins with the name of an option that came from the file.
+  std::string located(const std::string& error) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace mercury
