@@ -10,6 +10,7 @@
 #include "app/recording/configuration_json.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/generator.h"
+#include "mercury/import.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
@@ -224,7 +225,13 @@ Json info_of(const RunHistory& run) {
 
 Configuration configuration_of(const SceneFile& scene) {
   std::vector<std::string> environments, notes;
-  for (const std::string& file : scene.robots()) environments.push_back(environment_of(load_robot(file)));
+  for (const std::string& file : scene.robots()) {
+    if (!import_format_of(file)) {
+      environments.push_back(environment_of(load_robot(file)));
+      continue;
+    }
+    for (const Robot& robot : import_file(file).robots) environments.push_back(environment_of(robot));
+  }
   for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
   return scene.configuration(environments, notes);
 }
