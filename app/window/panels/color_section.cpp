@@ -21,13 +21,13 @@ void color(ViewSettings& view, const ColorQuantity& quantity) {
   view.shown.legend = quantity.has_values();
 }
 
-bool draw_scale(ViewSettings& view, const render::Scale& shown, EventLog& log) {
+bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log) {
   bool changed = false;
   bool fixed = view.scale.has_value();
   const bool clicked = ImGui::Checkbox("Fixed scale", &fixed);
   log.item("color.fixed");
   if (clicked) {
-    view.scale = fixed ? std::optional(std::pair(shown.low, shown.high)) : std::nullopt;
+    view.scale = fixed ? std::optional(shown) : std::nullopt;
     changed = true;
   }
   tooltip("on: the scale stays as it is now; off: it grows with the values seen so far");
@@ -45,7 +45,8 @@ bool draw_scale(ViewSettings& view, const render::Scale& shown, EventLog& log) {
 
 }  // namespace
 
-bool draw_color_section(ViewSettings& view, const render::Scale& shown, const Environment& environment, EventLog& log) {
+bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const Environment& environment,
+                        EventLog& log) {
   heading("Colour by");
   bool changed = false;
   constexpr int columns = 3;

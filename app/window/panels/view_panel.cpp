@@ -175,7 +175,8 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view) {
 void ViewPanel::draw(PanelContext& context) {
   ViewSettings view = context.scene.view();
   const Environment& environment = context.scene.configuration().environment;
-  bool changed = draw_color_section(view, context.scene.picture().scene().scale, environment, context.log);
+  const auto& scale = context.scene.picture().scene().scale;
+  bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.log);
   changed |= draw_show_section(view, context.log);
   changed |= draw_arrow_section(view, environment, context.log);
   draw_camera_section(context.camera, context.log);
