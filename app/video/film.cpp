@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <deque>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,6 +54,14 @@ void show_bodies(DrawingThread::Canvas& canvas, const std::shared_ptr<GroupDrawi
   if (canvas.owner == drawing) return;
   drawing->set_bodies(canvas.offscreen.renderer);
   canvas.owner = drawing;
+}
+
+// Its context is gone, so its destructor must not call OpenGL.
+void leave_to_the_driver(render::Readback readback) {
+  static std::mutex mutex;
+  static auto& left = *new std::deque<render::Readback>;  // never destroyed
+  const std::lock_guard lock(mutex);
+  left.push_back(std::move(readback));
 }
 
 VideoSettings video_settings(const std::string& output, const FilmOptions& options) {
@@ -167,7 +176,7 @@ struct Film::Parts {
           })
           .wait();
     } catch (const DeviceError&) {
-      if (readback) (void)new render::Readback(std::move(*readback));  // its context is gone
+      if (readback) leave_to_the_driver(std::move(*readback));
       readback.reset();
     }
     encoder.reset();

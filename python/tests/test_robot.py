@@ -169,7 +169,7 @@ def nan(array, value=np.nan):
         ({"faces": [[0, 1, 1]]}, InputError, "^/faces/0: a face needs three different masses$"),
         ({"materials": []}, InputError, "^/materials: a table needs at least row 0, which stands for air$"),
         ({"materials": np.zeros((257, 4))}, InputError, "^/materials: 257 materials, at most 256 are accepted$"),
-        ({"materials": np.zeros((22, 3))}, InputError, r"^materials: must have the shape \(n, 4\), not \(22, 3\)$"),
+        ({"materials": np.zeros((22, 3))}, InputError, r"^materials: must have the shape \(n, 4\) or \(n, 5\), not \(22, 3\)$"),
         ({"materials": nan(np.zeros((22, 4)))}, InputError, "^/materials/21: "),
         ({"name": 5}, TypeError, "^name: must be a text, not int$"),
         ({"name": "\ud800"}, InputError, "^name: is not valid Unicode$"),
