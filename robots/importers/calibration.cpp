@@ -100,4 +100,13 @@ Calibration calibrate(const BeamModel& model, std::optional<double> time_scale) 
   return found;
 }
 
+double slowest_drag_speed(double stiffness, double drag_coefficient) {
+  constexpr double water = 1000;  // [kg/m3]
+  const double largest_force = 16 * stiffness * std::sqrt(3.0) * calibrated_edge;
+  const double unit = std::exp2(std::ceil(std::log2(largest_force)) - 22);
+  const double area = calibrated_edge * calibrated_edge / 2;
+  // On a corner: density area C_D speed^2 / 2 / 3.
+  return std::sqrt(unit / 2 * 6 / (water * area * drag_coefficient));
+}
+
 }  // namespace mercury

@@ -62,4 +62,9 @@ double combined_modulus(double a, double b);
 // surface, 22/13 for one voxel. `thickness` = voxels across, 0 = without a surface.
 double slice_stiffness(int thickness);
 
+// A side of a voxel that moves more slowly than this feels no drag in Mercury's `ocean` [m/s]. Forces on a mass are
+// summed in whole units, of which no spring may reach 2^22 when it is stretched to 16 times its length, and the drag of
+// a triangle on its corner is below half a unit. `stiffness` of the stiffest spring [N/m].
+double slowest_drag_speed(double stiffness, double drag_coefficient);
+
 }  // namespace mercury

@@ -105,6 +105,12 @@ class VxaImport {
     const Calibration bulk = calibrate(model, scaling_->calibration.time_scale);
     import.settings.drag_coefficient = bulk.drag_coefficient * masses / static_cast<double>(voxels_);
     import.settings.lift_coefficient = bulk.lift_coefficient * masses / static_cast<double>(voxels_);
+    const double slowest = slowest_drag_speed(scaling_->stiffness(stiffest_), import.settings.drag_coefficient);
+    if (import.settings.drag_coefficient > 0 && slowest > 0.01)
+      import.report.notes.push_back(
+          fmt::format("water: sides of voxels that move more slowly than {:.2g} m/s here feel no drag, because the "
+                      "springs are so stiff",
+                      slowest));
   }
 
   // The substance of a voxel, apart from its size.

@@ -178,6 +178,21 @@ TEST_P(CalibratedBar, IsSlowedByWaterAsItsBeams) {
   EXPECT_NEAR(slowed / expected, length / (length + 1.0), 2e-3);
 }
 
+TEST_P(CalibratedBar, IsNotSlowedByWaterBelowTheSpeedThatIsReported) {
+  const double stiffness = 7e4, slowest = slowest_drag_speed(stiffness, 1);
+  const Robot robot = bar(3, 8, stiffness);
+  const Ocean ocean{.drag_coefficient = 1, .lift_coefficient = 0};
+  for (const auto& [share, slows] : {std::pair(0.9, false), std::pair(1.5, true)}) {
+    Simulation simulation({.dt = 1e-4, .damping = 0, .environment = ocean, .device = device()}, {&robot, 1});
+    const auto speed = static_cast<float>(share * slowest);
+    simulation.set_state(0, robot.masses, std::vector<Vec3>(robot.masses.size(), {0, 0, speed}));
+    simulation.step();
+    const double lost = static_cast<double>(speed - simulation.telemetry(0).velocity.z) / 1e-4;
+    const double drag = 1000 * 2 * 0.3 * 0.3 / 2 * share * slowest * share * slowest;  // of both ends [N]
+    EXPECT_EQ(lost > 0.5 * drag / static_cast<double>(robot.masses.size()), slows) << share << " " << lost;
+  }
+}
+
 // A block of 8 layers has waves that are a little slower than those of an endless lattice: cos(pi / 16) of their
 // highest frequency.
 TEST_P(CalibratedBar, IsStableUpToTheLargestTimeStep) {
