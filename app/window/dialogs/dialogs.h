@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "app/window/dialogs/file_dialog.h"
 #include "app/window/toolkit/event_log.h"
@@ -32,8 +33,9 @@ class Dialogs {
   void ask_files(FileRequest request, std::function<void(const FileChoice&)> on_accept) {
     files_.ask(std::move(request), std::move(on_accept));
   }
-  // Shows the last file dialog again, as the user left it.
-  void reopen_file_dialog() { files_.reopen(); }
+  // Shows the last file dialog again, as the user left it. `error`: why its last answer could not be used; empty =
+  // nothing to say.
+  void reopen_file_dialog(std::string error = {}) { files_.reopen(std::move(error)); }
 
   bool open() const { return open_ || files_.open(); }
   // Closes the open dialog as Esc does.

@@ -36,6 +36,11 @@ void FileDialog::ask(FileRequest request, std::function<void(const FileChoice&)>
   open_ = just_opened_ = true;
 }
 
+void FileDialog::reopen(std::string error) {
+  open_ = just_opened_ = on_accept_ != nullptr;
+  error_ = std::move(error);
+}
+
 void FileDialog::set_text(std::string text) {
   text_ = std::move(text);
   ++text_edition_;

@@ -31,8 +31,9 @@ struct FileChoice {
 class FileDialog {
  public:
   void ask(FileRequest request, std::function<void(const FileChoice&)> on_accept);
-  // Shows the last request again, as the user left it; does nothing after forget().
-  void reopen() { open_ = just_opened_ = on_accept_ != nullptr; }
+  // Shows the last request again, as the user left it, with a line that says what was wrong; does nothing after
+  // forget().
+  void reopen(std::string error);
   void forget() { on_accept_ = nullptr; }
 
   bool open() const { return open_; }

@@ -42,17 +42,22 @@ void ask_file(PanelContext& context, RobotId robot, const char* what, bool (*con
     request.formats.push_back(format.title.data());  // a literal
   }
   request.name = file_name_of(name_of_robot(context.scene, robot)) + request.extensions.front();
-  context.dialogs.ask_files(std::move(request), [&context, on_accept = std::move(on_accept)](const FileChoice& answer) {
-    const fs::path path = answer.paths.front();
-    context.preferences.save_folder = path.parent_path().string();
-    on_accept(path);
+  context.dialogs.ask_files(std::move(request), [on_accept = std::move(on_accept)](const FileChoice& answer) {
+    on_accept(answer.paths.front());
   });
 }
 
 void begin_motion(PanelContext& context, RobotId robot, const fs::path& path, double seconds, bool overwrite) {
   const SaveResult result = context.scene.export_motion(robot, path, seconds, overwrite);
-  if (result.outcome == SaveResult::Outcome::failed) return context.toasts.show(Tone::error, result.message);
-  if (result.outcome != SaveResult::Outcome::exists) return;
+  if (result.outcome == SaveResult::Outcome::failed) {
+    context.toasts.show(Tone::error, result.message);
+    context.dialogs.reopen_file_dialog(result.message);
+    return;
+  }
+  if (result.outcome != SaveResult::Outcome::exists) {
+    context.preferences.save_folder = path.parent_path().string();
+    return;
+  }
   context.log.write("asks", {{"what", "overwrite"}});
   context.dialogs.ask(
       {.title = "Replace?",

@@ -32,7 +32,6 @@ void save_one(PanelContext& context, const RobotEntry& robot) {
                              .formats = robot_formats},
                             [&context, id = robot.id](const FileChoice& answer) {
                               const fs::path path = answer.paths.front();
-                              context.preferences.save_folder = path.parent_path().string();
                               save_with_confirmation(context, "robot", [&context, id, path](bool overwrite) {
                                 return context.scene.save(id, path, overwrite);
                               });
@@ -50,7 +49,6 @@ void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
                             [&context, robots](const FileChoice& answer) {
                               const fs::path folder = answer.paths.front();
                               const RobotFormat format = answer.format == 1 ? RobotFormat::cbor : RobotFormat::json;
-                              context.preferences.save_folder = folder.string();
                               save_with_confirmation(context, fmt::format("{} robots", robots.size()),
                                                      [&context, robots, folder, format](bool overwrite) {
                                                        return context.scene.save_all(robots, folder, format, overwrite);
@@ -140,12 +138,11 @@ void save_scene(PanelContext& context) {
                              .formats = {}},
                             [&context](const FileChoice& answer) {
                               const fs::path path = answer.paths.front();
-                              context.preferences.save_folder = path.parent_path().string();
-                              context.preferences.scene = path.string();
                               save_with_confirmation(context, "scene", [&context, path](bool overwrite) {
                                 SaveResult result;
                                 with_window_camera(context,
                                                    [&] { result = context.scene.save_scene(path, overwrite); });
+                                if (result.ok()) context.preferences.scene = path.string();
                                 return result;
                               });
                             });

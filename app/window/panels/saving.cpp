@@ -17,8 +17,10 @@ std::string list_of(const std::vector<std::filesystem::path>& files) {
 void report(PanelContext& context, const std::string& what, const SaveResult& result) {
   if (result.outcome == SaveResult::Outcome::failed) {
     context.toasts.show(Tone::error, result.message);
+    context.dialogs.reopen_file_dialog(result.message);
     return;
   }
+  context.preferences.save_folder = result.files.front().parent_path().string();
   context.toasts.show(Tone::success, fmt::format("{} saved: {}", what, list_of(result.files)));
   std::vector<std::string> files;
   for (const auto& file : result.files) files.push_back(file.string());
@@ -55,7 +57,6 @@ void save_csv(PanelContext& context, const std::string& what, std::function<std:
                              .formats = {}},
                             [&context, what, make = std::move(make)](const FileChoice& answer) {
                               const std::filesystem::path path = answer.paths.front();
-                              context.preferences.save_folder = path.parent_path().string();
                               save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
                                 return context.scene.save_text(path, text, overwrite);
                               });

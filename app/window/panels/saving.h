@@ -9,8 +9,8 @@
 
 namespace mercury::window {
 
-// Calls save(false). If files exist already, asks the user and calls save(true). Shows the result. `what` names the
-// contents in messages: "ranking".
+// Calls save(false). If files exist already, asks the user and calls save(true). Shows the result; after a
+// failure the file dialog opens again as the user left it. `what` names the contents in messages: "ranking".
 void save_with_confirmation(PanelContext& context, const std::string& what,
                             std::function<SaveResult(bool overwrite)> save);
 

@@ -37,6 +37,27 @@ class FilesTest(WindowCase):
         again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
         self.finish(again)
 
+    def test_a_save_that_fails_leaves_the_dialog_as_it_was(self):
+        window = self.small("--paused")
+        window.click("robot.0")
+        window.frame(lambda frame: frame["selected"] == 1)
+        occupied = self.folder / "occupied"  # a file where a folder would be needed
+        occupied.write_text("")
+        since = window.mark()
+        window.key("ctrl+shift+s")
+        window.dialog(str(occupied / "eel.json"))
+        window.wait("message", since, lambda event: event["tone"] == "error")
+        window.place("files.place")
+        window.frame()
+        # The name is still there: once a folder is there, Enter is enough.
+        occupied.unlink()
+        occupied.mkdir()
+        since = window.mark()
+        window.key("Return")
+        saved = window.wait("saved", since)
+        self.assertEqual(saved["files"], [str(occupied / "eel.json")])
+        self.finish(window)
+
     def test_all_robots_are_saved_as_cbor(self):
         window = self.small("--paused")
         window.key("ctrl+shift+s")
