@@ -7,9 +7,14 @@
 // files that it refuses.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" [[gnu::weak]] const char* __lsan_default_suppressions() {
-  return "leak:libOSMesa\nleak:libhdf5\nleak:libmpi\nleak:libopen-\nleak:libpmix\nleak:libhwloc\nleak:openmpi\nleak:__"
-         "vasprintf_"
-         "internal\n";
+  return "leak:libOSMesa\n"
+         "leak:libhdf5\n"
+         "leak:libmpi\n"
+         "leak:libopen-\n"
+         "leak:openmpi\n"
+         "leak:libpmix\n"
+         "leak:libhwloc\n"
+         "leak:__vasprintf_internal\n";
 }
 // Do not list suppressed leaks: tests compare stderr.
 extern "C" const char* __lsan_default_options();

@@ -59,7 +59,9 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
   scene.set_speed(unlimited_speed);
   scene.play();
   std::uint64_t pictures = 0;
-  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5; std::this_thread::yield()) {
+  const auto samples = [&] { return scene.series(test::ids_of(scene)[0]).times.size(); };
+  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3;
+       std::this_thread::yield()) {
     scene.frame();
     pictures += scene.snapshot().steps != seen;
     seen = scene.snapshot().steps;
