@@ -27,7 +27,7 @@ INTERVAL = 2  # seconds between two samples
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=float, default=60)
-    parser.add_argument("-o", "--output", help="all samples as CSV")
+    parser.add_argument("-o", "--output", help="all samples as CSV, written as they come")
     parser.add_argument("command", nargs="+")
     return parser.parse_args()
 
@@ -91,12 +91,17 @@ def report(name, samples):
 
 def main():
     options = arguments()
+    table = csv.writer(open(options.output, "w", newline="", buffering=1)) if options.output else None
+    if table:
+        table.writerow(("seconds", "resident_bytes", "gpu_bytes"))
     process = subprocess.Popen(options.command)
     start = time.monotonic()
     rows = []
     while process.poll() is None and time.monotonic() - start < 60 * options.minutes:
         resident, on_gpu = sample(process.pid)
         rows.append((time.monotonic() - start, resident, on_gpu))
+        if table:
+            table.writerow(rows[-1])
         try:
             process.wait(INTERVAL)
         except subprocess.TimeoutExpired:
@@ -105,9 +110,6 @@ def main():
     if not ended_early:
         process.send_signal(signal.SIGINT)
     status = process.wait()
-    if options.output:
-        with open(options.output, "w", newline="") as file:
-            csv.writer(file).writerows([("seconds", "resident_bytes", "gpu_bytes"), *rows])
     print(f"{rows[-1][0] / 60:.1f} minutes, exit status {status}{' (ended by itself)' if ended_early else ''}")
     report("resident", [(moment, resident) for moment, resident, _ in rows])
     report("GPU", [(moment, on_gpu) for moment, _, on_gpu in rows])

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, LoadWatch, every_device, BackendTest::name);
 
 TEST(LoadWatchOnTheCpu, AnExceptionEndsTheFirstStep) {
   struct Stop {};
-  Simulation simulation({.device = {.kind = DeviceKind::cpu}}, different_robots(60),
+  Simulation simulation({.device = {.kind = DeviceKind::cpu, .threads = 1}}, different_robots(60),
                         [](const char* what, std::size_t, std::size_t) {
                           if (std::string(what) == "grouping robots") throw Stop();
                         });
