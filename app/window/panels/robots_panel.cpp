@@ -156,7 +156,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   ImGui::BeginDisabled(scene.entries().empty());
   if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
   context.log.item("save");
-  tooltip("save the selected robots, or all if none is selected (Ctrl S)");
+  tooltip("save the selected robots, or all if none is selected (Ctrl Shift S)");
   ImGui::SameLine();
   if (ImGui::Button("Clear", {width, 0})) scene.clear();
   context.log.item("clear");

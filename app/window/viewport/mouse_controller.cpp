@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cfloat>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -158,6 +159,8 @@ void MouseController::draw_details(const ViewportArea& area) const {
   ImGui::SetNextWindowPos(
       {mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)}, ImGuiCond_Always,
       {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
+  // Dear ImGui widens a tooltip a frame late, and these numbers change in every frame.
+  ImGui::SetNextWindowSizeConstraints({18 * text_height, 0}, {FLT_MAX, FLT_MAX});
   ImGui::BeginTooltip();
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
