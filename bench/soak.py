@@ -91,6 +91,8 @@ def report(name, samples):
 
 def main():
     options = arguments()
+    # Shells let what they start in the background ignore it, and so would the command.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     table = csv.writer(open(options.output, "w", newline="", buffering=1)) if options.output else None
     if table:
         table.writerow(("seconds", "resident_bytes", "gpu_bytes"))
