@@ -8,10 +8,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages_to_build=(
   cmake ninja-build g++ pkg-config
   libtbb-dev libhwy-dev                                                  # sim
-  nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev zlib1g-dev            # robots
+  nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev zlib1g-dev # robots
   libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev fonts-lato   # render
   libmuparser-dev                                                        # evolution
-  libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev zlib1g-dev  # app
+  libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev   # app
 )
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
 packages_welcome=(libosmesa6 libopenmpi-dev openmpi-bin)  # drawing where EGL is missing (newer distributions no longer have OSMesa); evolution on several hosts

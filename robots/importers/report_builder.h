@@ -11,6 +11,8 @@
 
 namespace mercury {
 
+class XmlDocument;
+
 // Robots of all bodies of a grid, the largest first: NAME, NAME-2, NAME-3, ... Rounding and several bodies become
 // notes.
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
@@ -30,7 +32,6 @@ bool looks_like_evogym(std::string_view text);
 // Puts the parts of a VXD into the document of its base, as voxcraft-sim does: each child with an attribute "replace",
 // such as "VXA.VXC.Structure", takes the place of that element. Elements of the VXD itself that change nothing are
 // listed in `report`. Throws InputError for a path that names no element.
-class XmlDocument;
 void merge_vxd(const XmlDocument& changes, XmlDocument& base, std::vector<ImportedElement>& report);
 
 }  // namespace mercury
