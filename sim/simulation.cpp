@@ -65,6 +65,11 @@ float lift_to_floor(std::span<const Vec3> positions, const Environment& environm
   return is_land(environment) ? -std::ranges::min(positions, {}, &Vec3::z).z : 0;
 }
 
+void require_clock(const Clock& clock, const Configuration& configuration) {
+  if (clock.dt != configuration.dt || clock.step < clock.base_step || clock.base_step < 0)
+    throw std::invalid_argument("a clock needs the configuration's time step, and a step at or after its base");
+}
+
 void Simulation::Parts::require(std::size_t robot) const {
   if (robot >= size()) throw std::out_of_range("robot " + std::to_string(robot) + " of " + std::to_string(size()));
 }
@@ -215,8 +220,7 @@ double Simulation::time() const { return time_of(parts_->clock); }
 std::int64_t Simulation::steps() const { return parts_->clock.step; }
 const Clock& Simulation::clock() const { return parts_->clock; }
 void Simulation::set_clock(const Clock& clock) {
-  if (clock.dt != parts_->clock.dt || clock.step < clock.base_step || clock.base_step < 0)
-    throw std::invalid_argument("a clock needs the configuration's time step, and a step at or after its base");
+  require_clock(clock, parts_->configuration);
   parts_->change_clock(clock);
 }
 

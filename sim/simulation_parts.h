@@ -84,4 +84,7 @@ struct Simulation::Parts {
 // How far a robot is lifted (or lowered) so that its lowest mass is at z = 0 on land [m]; 0 in other environments.
 float lift_to_floor(std::span<const Vec3> positions, const Environment& environment);
 
+// Throws std::invalid_argument for a clock that Simulation::set_clock() refuses.
+void require_clock(const Clock& clock, const Configuration& configuration);
+
 }  // namespace mercury

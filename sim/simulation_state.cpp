@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "mercury/simulation.h"
 #include "sim/physics/measures.h"
@@ -93,6 +94,46 @@ void Simulation::set_state(std::size_t robot, const State& state) {
   if (!state.exploded) return;
   parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
   parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
+  parts_->after_change();
+}
+
+BatchState Simulation::save() const {
+  BatchState state{.clock = parts_->clock,
+                   .positions = std::vector<Vec3>(mass_count()),
+                   .velocities = std::vector<Vec3>(mass_count()),
+                   .explosions = {}};
+  parts_->backend->read_positions(state.positions);
+  parts_->backend->read_velocities(state.velocities);
+  const std::vector<RobotStatus> statuses = parts_->backend->statuses();
+  for (std::size_t i = 0; i < statuses.size(); ++i) {
+    if (statuses[i].exploded_step < 0) continue;
+    const KnownExplosion& known = parts_->explosion(i, statuses[i]);
+    state.explosions.push_back({i, known.step, known.at, known.culprit_spring});
+  }
+  return state;
+}
+
+void Simulation::restore(const BatchState& state) {
+  if (state.positions.size() != mass_count() || state.velocities.size() != mass_count())
+    throw std::invalid_argument("one position and one velocity per mass are needed");
+  std::vector<RobotStatus> wanted(size());
+  std::vector<KnownExplosion> known(size());
+  for (const BatchState::Explosion& explosion : state.explosions) {
+    if (explosion.robot >= size() || explosion.step < 0)
+      throw std::invalid_argument("an explosion of no robot or step");
+    wanted[explosion.robot].exploded_step = explosion.step;
+    known[explosion.robot] = {explosion.step, explosion.at, explosion.culprit_spring};
+  }
+  require_clock(state.clock, parts_->configuration);
+  parts_->clock = state.clock;
+  parts_->explosions = std::move(known);
+  const std::vector<RobotStatus> present = parts_->backend->statuses();
+  for (std::size_t i = 0; i < size(); ++i) {
+    const std::size_t first = parts_->offsets[i], masses = parts_->masses(i);
+    parts_->backend->write(i, std::span(state.positions).subspan(first, masses),
+                           std::span(state.velocities).subspan(first, masses));
+    if (present[i].exploded_step != wanted[i].exploded_step) parts_->backend->set_status(i, wanted[i]);
+  }
   parts_->after_change();
 }
 

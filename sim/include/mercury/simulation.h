@@ -143,6 +143,13 @@ class Simulation {
   // Restores an explosion as well.
   void set_state(std::size_t robot, const State& state);
 
+  // The state of all robots, and a return to it: what follows is bit for bit what followed before. Robots,
+  // configuration, materials, perturbations and actuation are not part of it. restore() throws std::invalid_argument,
+  // and changes nothing, if the state has another number of masses, an explosion of no robot, or a clock that
+  // set_clock() refuses.
+  BatchState save() const;
+  void restore(const BatchState& state);
+
   // One element per robot, computed on the device.
   std::vector<Telemetry> telemetry() const;
   Telemetry telemetry(std::size_t robot) const;
