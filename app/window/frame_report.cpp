@@ -71,6 +71,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"playing", scene.playing()},
                       {"selected", scene.selection().size()},
                       {"panels", context.preferences.panels},
+                      {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},
                       {"scale", {scene.picture().scene().scale.low, scene.picture().scene().scale.high}},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},

@@ -101,8 +101,9 @@ class Viewer {
   Dialogs dialogs_;
   VideoRecorder recorder_;
   FrameHistory frame_history_;
-  PanelContext context_{scene_,   run_,    camera_,   preferences_, log_,          toasts_,
-                        dialogs_, window_, viewport_, recorder_,    frame_history_};
+  KeyMap keys_;
+  PanelContext context_{scene_,  run_,     camera_, preferences_, keys_,     log_,
+                        toasts_, dialogs_, window_, viewport_,    recorder_, frame_history_};
   Panels panels_{context_};
   MouseController mouse_{scene_, camera_, log_, toasts_};
   Screenshot screenshot_;
@@ -160,6 +161,8 @@ void Viewer::load_settings() {
   std::error_code unknown;
   if (std::filesystem::exists(session_settings_path(), unknown)) context_.creation.generation = last.generation;
   preferences_.pause_on_explosion = last.pause_on_explosion;
+  if (const std::string problem = load_keys(keys_, settings("keys.txt")); !problem.empty())
+    toasts_.show(Tone::warning, problem);
 }
 
 void Viewer::fill_scene() {
@@ -201,7 +204,7 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
   }
   const bool typing = ImGui::GetIO().WantTextInput;
   for (const KeyPress& press : key_presses_in(events)) {
-    const std::optional<Command> command = command_of(press);
+    const std::optional<Command> command = keys_.command_of(press);
     if (dialogs_.open()) {
       if (command && command->action == Action::deselect)
         panels_.execute(*command);

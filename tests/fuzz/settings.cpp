@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration files, camera files, scenes, and what the window remembers.
+// Configuration files, camera files, scenes, keys, and what the window remembers.
 #include <filesystem>
 
 #include "app/live/scene_text.h"
@@ -9,6 +9,7 @@
 #include "app/options/scene_file.h"
 #include "app/options/simulation_options.h"
 #include "app/scene/camera_plan.h"
+#include "app/window/toolkit/key_map.h"
 #include "mercury/error.h"
 #include "tests/fuzz/target.h"
 
@@ -121,6 +122,21 @@ std::vector<std::string> scene_seeds() {
       "format = \"mercury-scene\"\nversion = 1\nrobots = []\ncut = \"y:0.2\"\nscale = \"-1,1\"\nplain = true\n\n"
       "[camera]\nmode = \"still\"\nazimuth = -1.3\nelevation = 0.2\ntarget = [0, 0.5, 1.0]\ndistance = 3\n",
       "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\ncamera = \"follow:eel\"\n"};
+}
+
+// Lines that cannot be used are left out, so the whole is refused only to say that there are any.
+void check_keys(std::string_view input) {
+  window::KeyMap keys, again;
+  const std::string problem = window::load_keys(keys, scratch_file(input, "keys.txt"));
+  const std::string wrong = again.read(keys.text());
+  require(wrong.empty(), "the keys do not read back: " + wrong);
+  require(again.text() == keys.text(), "the keys do not read back as they were written");
+  if (!problem.empty()) throw InputError(problem);
+}
+
+std::vector<std::string> keys_seeds() {
+  return {window::KeyMap().text(), "# mine\nreset = M\nstep = Ctrl Right, Comma\nfull_screen =\nfaster = =\n",
+          "undo = Ctrl Shift \xc3\xa9\r\ntheme = F5,Shift F5\n"};
 }
 
 std::vector<std::string> session_seeds() {

@@ -54,6 +54,7 @@ void check_vxd(std::string_view input);
 void check_rsc(std::string_view input);
 void check_evogym(std::string_view input);
 void check_scene(std::string_view input);
+void check_keys(std::string_view input);
 
 std::vector<std::string> robot_json_seeds();
 std::vector<std::string> robot_cbor_seeds();
@@ -70,5 +71,6 @@ std::vector<std::string> vxd_seeds();
 std::vector<std::string> rsc_seeds();
 std::vector<std::string> evogym_seeds();
 std::vector<std::string> scene_seeds();
+std::vector<std::string> keys_seeds();
 
 }  // namespace mercury::fuzz

@@ -39,7 +39,7 @@ ALLOWED = {
     "app/video": "sim/api render app/base app/scene",
     "app/options": "sim/api robots/api evolution/api render app/base app/recording app/scene app/video",
     "app/live": "sim/api robots/api evolution/api robots render app/base app/recording app/scene app/export app/video app/options",
-    "app/window/toolkit": "sim/api robots/api render",
+    "app/window/toolkit": "sim/api robots/api render app/base",
     "app/window/dialogs": "sim/api robots/api app/window/toolkit",
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
     "app/window/panels": "sim/api robots/api evolution/api app/options app/scene app/export app/live app/window/toolkit app/window/dialogs app/window/viewport",

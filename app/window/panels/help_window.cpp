@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <string>
 
-#include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {
 
-void line(const char* keys, const char* meaning) {
+void line(const std::string& keys, const char* meaning) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().accent);
-  ImGui::TextUnformatted(keys);
+  ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(meaning);
+  ImGui::TextWrapped("%s", meaning);
 }
 
 bool begin_lines(const char* id) {
@@ -28,11 +27,12 @@ bool begin_lines(const char* id) {
   return true;
 }
 
-void group(const std::string& name) {
+void group(const std::string& name, const KeyMap& keys) {
   heading(name.c_str());
   if (!begin_lines(name.c_str())) return;
   for (const KeyBinding& binding : key_bindings())
-    if (binding.group == name) line(binding.keys, binding.meaning);
+    if (const std::string given = keys.keys_of(binding.action); binding.group == name && !given.empty())
+      line(given, binding.meaning);
   ImGui::EndTable();
 }
 
@@ -45,7 +45,7 @@ void mouse() {
 
 }  // namespace
 
-void draw_help(bool& open, EventLog& log) {
+void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
   const ImVec2 size{std::min(0.96f * screen.x, 58 * text), std::min(0.96f * screen.y, 41.5f * text)};
@@ -57,14 +57,16 @@ void draw_help(bool& open, EventLog& log) {
   if (ImGui::Begin("Keys and mouse###Help", &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     log.item("panel.Help", ImGui::GetWindowPos(),
              {ImGui::GetWindowPos().x + ImGui::GetWindowSize().x, ImGui::GetWindowPos().y + ImGui::GetWindowSize().y});
-    if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingStretchSame)) {
+    const bool two = ImGui::GetWindowWidth() > 48 * text;
+    if (ImGui::BeginTable("columns", two ? 2 : 1, ImGuiTableFlags_SizingStretchSame)) {
       ImGui::TableNextColumn();
       mouse();
-      group("Time");
-      group("Camera");
+      group("Time", keys);
+      group("Camera", keys);
+      group("Picture", keys);
       ImGui::TableNextColumn();
-      group("Robots");
-      group("Picture");
+      group("Robots", keys);
+      group("Window", keys);
       ImGui::EndTable();
     }
   }

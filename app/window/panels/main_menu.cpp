@@ -12,10 +12,7 @@
 namespace mercury::window {
 
 void Panels::menu_item(const char* name, Action action, bool enabled, bool checked) {
-  const char* keys = "";
-  for (const KeyBinding& binding : key_bindings())
-    if (binding.action == action) keys = binding.keys;
-  if (ImGui::MenuItem(name, keys, checked, enabled)) execute({action});
+  if (ImGui::MenuItem(name, context_.keys.keys_of(action).c_str(), checked, enabled)) execute({action});
 }
 
 void Panels::draw_menu() {
@@ -25,15 +22,35 @@ void Panels::draw_menu() {
   draw_view_menu();
   if (ImGui::BeginMenu("Help")) {
     menu_item("Keys and mouse", Action::help);
+    if (ImGui::MenuItem("Change keys...")) show_keys_file();
+    context_.log.item("menu.keys");
+    menu_item("Messages", Action::messages);
+    context_.log.item("menu.messages");
     ImGui::EndMenu();
   }
   context_.log.item("menu.Help");
-  const char* text = "F1: all keys";
-  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - ImGui::GetFontSize());
-  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-  ImGui::TextUnformatted(text);
-  ImGui::PopStyleColor();
+  draw_menu_hint();
   ImGui::EndMainMenuBar();
+}
+
+// At the right end, if there is room.
+void Panels::draw_menu_hint() {
+  const std::string keys = context_.keys.keys_of(Action::help), text = keys.substr(0, keys.find(' ')) + ": all keys";
+  const float left = ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text.c_str()).x - ImGui::GetFontSize();
+  if (keys.empty() || left < ImGui::GetCursorPosX()) return;
+  ImGui::SameLine(left);
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+}
+
+// The settings file of keys, which lists all commands until the user changes it.
+void Panels::show_keys_file() {
+  const std::filesystem::path file = settings_folder() / "keys.txt";
+  if (settings_folder().empty() || !write_keys_template(file))
+    context_.toasts.show(Tone::error, fmt::format("{}: cannot be written", file.string()));
+  else
+    context_.toasts.show(Tone::info, fmt::format("edit {}; the window reads it when it opens", file.string()));
 }
 
 void Panels::draw_file_menu() {
@@ -85,7 +102,11 @@ void Panels::draw_view_menu() {
     menu_item("Frame", Action::frame, !context_.scene.entries().empty());
     menu_item("Drag arrows", Action::drag_arrows, true, context_.scene.view().shown.arrows.drag);
     menu_item("Dark or light", Action::theme);
+    menu_item("Left panels", Action::left_panels, true, column_open(Side::left));
+    menu_item("Right panels", Action::right_panels, true, column_open(Side::right));
     menu_item("Hide panels", Action::hide_panels);
+    menu_item("Larger text", Action::larger_text);
+    menu_item("Smaller text", Action::smaller_text);
     menu_item("Full screen", Action::full_screen);
     ImGui::EndMenu();
   }

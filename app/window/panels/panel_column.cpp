@@ -23,19 +23,19 @@ bool PanelColumn::busy() const {
   return std::ranges::any_of(tabs_, [](const Tab& tab) { return tab.panel->busy(); });
 }
 
-float PanelColumn::pixels(float width) {
+float PanelColumn::pixels(float width, bool narrow) {
   const float text = ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
-  const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 20.0f, 30.0f);
-  return std::min(lines * text, 0.38f * screen);
+  const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 18.0f, 30.0f);
+  return std::min(lines * text, (narrow ? 0.75f : 0.38f) * screen);
 }
 
 bool PanelColumn::has(const std::string& title) const {
   return std::ranges::any_of(tabs_, [&](const Tab& tab) { return tab.entry->title == title; });
 }
 
-void PanelColumn::draw(PanelContext& context, float top, float bottom, std::string& open, float& width) {
+void PanelColumn::draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width) {
   if (!has(open)) open = tabs_.front().entry->title;
-  const float screen = ImGui::GetIO().DisplaySize.x, size = pixels(width);
+  const float screen = ImGui::GetIO().DisplaySize.x;
   ImGui::SetNextWindowPos({right_ ? screen - size : 0, top});
   ImGui::SetNextWindowSize({size, bottom - top});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
@@ -51,7 +51,7 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, std::stri
   ImGui::EndChild();
   context.log.item(std::string("panel.") + tab->entry->title);
   ImGui::End();
-  draw_edge(top, bottom, width);
+  draw_edge(top, bottom, size, width);
 }
 
 void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
@@ -84,8 +84,8 @@ void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
 }
 
 // The user drags the inner edge to change the width.
-void PanelColumn::draw_edge(float top, float bottom, float& width) {
-  const float grip = 0.4f * ImGui::GetFontSize(), size = pixels(width), screen = ImGui::GetIO().DisplaySize.x;
+void PanelColumn::draw_edge(float top, float bottom, float size, float& width) {
+  const float grip = 0.4f * ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
   const float edge = right_ ? screen - size : size;
   ImGui::SetNextWindowPos({edge - grip / 2, top});
   ImGui::SetNextWindowSize({grip, bottom - top});
@@ -106,6 +106,35 @@ void PanelColumn::draw_edge(float top, float bottom, float& width) {
   }
   ImGui::End();
   ImGui::PopStyleVar(3);
+}
+
+bool PanelColumn::draw_handle(EventLog& log, float middle, float size, bool open) {
+  const float text = ImGui::GetFontSize(), width = 0.8f * text, height = 3.4f * text;
+  const float from = size > 0 ? size + 0.2f * text : 0;  // leaves the edge free to be dragged
+  const float left = right_ ? ImGui::GetIO().DisplaySize.x - from - width : from;
+  ImGui::SetNextWindowPos({left, middle - height / 2});
+  ImGui::SetNextWindowSize({width, height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin((std::string(id_) + "handle").c_str(), nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PopStyleVar(3);
+  const bool clicked = ImGui::InvisibleButton("handle", {width, height}), hovered = ImGui::IsItemHovered();
+  log.item(right_ ? "handle.right" : "handle.left");
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, hovered ? palette().accent : palette().on_picture, 0.35f * text,
+                     right_ ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersRight);
+  const float x = (low.x + high.x) / 2, y = (low.y + high.y) / 2, side = 0.22f * text,
+              tip = right_ == open ? side : -side;
+  list.AddTriangleFilled({x + tip, y}, {x - tip, y + 1.4f * tip}, {x - tip, y - 1.4f * tip},
+                         hovered ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text));
+  tooltip(open ? "collapse these panels" : "open these panels");
+  ImGui::End();
+  return clicked;
 }
 
 }  // namespace mercury::window

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/window/panels/color_section.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
@@ -51,6 +54,22 @@ void Panels::execute(const Command& command) {
     case Action::theme:
       change_view(command.action, command.number);
       break;
+    case Action::left_panels:
+    case Action::right_panels: {
+      const Side side = command.action == Action::left_panels ? Side::left : Side::right;
+      open_column(side, !context_.preferences.panels || !column_open(side));
+      context_.preferences.panels = true;
+      break;
+    }
+    case Action::larger_text:
+      change_text(0.1f);
+      break;
+    case Action::smaller_text:
+      change_text(-0.1f);
+      break;
+    case Action::messages:
+      show("Messages");
+      break;
     case Action::hide_panels:
       context_.preferences.panels = !context_.preferences.panels;
       break;
@@ -73,6 +92,11 @@ void Panels::execute(const Command& command) {
       quit();
       break;
   }
+}
+
+void Panels::change_text(float factor) {
+  float& scale = context_.preferences.text_scale;
+  scale = std::clamp(std::round(10 * (scale + factor)) / 10, Preferences::least_text, Preferences::most_text);
 }
 
 void Panels::change_time(Action action) {

@@ -7,6 +7,7 @@
 #include "app/window/dialogs/dialogs.h"
 #include "app/window/panels/frame_history.h"
 #include "app/window/toolkit/event_log.h"
+#include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/preferences.h"
 #include "app/window/toolkit/toasts.h"
 #include "app/window/toolkit/window.h"
@@ -29,6 +30,7 @@ struct PanelContext {
   LiveRun& run;              // the evolution that is open
   OrbitController& camera;   // the camera of the viewport
   Preferences& preferences;  // window settings, kept for the next start
+  const KeyMap& keys;        // which key gives which command
   EventLog& log;             // names items for tests and logs events
   Toasts& toasts;            // short messages
   Dialogs& dialogs;          // modal dialogs

@@ -2,6 +2,7 @@
 #include "app/window/panels/browser_panel.h"
 #include "app/window/panels/evolution_panel.h"
 #include "app/window/panels/measure_panel.h"
+#include "app/window/panels/messages_panel.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/ranking_panel.h"
 #include "app/window/panels/robots_panel.h"
@@ -30,6 +31,7 @@ constexpr PanelEntry table[] = {
     {"Tune", "solver, environment, materials", Side::right, make<TunePanel>},
     {"Measure", "plots over time", Side::right, make<MeasurePanel>},
     {"Video", "videos and screenshots", Side::right, make<VideoPanel>},
+    {"Messages", "everything that the window has reported", Side::right, make<MessagesPanel>},
     {"Stats", "speed of the physics and of drawing", Side::right, make<StatsPanel>},
 };
 

@@ -17,10 +17,9 @@ ViewportArea Panels::draw_frame() {
     draw_menu();
     const float top = ImGui::GetFrameHeight(),
                 bar = 1.15f * ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
-    area = {{PanelColumn::pixels(context_.preferences.left_width), top},
-            {screen.x - PanelColumn::pixels(context_.preferences.right_width), screen.y - bar}};
-    left_.draw(context_, top, area.high.y, context_.preferences.left_panel, context_.preferences.left_width);
-    right_.draw(context_, top, area.high.y, context_.preferences.right_panel, context_.preferences.right_width);
+    const float bottom = screen.y - bar;
+    const float left = draw_column(left_, Side::left, top, bottom);
+    area = {{left, top}, {screen.x - draw_column(right_, Side::right, top, bottom), bottom}};
     draw_play_bar(context_, {0, area.high.y}, screen);
   }
   context_.aspect = area.aspect();
@@ -28,11 +27,44 @@ ViewportArea Panels::draw_frame() {
   return area;
 }
 
+// Whether the window has no room for two columns and a picture.
+bool Panels::is_narrow() const {
+  constexpr float least = 1000;  // pixels of a screen of normal resolution
+  return ImGui::GetIO().DisplaySize.x < least * context_.window.content_scale();
+}
+
+bool Panels::column_open(Side side) const {
+  if (is_narrow()) return narrow_open_ == side;
+  return side == Side::left ? context_.preferences.left_open : context_.preferences.right_open;
+}
+
+// In a narrow window, one column opens in place of the other, and the user's choice for wide ones stays.
+void Panels::open_column(Side side, bool open) {
+  if (is_narrow())
+    narrow_open_ = open ? std::optional(side) : narrow_open_ == side ? std::nullopt : narrow_open_;
+  else
+    (side == Side::left ? context_.preferences.left_open : context_.preferences.right_open) = open;
+}
+
+// Returns how much of the window's width it takes [pixels].
+float Panels::draw_column(PanelColumn& column, Side side, float top, float bottom) {
+  Preferences& preferences = context_.preferences;
+  float& width = side == Side::left ? preferences.left_width : preferences.right_width;
+  const bool open = column_open(side);
+  const float pixels = open ? PanelColumn::pixels(width, is_narrow()) : 0;
+  if (open)
+    column.draw(context_, top, bottom, pixels, side == Side::left ? preferences.left_panel : preferences.right_panel,
+                width);
+  if (column.draw_handle(context_.log, (top + bottom) / 2, pixels, open)) open_column(side, !open);
+  return pixels;
+}
+
 void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, double dt) {
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
-  if (help_open_) draw_help(help_open_, context_.log);
+  if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw(area.low, area.high, dt, context_.log);
+  if (context_.toasts.take_click()) show("Messages");
 }
 
 // Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.
@@ -45,6 +77,7 @@ void Panels::work(double seconds) {
 
 void Panels::show(const std::string& panel) {
   context_.preferences.panels = true;
+  open_column(left_.has(panel) ? Side::left : Side::right, true);
   (left_.has(panel) ? context_.preferences.left_panel : context_.preferences.right_panel) = panel;
   context_.log.write("panel", {{"name", panel}});
 }

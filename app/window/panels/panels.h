@@ -12,6 +12,7 @@
 //   +----------------------------------------+
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/window/panels/explosion_card.h"
@@ -47,6 +48,8 @@ class Panels {
 
  private:
   void draw_menu();
+  void draw_menu_hint();
+  void show_keys_file();
   void draw_file_menu();
   void draw_edit_menu();
   void draw_view_menu();
@@ -55,12 +58,18 @@ class Panels {
   void change_robots(Action action);
   void change_view(Action action, int number);
   void change_camera(Action action);
+  void change_text(float factor);
+  bool is_narrow() const;
+  bool column_open(Side side) const;
+  void open_column(Side side, bool open);
+  float draw_column(PanelColumn& column, Side side, float top, float bottom);
   void escape();
 
   PanelContext& context_;
   ExplosionCard explosions_;
   PanelColumn left_, right_;
   bool help_open_ = false, quit_confirmed_ = false;
+  std::optional<Side> narrow_open_;  // the column that is open in a narrow window
 };
 
 }  // namespace mercury::window

@@ -4,50 +4,56 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <cctype>
+#include <algorithm>
 
 namespace mercury::window {
 namespace {
 
 constexpr KeyBinding table[] = {
-    {Action::play_pause, "Space", "play or pause", "Time", 0, GLFW_KEY_SPACE, false, false},
-    {Action::step, "Right or .", "one step", "Time", U'.', GLFW_KEY_RIGHT, false, true},
-    {Action::faster, "+", "faster", "Time", U'+', GLFW_KEY_KP_ADD, false, true},
-    {Action::slower, "-", "slower", "Time", U'-', GLFW_KEY_KP_SUBTRACT, false, true},
-    {Action::real_time, "0", "real time", "Time", U'0', 0, false, false},
-    {Action::fastest, "*", "as fast as possible", "Time", U'*', GLFW_KEY_KP_MULTIPLY, false, false},
-    {Action::reset, "R", "reset to the start", "Time", U'r', 0, false, false},
+    {Action::play_pause, "play_pause", "Space", "play or pause", "Time"},
+    {Action::step, "step", "Right or .", "one step", "Time", true},
+    {Action::faster, "faster", "+", "faster", "Time", true},
+    {Action::slower, "slower", "-", "slower", "Time", true},
+    {Action::real_time, "real_time", "0", "real time", "Time"},
+    {Action::fastest, "fastest", "*", "as fast as possible", "Time"},
+    {Action::reset, "reset", "R", "reset to the start", "Time"},
 
-    {Action::frame, "F", "frame the selected robots, or all", "Camera", U'f', 0, false, false},
-    {Action::follow, "G", "follow the selected robot, or stop", "Camera", U'g', 0, false, false},
-    {Action::turntable, "T", "circle the group, or stop", "Camera", U't', 0, false, false},
-    {Action::top_view, "Z", "look straight down, or stop", "Camera", U'z', 0, false, false},
+    {Action::frame, "frame", "F", "frame the selected robots, or all", "Camera"},
+    {Action::follow, "follow", "G", "follow the selected robot, or stop", "Camera"},
+    {Action::turntable, "turntable", "T", "circle the group, or stop", "Camera"},
+    {Action::top_view, "top_view", "Z", "look straight down, or stop", "Camera"},
 
-    {Action::new_random, "N", "new random robots", "Robots", U'n', 0, false, false},
-    {Action::mutate, "M", "mutate: a changed copy of each selected robot", "Robots", U'm', 0, false, false},
-    {Action::evolve, "E", "evolve the selected robots, in the background", "Robots", U'e', 0, false, false},
-    {Action::duplicate, "Ctrl D", "duplicate the selected robots", "Robots", U'd', 0, true, false},
-    {Action::remove, "Delete", "remove the selected robots", "Robots", 0, GLFW_KEY_DELETE, false, false},
-    {Action::select_all, "Ctrl A", "select all", "Robots", U'a', 0, true, false},
-    {Action::deselect, "Esc", "close a dialog, or clear the selection", "Robots", 0, GLFW_KEY_ESCAPE, false, false},
-    {Action::undo, "Ctrl Z", "undo", "Robots", U'z', 0, true, true},
-    {Action::redo, "Ctrl Y", "redo", "Robots", U'y', 0, true, true},
-    {Action::open, "Ctrl O", "open robots or a scene", "Robots", U'o', 0, true, false},
-    {Action::save_scene, "Ctrl S", "save the scene", "Robots", U's', 0, true, false},
-    {Action::save, "Ctrl Shift S", "save robots", "Robots", U's', 0, true, false},
+    {Action::new_random, "new_random", "N", "new random robots", "Robots"},
+    {Action::mutate, "mutate", "M", "mutate: a changed copy of each selected robot", "Robots"},
+    {Action::evolve, "evolve", "E", "evolve the selected robots, in the background", "Robots"},
+    {Action::duplicate, "duplicate", "Ctrl D", "duplicate the selected robots", "Robots"},
+    {Action::remove, "remove", "Delete", "remove the selected robots", "Robots"},
+    {Action::select_all, "select_all", "Ctrl A", "select all", "Robots"},
+    {Action::deselect, "deselect", "Esc", "close a dialog, or clear the selection", "Robots"},
+    {Action::undo, "undo", "Ctrl Z", "undo", "Robots", true},
+    {Action::redo, "redo", "Ctrl Y or Ctrl Shift Z", "redo", "Robots", true},
+    {Action::open, "open", "Ctrl O", "open robots or a scene", "Robots"},
+    {Action::save_scene, "save_scene", "Ctrl S", "save the scene", "Robots"},
+    {Action::save, "save", "Ctrl Shift S", "save robots", "Robots"},
 
-    {Action::drag_arrows, "D", "drag arrows", "Picture", U'd', 0, false, false},
-    {Action::color, "1 - 9", "colour by a quantity, numbered as in the View panel", "Picture", U'1', 0, false, false},
-    {Action::springs, "S", "springs instead of the skin", "Picture", U's', 0, false, false},
-    {Action::labels, "L", "names and distances", "Picture", U'l', 0, false, false},
-    {Action::legend, "K", "legend", "Picture", U'k', 0, false, false},
-    {Action::theme, "B", "dark or light theme", "Picture", U'b', 0, false, false},
-    {Action::hide_panels, "H", "hide or show the panels", "Picture", U'h', 0, false, false},
-    {Action::full_screen, "F11", "full screen", "Picture", 0, GLFW_KEY_F11, false, false},
-    {Action::screenshot, "P or F2", "save a screenshot", "Picture", U'p', GLFW_KEY_F2, false, false},
-    {Action::record, "V", "start or stop recording the window", "Picture", U'v', 0, false, false},
-    {Action::help, "F1 or ?", "this list", "Picture", U'?', GLFW_KEY_F1, false, false},
-    {Action::quit, "Ctrl Q", "quit", "Picture", U'q', 0, true, false},
+    {Action::drag_arrows, "drag_arrows", "D", "drag arrows", "Picture"},
+    {Action::color, "color", "1 - 9", "colour by a quantity, numbered as in the View panel", "Picture"},
+    {Action::springs, "springs", "S", "springs instead of the skin", "Picture"},
+    {Action::labels, "labels", "L", "names and distances", "Picture"},
+    {Action::legend, "legend", "K", "legend", "Picture"},
+    {Action::theme, "theme", "B", "dark or light theme", "Picture"},
+
+    {Action::left_panels, "left_panels", "[", "collapse or open the left panels", "Window"},
+    {Action::right_panels, "right_panels", "]", "collapse or open the right panels", "Window"},
+    {Action::hide_panels, "hide_panels", "H", "hide or show all panels", "Window"},
+    {Action::larger_text, "larger_text", "Ctrl +", "larger text", "Window"},
+    {Action::smaller_text, "smaller_text", "Ctrl -", "smaller text", "Window"},
+    {Action::full_screen, "full_screen", "F11", "full screen", "Window"},
+    {Action::screenshot, "screenshot", "P or F2", "save a screenshot", "Window"},
+    {Action::record, "record", "V", "start or stop recording the window", "Window"},
+    {Action::messages, "messages", "", "all messages so far", "Window"},
+    {Action::help, "help", "F1 or ?", "this list", "Window"},
+    {Action::quit, "quit", "Ctrl Q", "quit", "Window"},
 };
 
 constexpr MouseGesture mouse_table[] = {
@@ -61,6 +67,74 @@ constexpr MouseGesture mouse_table[] = {
     {"Drop files", "open their robots, or a run"},
 };
 
+struct NamedKey {
+  std::string_view name;
+  int key;
+};
+constexpr NamedKey named_keys[] = {{"Space", GLFW_KEY_SPACE},
+                                   {"Esc", GLFW_KEY_ESCAPE},
+                                   {"Enter", GLFW_KEY_ENTER},
+                                   {"Tab", GLFW_KEY_TAB},
+                                   {"Backspace", GLFW_KEY_BACKSPACE},
+                                   {"Insert", GLFW_KEY_INSERT},
+                                   {"Delete", GLFW_KEY_DELETE},
+                                   {"Right", GLFW_KEY_RIGHT},
+                                   {"Left", GLFW_KEY_LEFT},
+                                   {"Down", GLFW_KEY_DOWN},
+                                   {"Up", GLFW_KEY_UP},
+                                   {"PageUp", GLFW_KEY_PAGE_UP},
+                                   {"PageDown", GLFW_KEY_PAGE_DOWN},
+                                   {"Home", GLFW_KEY_HOME},
+                                   {"End", GLFW_KEY_END},
+                                   {"Pause", GLFW_KEY_PAUSE},
+                                   {"F1", GLFW_KEY_F1},
+                                   {"F2", GLFW_KEY_F2},
+                                   {"F3", GLFW_KEY_F3},
+                                   {"F4", GLFW_KEY_F4},
+                                   {"F5", GLFW_KEY_F5},
+                                   {"F6", GLFW_KEY_F6},
+                                   {"F7", GLFW_KEY_F7},
+                                   {"F8", GLFW_KEY_F8},
+                                   {"F9", GLFW_KEY_F9},
+                                   {"F10", GLFW_KEY_F10},
+                                   {"F11", GLFW_KEY_F11},
+                                   {"F12", GLFW_KEY_F12}};
+
+char32_t lower(char32_t c) { return c >= U'A' && c <= U'Z' ? c - U'A' + U'a' : c; }
+
+// The character of a press. Keys of the number pad that type nothing with Ctrl count as what is printed on them.
+char32_t character_of(const KeyPress& press) {
+  if (press.character != 0) return lower(press.character);
+  if (press.key == GLFW_KEY_KP_ADD) return U'+';
+  if (press.key == GLFW_KEY_KP_SUBTRACT) return U'-';
+  if (press.key == GLFW_KEY_KP_MULTIPLY) return U'*';
+  return 0;
+}
+
+// The only character of a UTF-8 text; 0 if it has several or none, or cannot be printed.
+char32_t only_character(std::string_view text) {
+  if (text.empty()) return 0;
+  const auto first = static_cast<unsigned char>(text[0]);
+  const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 0;
+  if (length != text.size()) return 0;
+  char32_t character = length == 1 ? first : first & (0x7fU >> length);
+  for (const char c : text.substr(1)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xc0) != 0x80) return 0;
+    character = character << 6 | (byte & 0x3fU);
+  }
+  const bool shortest = length < 3 || character >= 0x800;
+  const bool surrogate = character >= 0xd800 && character < 0xe000;
+  return character > U' ' && character != 0x7f && shortest && !surrogate ? character : 0;
+}
+
+std::string utf8(char32_t c) {
+  const auto byte = [](char32_t value) { return static_cast<char>(static_cast<unsigned char>(value)); };
+  if (c < 0x80) return {byte(c)};
+  if (c < 0x800) return {byte(0xc0 | c >> 6), byte(0x80 | (c & 0x3f))};
+  return {byte(0xe0 | c >> 12), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+}
+
 }  // namespace
 
 std::span<const KeyBinding> key_bindings() { return table; }
@@ -70,21 +144,45 @@ bool is_enter(const KeyPress& press) {
   return press.character == 0 && (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER);
 }
 
-std::optional<Command> command_of(const KeyPress& press) {
-  const char32_t letter =
-      press.character < 128 ? static_cast<char32_t>(std::tolower(static_cast<int>(press.character))) : press.character;
-  if (!press.control && !press.repeated && letter >= U'1' && letter <= U'9')
-    return Command{Action::color, static_cast<int>(letter - U'0')};
-  for (const KeyBinding& binding : table) {
-    const bool typed = letter != 0 && binding.character == letter && binding.action != Action::color;
-    const bool pressed = letter == 0 && binding.key != 0 && binding.key == press.key;
-    if ((!typed && !pressed) || binding.control != press.control) continue;
-    if (press.repeated && !binding.repeats) return std::nullopt;
-    if (binding.action == Action::undo && press.shift) return Command{Action::redo};
-    if (binding.action == Action::save_scene && press.shift) return Command{Action::save};
-    return Command{binding.action};
+bool KeyChord::matches(const KeyPress& press) const {
+  const char32_t pressed = character_of(press);
+  const bool same = character != 0 ? pressed == character : pressed == 0 && key == press.key;
+  // With Ctrl, the window system names the key and not what it types: "+" is "=" with Shift on many keyboards.
+  const bool letter = character >= U'a' && character <= U'z';
+  if (control && press.control && character != 0 && !letter && !shift)
+    return same || (character == U'+' && pressed == U'=');
+  return same && control == press.control && (shift == press.shift || (!control && !shift));
+}
+
+std::optional<KeyChord> key_chord(std::string_view text) {
+  KeyChord chord;
+  const auto modifier = [&](std::string_view name, bool& on) {
+    const bool found = !on && text.starts_with(name) && text.size() > name.size() + 1 && text[name.size()] == ' ';
+    if (found) text.remove_prefix(name.size() + 1);
+    on = on || found;
+  };
+  modifier("Ctrl", chord.control);
+  modifier("Shift", chord.shift);
+  const auto* named = std::ranges::find(named_keys, text, &NamedKey::name);
+  if (named != std::end(named_keys)) {
+    chord.key = named->key;
+    return chord;
   }
-  return std::nullopt;
+  chord.character = text == "Comma" ? U',' : lower(only_character(text));
+  const bool digit = chord.character >= U'1' && chord.character <= U'9';  // without Ctrl they choose a colour
+  if (chord.character == 0 || (!chord.control && (digit || chord.shift))) return std::nullopt;
+  return chord;
+}
+
+std::string text_of(const KeyChord& chord) {
+  std::string text = chord.control ? "Ctrl " : "";
+  if (chord.shift) text += "Shift ";
+  if (chord.character == U',') return text + "Comma";
+  if (chord.character >= U'a' && chord.character <= U'z')
+    return text + static_cast<char>(chord.character - U'a' + U'A');
+  if (chord.character != 0) return text + utf8(chord.character);
+  const auto* named = std::ranges::find(named_keys, chord.key, &NamedKey::key);
+  return named == std::end(named_keys) ? std::string{} : text + std::string(named->name);
 }
 
 }  // namespace mercury::window

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of the window and the keys that give them. One table serves both to look up key presses and to list the
-// keys in the help.
+// The commands of the window and the keys that give them. One table serves key presses, menus, the help, the command
+// palette and the file that remaps keys (key_map.h).
 #pragma once
 
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "app/window/toolkit/window.h"
 
@@ -40,26 +42,30 @@ enum class Action {
   labels,
   legend,
   theme,
+  left_panels,
+  right_panels,
   hide_panels,
+  larger_text,
+  smaller_text,
   full_screen,
   screenshot,
   record,
+  messages,
   help,
   quit,
 };
 
+// One command.
 struct KeyBinding {
   Action action;
-  const char* keys;  // as shown to the user: "Ctrl S"
-  const char* meaning;
+  const char* name;     // in the file of keys: "play_pause"
+  const char* keys;     // by default, alternatives with " or " between them: "Right or ."; empty = none
+  const char* meaning;  // "play or pause"
   const char* group;
-  char32_t character;  // lower case; 0 = matched by `key` alone
-  int key;             // GLFW_KEY_*; 0 = matched by `character` alone
-  bool control;        // with Ctrl
-  bool repeats;        // again while the key is held down
+  bool repeats = false;  // again while the key is held down
 };
 
-// All bindings; those of a group stand together.
+// All commands; those of a group stand together.
 std::span<const KeyBinding> key_bindings();
 
 struct Command {
@@ -67,8 +73,22 @@ struct Command {
   int number = 0;  // for Action::color, from 1
 };
 
-// The command that a key press gives, if any.
-std::optional<Command> command_of(const KeyPress& press);
+// A key with its modifiers. Keys that type a character are identified by it, others by GLFW's number.
+struct KeyChord {
+  char32_t character = 0;  // in lower case; 0 = the key types none
+  int key = 0;             // GLFW_KEY_*; 0 for a character
+  bool control = false;
+  bool shift = false;  // only with Ctrl, or with a key that types none: a typed character contains it
+  friend bool operator==(const KeyChord&, const KeyChord&) = default;
+
+  // Whether this press gives the chord. Without Ctrl, a chord without Shift is given with Shift as well.
+  bool matches(const KeyPress& press) const;
+};
+
+// "Ctrl Shift S", "Right", "?", "Comma" as a chord; none if it is no key that a command can have.
+std::optional<KeyChord> key_chord(std::string_view text);
+// As key_chord() reads it.
+std::string text_of(const KeyChord& chord);
 
 // True for both Enter keys.
 bool is_enter(const KeyPress& press);

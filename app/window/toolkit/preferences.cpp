@@ -39,6 +39,8 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   read(document, "height", preferences.size.height);
   read(document, "text_scale", preferences.text_scale);
   read(document, "panels", preferences.panels);
+  read(document, "left_open", preferences.left_open);
+  read(document, "right_open", preferences.right_open);
   read(document, "left_width", preferences.left_width);
   read(document, "right_width", preferences.right_width);
   read(document, "left_panel", preferences.left_panel);
@@ -66,6 +68,8 @@ void save(const Preferences& preferences, const std::filesystem::path& file) {
                       {"height", preferences.size.height},
                       {"text_scale", preferences.text_scale},
                       {"panels", preferences.panels},
+                      {"left_open", preferences.left_open},
+                      {"right_open", preferences.right_open},
                       {"left_width", preferences.left_width},
                       {"right_width", preferences.right_width},
                       {"left_panel", preferences.left_panel},

@@ -12,9 +12,11 @@ namespace mercury::window {
 
 struct Preferences {
   WindowSize size;
+  static constexpr float least_text = 0.7f, most_text = 2.5f;
   float text_scale = 1;
-  bool panels = true;                     // false = hidden
-  float left_width = 0, right_width = 0;  // of the panel columns, in lines of text; 0 = automatic
+  bool panels = true;                        // false = hidden
+  bool left_open = true, right_open = true;  // the panel columns; false = collapsed
+  float left_width = 0, right_width = 0;     // of the panel columns, in lines of text; 0 = automatic
   std::string left_panel = "Robots", right_panel = "View";
   render::Quality quality = render::Quality::automatic;
   std::string folder;                    // last shown in the browser

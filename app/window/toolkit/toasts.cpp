@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/toolkit/toasts.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 namespace mercury::window {
 namespace {
 
-constexpr std::size_t max_count = 5;
+constexpr std::size_t max_count = 5, max_history = 1000;
+
+}  // namespace
 
 const char* name_of(Tone tone) {
   switch (tone) {
@@ -40,9 +43,23 @@ ImU32 color_of(Tone tone) {
   }
 }
 
-}  // namespace
+std::string clock_text(std::chrono::system_clock::time_point time) {
+  return fmt::format("{:%H:%M:%S}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+void Toasts::remember(Tone tone, const std::string& text) {
+  const auto now = std::chrono::system_clock::now();
+  if (!history_.empty() && history_.back().text == text && history_.back().tone == tone) {
+    history_.back().time = now;
+    ++history_.back().count;
+    return;
+  }
+  history_.push_back({now, tone, text});
+  if (history_.size() > max_history) history_.pop_front();
+}
 
 void Toasts::show(Tone tone, std::string text) {
+  remember(tone, text);
   const double duration = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
   for (Toast& toast : toasts_)
     if (toast.text == text) {
@@ -86,7 +103,12 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
-    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) toast.seconds_left = 0;
+    const bool hovered = ImGui::IsWindowHovered();
+    if (hovered && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1))) {
+      clicked_ = clicked_ || ImGui::IsMouseClicked(0);
+      toast.seconds_left = 0;
+    }
+    log.item(fmt::format("toast.{}", number - 1), corner, {corner.x + size.x, corner.y + size.y});
     y += size.y + 0.4f * line;
     ImGui::End();
     toast.seconds_left -= dt;

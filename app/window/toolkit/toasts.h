@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short messages that appear over the picture and disappear after some seconds.
+// Short messages that appear over the picture and disappear after some seconds, and the history of all of them.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <string>
+#include <utility>
 
 #include "app/window/toolkit/event_log.h"
 
@@ -11,12 +13,30 @@ namespace mercury::window {
 
 enum class Tone { info, success, warning, error };
 
+// "news", "success", "warning" or "error", and the colour that stands for it.
+const char* name_of(Tone tone);
+ImU32 color_of(Tone tone);
+
+// A message as the history keeps it.
+struct PastMessage {
+  std::chrono::system_clock::time_point time;  // of the last one of `count` equal messages in a row
+  Tone tone;
+  std::string text;
+  int count = 1;
+};
+// "14:03:22", in local time.
+std::string clock_text(std::chrono::system_clock::time_point time);
+
 class Toasts {
  public:
   void show(Tone tone, std::string text);
   // Draws the messages at the top centre of a rectangle. `dt`: time since the last frame [s].
   void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }
+  // The last 1,000 messages, the newest last.
+  const std::deque<PastMessage>& history() const { return history_; }
+  // Whether a message was clicked since the last call, which asks for the history. A right click only dismisses it.
+  bool take_click() { return std::exchange(clicked_, false); }
 
  private:
   struct Toast {
@@ -26,7 +46,11 @@ class Toasts {
     int count = 1;
     bool logged = false;
   };
+  void remember(Tone tone, const std::string& text);
+
   std::deque<Toast> toasts_;
+  std::deque<PastMessage> history_;
+  bool clicked_ = false;
 };
 
 }  // namespace mercury::window

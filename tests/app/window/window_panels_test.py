@@ -11,7 +11,7 @@ from window_case import SAMPLES, WindowCase, main, numpy
 
 
 LEFT = ["Robots", "Browser", "Ranking", "Evolution"]
-RIGHT = ["View", "Tune", "Measure", "Video", "Stats"]
+RIGHT = ["View", "Tune", "Measure", "Video", "Messages", "Stats"]
 
 
 class PanelsTest(WindowCase):

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The history of messages, to read again and to copy.
+#pragma once
+
+#include <optional>
+
+#include "app/window/panels/panel.h"
+
+namespace mercury::window {
+
+class MessagesPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  void draw_row(PanelContext& context, const PastMessage& message, std::size_t row);
+
+  std::optional<Tone> only_;  // shows messages of this tone only
+  std::size_t seen_ = 0;      // messages when the panel was drawn last
+};
+
+}  // namespace mercury::window

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which key gives which command, and the file that changes it.
+#include "app/window/toolkit/key_map.h"
+
+#include <gmock/gmock.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "tests/app/program.h"
+
+namespace mercury::window {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+KeyPress typed(char32_t character) { return {.character = character}; }
+KeyPress with_control(char32_t character, bool shift = false) {
+  return {.character = character, .control = true, .shift = shift};
+}
+
+std::optional<Action> action_of(const KeyMap& keys, const KeyPress& press) {
+  const auto command = keys.command_of(press);
+  return command ? std::optional(command->action) : std::nullopt;
+}
+
+TEST(KeyMap, EveryCommandHasItsOwnNameAndEveryKeyOneCommand) {
+  std::vector<std::string> names, keys;
+  const KeyMap map;
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_EQ(std::ranges::count(names, binding.name), 0) << binding.name;
+    names.emplace_back(binding.name);
+    const std::string given = map.keys_of(binding.action);
+    EXPECT_EQ(given, binding.keys);
+    EXPECT_TRUE(given.empty() || std::ranges::count(keys, given) == 0) << given;
+    keys.push_back(given);
+  }
+}
+
+TEST(KeyMap, ShiftTellsCommandsWithCtrlApartAndNoOthers) {
+  const KeyMap map;
+  EXPECT_EQ(action_of(map, with_control(U's')), Action::save_scene);
+  EXPECT_EQ(action_of(map, with_control(U's', true)), Action::save);
+  EXPECT_EQ(action_of(map, with_control(U'z', true)), Action::redo);
+  EXPECT_EQ(action_of(map, typed(U'M')), Action::mutate);
+  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_DELETE, .shift = true}), Action::remove);
+  EXPECT_EQ(action_of(map, with_control(U'=', true)), Action::larger_text);  // "+" of a US keyboard
+  EXPECT_EQ(map.command_of(typed(U'7'))->number, 7);
+}
+
+TEST(KeyMap, HeldKeysRepeatOnlyCommandsThatAreMeantTo) {
+  const KeyMap map;
+  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_RIGHT, .repeated = true}), Action::step);
+  EXPECT_EQ(action_of(map, {.character = U'm', .repeated = true}), std::nullopt);
+}
+
+TEST(KeyMap, AFileMovesAKeyFromOneCommandToAnother) {
+  KeyMap map;
+  EXPECT_THAT(map.read("# mine\r\nreset = M\nstep = Ctrl Right, Comma\n\nfull_screen =\nfaster = =\n"), IsEmpty());
+  EXPECT_EQ(action_of(map, typed(U'm')), Action::reset);
+  EXPECT_EQ(action_of(map, typed(U'r')), std::nullopt);
+  EXPECT_EQ(map.keys_of(Action::mutate), "");
+  EXPECT_EQ(map.keys_of(Action::step), "Ctrl Right or Comma");
+  EXPECT_EQ(action_of(map, typed(U',')), Action::step);
+  EXPECT_EQ(action_of(map, typed(U'=')), Action::faster);
+  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_F11}), std::nullopt);
+  KeyMap again;
+  EXPECT_THAT(again.read(map.text()), IsEmpty());
+  EXPECT_EQ(again.text(), map.text());
+}
+
+TEST(KeyMap, ABadLineIsNamedAndTheOthersCount) {
+  const auto problem = [](const std::string& text) { return KeyMap().read(text); };
+  EXPECT_THAT(problem("mutat = M"), StartsWith("1: \"mutat\" is no command; did you mean mutate?"));
+  EXPECT_THAT(problem("\nreset"), StartsWith("2: \"reset\" is no line COMMAND = KEY"));
+  EXPECT_THAT(problem("reset = Strg R"), HasSubstr("\"Strg R\" is no key for a command; write M"));
+  EXPECT_THAT(problem("reset = Shift R"), HasSubstr("is no key"));
+  EXPECT_THAT(problem("reset = 3"), HasSubstr("is no key"));
+  EXPECT_THAT(problem("reset = M,"), HasSubstr("\"\" is no key"));
+  EXPECT_THAT(problem("color = C"), HasSubstr("color has the keys 1 to 9, which cannot be changed"));
+  EXPECT_THAT(problem("reset = J\nmutate = J"), StartsWith("2: J is the key of reset already"));
+  EXPECT_THAT(problem("a\nb\nc"), HasSubstr("(2 more lines cannot be used)"));
+  EXPECT_EQ(problem("\x1b[2J = M").find('\x1b'), std::string::npos);
+  KeyMap map;
+  map.read("nothing\nreset = J\n");
+  EXPECT_EQ(action_of(map, typed(U'j')), Action::reset);
+}
+
+class KeyFileTest : public test::FolderTest {};
+
+TEST_F(KeyFileTest, TheTemplateChangesNothingAndAFileThatIsTooLongIsRefused) {
+  KeyMap map;
+  EXPECT_THAT(load_keys(map, path("none.txt")), IsEmpty());
+  EXPECT_TRUE(write_keys_template(path("keys.txt")));
+  EXPECT_THAT(load_keys(map, path("keys.txt")), IsEmpty());
+  EXPECT_EQ(map.text(), KeyMap().text());
+  std::ofstream(path("keys.txt")) << "reset = J\nfoo = K\n";
+  EXPECT_TRUE(write_keys_template(path("keys.txt")));  // leaves a file alone
+  EXPECT_THAT(load_keys(map, path("keys.txt")), testing::EndsWith("keys.txt:2: \"foo\" is no command"));
+  std::ofstream(path("long.txt")) << std::string(70'000, '#');
+  EXPECT_THAT(load_keys(map, path("long.txt")), HasSubstr("longer than 64 KiB"));
+}
+
+}  // namespace
+}  // namespace mercury::window
