@@ -9,7 +9,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -104,9 +103,11 @@ Shown shown_from(const std::string& text) {
     end = text.find(',', start);
     const std::string_view word = std::string_view(text).substr(start, end - start);
     const auto item = std::ranges::find(items, word, [](const auto& known) { return known.first; });
-    if (item == items.end())
-      throw ParameterError("show", fmt::format("\"{}\" is not accepted; give some of {}", word,
-                                               fmt::join(items | std::views::keys, ",")));
+    if (item == items.end()) {
+      std::vector<std::string_view> known;
+      for (const auto& entry : items) known.push_back(entry.first);
+      throw ParameterError("show", fmt::format("\"{}\" is not accepted; give some of {}", word, fmt::join(known, ",")));
+    }
     *item->second = true;
   }
   return shown;
