@@ -36,12 +36,12 @@ void request(auto& parts, Change change) {
 }  // namespace
 
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
-  request(*parts_, [&](PendingCommands& pending) { pending.scene.emplace(std::move(robots), configuration, nullptr); });
+  request(*parts_, [&](PendingCommands& pending) { pending.scene = {std::move(robots), configuration, nullptr}; });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
                         std::shared_ptr<const Repro> repro) {
   request(*parts_, [&](PendingCommands& pending) {
-    pending.scene.emplace(std::vector{robot}, configuration, std::move(repro));
+    pending.scene = {std::vector{robot}, configuration, std::move(repro)};
     pending.steps = 0;
   });
 }

@@ -150,7 +150,8 @@ class Target {
     return (a + s * d - point).norm();
   }
   std::uint16_t nearest_of(std::initializer_list<std::uint16_t> masses, const Vector3f& point) const {
-    return std::ranges::min(masses, {}, [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
+    return *std::ranges::min_element(masses, {},
+                                     [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
   }
 
   const Robot& robot_;

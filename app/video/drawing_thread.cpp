@@ -53,7 +53,9 @@ struct DrawingThread::Parts {
   void make(std::optional<Canvas>& canvas, std::exception_ptr& failure) const {
     try {
       // Of several GPUs, the one that CUDA counts first.
-      canvas.emplace(make_offscreen_renderer(kind, {.width = 64, .height = 64}, render::Quality::automatic, 0));
+      canvas =
+          Canvas{.offscreen = make_offscreen_renderer(kind, {.width = 64, .height = 64}, render::Quality::automatic, 0),
+                 .owner = nullptr};
     } catch (const render::ContextError&) {
       failure = std::current_exception();
     }
