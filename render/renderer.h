@@ -57,8 +57,8 @@ class Renderer {
   // Body i's masses are those from mass_offsets()[i] to mass_offsets()[i + 1].
   std::span<const std::uint32_t> mass_offsets() const;
 
-  // The GL buffer with the positions that are drawn, 3 * mass_count() floats: fill it with CUDA, glNamedBufferSubData
-  // or Scene::positions. Only set_bodies() replaces its storage: unregister the buffer from CUDA before that call.
+  // The GL buffer with the positions that are drawn, 3 * mass_count() floats: fill it with OpenGL's copies or
+  // Scene::positions. set_bodies() replaces its storage.
   unsigned position_buffer() const;
 
   // The box around each body in its own coordinates, from position_buffer(). Waits for the GPU.

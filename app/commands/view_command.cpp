@@ -31,7 +31,7 @@ struct ViewCommandOptions {
   ViewOptions view;
   OutputOptions output;
   std::string size, quality = "auto", report;
-  bool fresh = false, paused = false;
+  bool fresh = false, paused = false, no_interop = false, unpaced = false;
 };
 
 window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
@@ -45,6 +45,8 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.report = options.report;
   result.remember = !options.fresh;
   result.playing = !options.paused;
+  result.interop = !options.no_interop;
+  result.paced = !options.unpaced;
   result.view = options.view.settings();
   return result;
 }
@@ -129,6 +131,14 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
       ->group("Window");
   command->add_flag("--paused", options->paused, "Start paused")->group("Window");
+  command
+      ->add_flag("--no-interop", options->no_interop,
+                 "Copy positions through the host even where CUDA and OpenGL can share them on the card")
+      ->group("Window");
+  command
+      ->add_flag("--unpaced", options->unpaced,
+                 "Draw as many pictures as possible, more than the display shows: for measurements")
+      ->group("Window");
   command->add_flag("--fresh", options->fresh, "Neither load nor save settings")->group("Window");
   add_text(*command, "--report", options->report,
            "Write the events of the window to a file, one JSON object per line (docs/window.md)", "FILE")

@@ -72,6 +72,7 @@ struct LivePicture::Parts {
   std::uint64_t revision = 0;
   SlowMotion slow_motion;
   SlowMotion::Shown shown;
+  std::shared_ptr<PositionBridge> bridge;  // or null
 
   void keep_trails(const GroupScene& old, const Snapshot& before) {
     for (std::size_t i = 0; i < snapshot->robots->size(); ++i)
@@ -132,7 +133,13 @@ render::Scene& LivePicture::scene() { return parts_->scene->scene(); }
 std::span<const render::Bounds> LivePicture::bounds() const {
   return parts_->scene ? parts_->scene->bounds() : std::span<const render::Bounds>{};
 }
+void LivePicture::set_bridge(std::shared_ptr<PositionBridge> bridge) { parts_->bridge = std::move(bridge); }
+void LivePicture::show_positions(render::Renderer& renderer) {
+  if (parts_->shown.card) parts_->bridge->show(*parts_->shown.card, renderer, scene());
+}
+bool LivePicture::positions_on_card() const { return parts_->shown.card != nullptr; }
 std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
+  if (parts_->shown.card) return parts_->snapshot->positions_of(robot);
   const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }

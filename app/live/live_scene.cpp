@@ -54,6 +54,11 @@ std::shared_ptr<const Snapshot> LiveScene::hold_snapshot() const { return parts_
 LivePicture& LiveScene::picture() { return parts_->picture; }
 std::vector<Message> LiveScene::take_messages() { return parts_->messages.take(); }
 std::string LiveScene::device_name() const { return parts_->physics.device_name(); }
+int LiveScene::cuda_device() const { return parts_->physics.cuda_device(); }
+void LiveScene::set_bridge(std::shared_ptr<PositionBridge> bridge) {
+  parts_->picture.set_bridge(bridge);
+  parts_->physics.set_bridge(std::move(bridge));
+}
 
 void LiveScene::play() {
   parts_->playing = true;

@@ -71,6 +71,10 @@ class LiveScene {
   LivePicture& picture();
   std::vector<Message> take_messages();
   std::string device_name() const;
+  int cuda_device() const;  // of all robots; -1 = none, or several
+  // Positions stay on the card and reach the renderer by this bridge. The bridge's context must be current in the
+  // destructor.
+  void set_bridge(std::shared_ptr<PositionBridge> bridge);
 
   // Time. Speeds are simulated seconds per second.
   void play();

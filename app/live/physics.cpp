@@ -51,6 +51,10 @@ void Physics::set_view(const ViewSettings& settings) {
 void Physics::set_perturbations(std::vector<LivePerturbation> perturbations) {
   request(*parts_, [&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
 }
+void Physics::set_bridge(std::shared_ptr<PositionBridge> bridge) {
+  request(*parts_, [&](PendingCommands& pending) { pending.bridge = std::move(bridge); });
+}
+int Physics::cuda_device() const { return parts_->cuda_device; }
 void Physics::play() {
   request(*parts_, [](PendingCommands& pending) {
     pending.playing = pending.drop_steps = true;

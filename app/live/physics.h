@@ -90,6 +90,9 @@ class Physics {
   std::optional<Repro> repro(RobotId robot) const;
   const Measurements& measurements() const;
   std::string device_name() const;
+  int cuda_device() const;  // of all robots; -1 = none, or several
+  // Snapshots leave positions on the card, for this bridge. Until then, and if that fails, they are on the host.
+  void set_bridge(std::shared_ptr<PositionBridge> bridge);
 
   // Waits until all commands are carried out, steps included, and newest() shows the result.
   void wait_until_done();

@@ -31,6 +31,7 @@ struct PendingCommands {
   std::optional<Scene> scene;
   std::optional<ViewSettings> view;
   std::optional<std::vector<LivePerturbation>> perturbations;
+  std::optional<std::shared_ptr<PositionBridge>> bridge;
   std::optional<bool> playing, pause_on_explosion;
   std::optional<double> speed;
   std::int64_t steps = 0;
@@ -38,14 +39,15 @@ struct PendingCommands {
   std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
-    return scene || view || perturbations || playing || pause_on_explosion || speed || steps > 0 || reset || quit ||
-           ticket > 0;
+    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || steps > 0 || reset ||
+           quit || ticket > 0;
   }
 };
 
 struct Physics::Parts {
   Parts(const Configuration& configuration, Messages& all)
-      : messages(all), simulation(configuration), population(simulation), device(simulation.device_name()) {}
+      : messages(all), simulation(configuration), population(simulation), device(simulation.device_name()),
+        cuda_device(simulation.cuda_device()) {}
 
   // Shared by both threads under the mutex.
   std::mutex mutex;
@@ -66,6 +68,8 @@ struct Physics::Parts {
   Simulation simulation;
   Population population;
   const std::string device;
+  const int cuda_device;
+  std::shared_ptr<PositionBridge> bridge;  // null = positions are read to the host
   SnapshotPool pool;
   ViewSettings view;
   std::optional<DetailObserver> details;
@@ -105,6 +109,7 @@ struct Physics::Parts {
   void report_explosions(bool from_steps);
   bool may_publish() const;
   void publish_snapshot();
+  void take_positions(SnapshotPositions& positions);
   void limit_measuring();
 };
 

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "app/live/physics_parts.h"
+#include "mercury/error.h"
 #include "mercury/observables.h"
 
 namespace mercury {
@@ -71,6 +72,7 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
   if (taken.perturbations || taken.scene || taken.reset)
     replay_log.follow(simulation, *population.robots(), perturbations);
+  if (taken.bridge) bridge = std::move(*taken.bridge);
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
@@ -159,6 +161,17 @@ bool Physics::Parts::may_publish() const {
   return wall_now() - published_at >= (1 / share - 1) * gathering_seconds;
 }
 
+void Physics::Parts::take_positions(SnapshotPositions& positions) {
+  const std::size_t masses = simulation.mass_count();
+  try {
+    if (bridge && masses > 0) return positions.set_on_card(bridge->take(simulation), masses);
+  } catch (const DeviceError& error) {
+    messages.add(Severity::note, std::string("positions are copied through the host: ") + error.what());
+    bridge.reset();
+  }
+  simulation.read_positions(positions.set_on_host(masses));
+}
+
 void Physics::Parts::publish_snapshot() {
   const double start = wall_now();
   std::shared_ptr<Snapshot> next = pool.take();
@@ -168,11 +181,10 @@ void Physics::Parts::publish_snapshot() {
   next->steps = simulation.steps();
   next->resets = resets;
   next->stops = stops;
-  next->positions.resize(simulation.mass_count());
-  // On a GPU, positions and velocities are a copy each, and the steps wait for it.
+  // On a GPU, velocities are a copy, and the steps wait for it.
   const bool with_velocities = !playing || velocities_wanted || ticket > tickets_done;
   next->velocities.resize(with_velocities ? simulation.mass_count() : 0);
-  simulation.read_positions(next->positions);
+  take_positions(next->positions);
   if (with_velocities) simulation.read_velocities(next->velocities);
   next->telemetry = telemetry;
   next->details = details ? details->observe(telemetry) : SceneDetails{};

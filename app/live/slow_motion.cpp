@@ -49,19 +49,22 @@ SlowMotion::Shown SlowMotion::at(double wall) {
   const Snapshot& newest = *snapshots_.back();
   if (snapshots_.size() < 2 || !is_slow(newest)) {
     shown_ = newest.time;
-    return {newest.time, newest.positions, newest.telemetry};
+    if (newest.positions.card())
+      return {.time = newest.time, .positions = {}, .card = newest.positions.card(), .telemetry = newest.telemetry};
+    return {.time = newest.time, .positions = newest.positions.host(), .telemetry = newest.telemetry};
   }
   shown_ = wanted(wall);
   std::size_t next = 1;
   while (next + 1 < snapshots_.size() && snapshots_[next]->time < shown_) ++next;
   const Snapshot &a = *snapshots_[next - 1], &b = *snapshots_[next];
   const auto share = static_cast<float>(std::clamp((shown_ - a.time) / (b.time - a.time), 0.0, 1.0));
-  positions_.resize(b.positions.size());
-  for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = between(a.positions[i], b.positions[i], share);
+  const std::span<const Vec3> from = a.positions.host(), to = b.positions.host();
+  positions_.resize(to.size());
+  for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = between(from[i], to[i], share);
   telemetry_ = newest.telemetry;
   for (std::size_t i = 0; i < telemetry_.size(); ++i)
     telemetry_[i].center_of_mass = between(a.telemetry[i].center_of_mass, b.telemetry[i].center_of_mass, share);
-  return {shown_, positions_, telemetry_};
+  return {.time = shown_, .positions = positions_, .telemetry = telemetry_};
 }
 
 }  // namespace mercury

@@ -27,8 +27,9 @@ class SlowMotion {
   void take(std::shared_ptr<const Snapshot> snapshot);
 
   struct Shown {
-    double time = 0;  // simulated [s]
-    std::span<const Vec3> positions;
+    double time = 0;                  // simulated [s]
+    std::span<const Vec3> positions;  // on the host; empty if they are on the card
+    const PositionSnapshot* card = nullptr;
     std::span<const Telemetry> telemetry;  // of the newest snapshot, with interpolated centres of mass
   };
   // The picture at a wall time [s]. The spans are valid until the next call of either member.

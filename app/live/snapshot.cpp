@@ -6,9 +6,9 @@
 namespace mercury {
 namespace {
 
-std::span<const Vec3> part(const std::vector<Vec3>& all, const LiveRobots& robots, std::size_t robot) {
+std::span<const Vec3> part(std::span<const Vec3> all, const LiveRobots& robots, std::size_t robot) {
   const std::size_t first = robots.mass_offsets[robot];
-  return std::span(all).subspan(first, robots.mass_offsets[robot + 1] - first);
+  return all.subspan(first, robots.mass_offsets[robot + 1] - first);
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
 }
 
-std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const { return part(positions, *robots, robot); }
+std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const { return part(positions.host(), *robots, robot); }
 std::span<const Vec3> Snapshot::velocities_of(std::size_t robot) const {
   return velocities.empty() ? std::span<const Vec3>{} : part(velocities, *robots, robot);
 }

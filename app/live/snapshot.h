@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/live/snapshot_positions.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"
 #include "mercury/simulation.h"
@@ -66,7 +67,7 @@ struct Snapshot {
   std::int64_t steps = 0;
   std::uint64_t resets = 0;          // number of returns to time 0
   std::uint64_t stops = 0;           // number of pauses by an explosion or a failure
-  std::vector<Vec3> positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
+  SnapshotPositions positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
   std::vector<Vec3> velocities;      // [m/s], as many; empty while robots play, unless requested
   std::vector<Telemetry> telemetry;  // per robot
   SceneDetails details;

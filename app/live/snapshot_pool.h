@@ -27,6 +27,7 @@ class SnapshotPool {
     if (!snapshot) snapshot = std::make_unique<Snapshot>();
     return {snapshot.release(), [free = free_](Snapshot* done) {
               std::unique_ptr<Snapshot> owned(done);
+              owned->positions.release_card();
               const std::lock_guard lock(free->mutex);
               if (free->snapshots.size() < most_free) free->snapshots.push_back(std::move(owned));
             }};

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies positions from CUDA's memory into OpenGL's, on the GPU that both use.
+//
+//   simulating thread   copy into a Store's memory, mark it       (CUDA, the simulation's stream)
+//   drawing thread      wait for the mark; copy from the same     (OpenGL)
+//                       memory into the renderer's buffer; fence
+//
+// 1. The memory belongs to both interfaces all the time (card_memory.h). Mapping an OpenGL buffer in CUDA for each
+//    picture would make each side wait until the other has nothing left to do.
+// 2. A store is written again only after its fence: OpenGL has read it.
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
 #include <cuda_gl_interop.h>
 #include <cuda_runtime_api.h>
 
+#include <algorithm>
+#include <deque>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/video/card_memory.h"
 #include "app/video/position_bridge.h"
 #include "mercury/error.h"
 
@@ -19,161 +31,153 @@ void check(cudaError_t error, const char* what) {
   if (error != cudaSuccess) throw DeviceError(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
 }
 
-// Floats in device memory.
-class DeviceFloats {
- public:
-  explicit DeviceFloats(std::size_t size) : size_(size) {
-    if (size > 0) check(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(float)), "allocating device memory");
-  }
-  ~DeviceFloats() { cudaFree(data_); }
-  DeviceFloats(const DeviceFloats&) = delete;
-  DeviceFloats& operator=(const DeviceFloats&) = delete;
-
-  float* data() const { return data_; }
-  std::size_t size() const { return size_; }
-
- private:
-  float* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-// A point in a stream that other streams can wait for.
+// A point in a stream that threads can wait for.
 class Mark {
  public:
-  Mark() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
+  Mark() {
+    check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming | cudaEventBlockingSync), "making an event");
+  }
   ~Mark() { cudaEventDestroy(event_); }
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
   void set(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "recording an event"); }
-  // Later work in this stream waits for the mark; a mark that was never set blocks nothing.
-  void block(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "waiting for an event"); }
+  void wait() const { check(cudaEventSynchronize(event_), "waiting for positions"); }
 
  private:
   cudaEvent_t event_ = nullptr;
 };
 
-// A stream that runs beside the simulation's.
-class Stream {
+// A point in OpenGL's work. The context must be current in all members.
+class Fence {
  public:
-  Stream() {
-    int least = 0, greatest = 0;
-    check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "asking for priorities");
-    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, greatest), "making a stream");
+  Fence() : sync_(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)) {}
+  ~Fence() {
+    if (sync_) glDeleteSync(sync_);
   }
-  ~Stream() {
-    cudaStreamSynchronize(stream_);
-    cudaStreamDestroy(stream_);
+  Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+  Fence& operator=(Fence&& other) noexcept {
+    std::swap(sync_, other.sync_);
+    return *this;
   }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  cudaStream_t get() const { return stream_; }
+  bool passed() const { return glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, 0) != GL_TIMEOUT_EXPIRED; }
 
  private:
-  cudaStream_t stream_ = nullptr;
+  GLsync sync_;
 };
 
-// An OpenGL buffer as CUDA knows it.
-class SharedBuffer {
- public:
-  explicit SharedBuffer(GLuint name) {
-    const cudaError_t error = cudaGraphicsGLRegisterBuffer(&resource_, name, cudaGraphicsRegisterFlagsWriteDiscard);
-    if (error == cudaSuccess) return;
-    (void)cudaGetLastError();
-    throw NoInterop(std::string("CUDA does not take OpenGL's buffer: ") + cudaGetErrorString(error));
-  }
-  ~SharedBuffer() { cudaGraphicsUnregisterResource(resource_); }
-  SharedBuffer(const SharedBuffer&) = delete;
-  SharedBuffer& operator=(const SharedBuffer&) = delete;
-
-  // Overwrites its beginning, in order with the OpenGL calls around this one.
-  void fill(const DeviceFloats& values, cudaStream_t stream) {
-    check(cudaGraphicsMapResources(1, &resource_, stream), "taking OpenGL's buffer");
-    void* memory = nullptr;
-    std::size_t bytes = 0;
-    check(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_), "finding OpenGL's buffer");
-    const std::size_t wanted = values.size() * sizeof(float);
-    if (bytes < wanted) throw std::logic_error("the renderer's bodies are not those of the simulation");
-    const cudaError_t copied = cudaMemcpyAsync(memory, values.data(), wanted, cudaMemcpyDeviceToDevice, stream);
-    check(cudaGraphicsUnmapResources(1, &resource_, stream), "giving OpenGL's buffer back");
-    check(copied, "copying positions");
-  }
-
- private:
-  cudaGraphicsResource_t resource_ = nullptr;
-};
-
-// Device memory of one snapshot.
+// Memory for the positions of one snapshot.
 struct Store {
-  explicit Store(std::size_t masses) : positions(3 * masses) {}
-  DeviceFloats positions;
-  Mark taken, shown;  // the snapshot is complete; it has been copied to OpenGL
+  Store(int device, std::size_t bytes) : memory(std::make_shared<const CardMemory>(device, bytes)) {}
+  std::shared_ptr<const CardMemory> memory;
+  Mark taken;
 };
 
-// Memory of finished snapshots; the next ones use it again.
-class Pool {
+// Stores that nobody uses; the next snapshots do.
+class Pool : public std::enable_shared_from_this<Pool> {
  public:
-  std::unique_ptr<Store> take(std::size_t masses) {
+  explicit Pool(int device) : device_(device) {}
+
+  // It comes back to the pool when its last user lets go.
+  std::shared_ptr<Store> take(std::size_t bytes) {
+    return {free_store(bytes).release(), [pool = shared_from_this()](Store* store) { pool->put(store); }};
+  }
+
+ private:
+  std::unique_ptr<Store> free_store(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     while (!free_.empty()) {
       std::unique_ptr<Store> store = std::move(free_.back());
       free_.pop_back();
-      if (store->positions.size() == 3 * masses) return store;
+      if (store->memory->size() >= bytes) return store;
     }
-    return std::make_unique<Store>(masses);
+    return std::make_unique<Store>(device_, bytes);
   }
-  void put(std::unique_ptr<Store> store) {
+  void put(Store* store) {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(store));
+    free_.emplace_back(store);
   }
 
- private:
+  const int device_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Store>> free_;
 };
 
 class CudaSnapshot final : public PositionSnapshot {
  public:
-  CudaSnapshot(std::shared_ptr<Pool> pool, const Simulation& simulation)
-      : pool_(std::move(pool)), store_(pool_->take(simulation.mass_count())) {
+  CudaSnapshot(int device, const std::shared_ptr<Pool>& pool, const Simulation& simulation)
+      : device_(device), masses_(simulation.mass_count()), store_(pool->take(masses_ * sizeof(Vec3))) {
     // The simulation's kernels run in the same stream, so the copy lies between the earlier and the later steps.
-    store_->shown.block(cudaStreamLegacy);
-    simulation.copy_positions(store_->positions.data());
+    simulation.copy_positions(static_cast<float*>(store_->memory->data()));
     store_->taken.set(cudaStreamLegacy);
   }
-  ~CudaSnapshot() override { pool_->put(std::move(store_)); }
 
-  Store& store() const { return *store_; }
+  void read(std::span<Vec3> out) const override {
+    check(cudaSetDevice(device_), "choosing the device");
+    store_->taken.wait();
+    check(cudaMemcpyAsync(out.data(), store_->memory->data(), std::min(out.size(), masses_) * sizeof(Vec3),
+                          cudaMemcpyDeviceToHost, cudaStreamPerThread),
+          "reading positions");
+    check(cudaStreamSynchronize(cudaStreamPerThread), "reading positions");
+  }
+
+  const std::shared_ptr<Store>& store() const { return store_; }
+  std::size_t masses() const { return masses_; }
 
  private:
-  std::shared_ptr<Pool> pool_;
-  std::unique_ptr<Store> store_;
+  int device_;
+  std::size_t masses_;
+  std::shared_ptr<Store> store_;
 };
 
 class CudaBridge final : public PositionBridge {
  public:
-  CudaBridge(int device, GLuint buffer) : device_(device), buffer_(buffer) {}
-
-  std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
-    use_device();
-    return std::make_unique<CudaSnapshot>(pool_, simulation);
+  explicit CudaBridge(int device) : device_(device), pool_(std::make_shared<Pool>(device)) {
+    // Finds out now whether the two share memory.
+    const CardMemory memory(device, 1);
+    const CardBuffer buffer(memory);
   }
 
-  void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
-    use_device();
-    Store& store = dynamic_cast<const CudaSnapshot&>(snapshot).store();
-    store.taken.block(stream_.get());
-    buffer_.fill(store.positions, stream_.get());
-    store.shown.set(stream_.get());
+  std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
+    check(cudaSetDevice(device_), "choosing the device");
+    return std::make_unique<CudaSnapshot>(device_, pool_, simulation);
+  }
+
+  void show(const PositionSnapshot& snapshot, render::Renderer& renderer, render::Scene& scene) override {
+    const auto& shown = dynamic_cast<const CudaSnapshot&>(snapshot);
+    check(cudaSetDevice(device_), "choosing the device");
+    while (!in_use_.empty() && in_use_.front().fence.passed()) in_use_.pop_front();
+    const CardBuffer& buffer = buffer_of(shown.store()->memory);
+    shown.store()->taken.wait();
+    if (renderer.mass_count() != shown.masses())
+      throw std::logic_error("the renderer's bodies are not those of the simulation");
+    glCopyNamedBufferSubData(buffer.name(), renderer.position_buffer(), 0, 0,
+                             static_cast<GLsizeiptr>(shown.masses() * sizeof(Vec3)));
+    in_use_.push_back({{}, shown.store()});
     scene.positions = {};
   }
 
  private:
-  void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
+  struct Import {
+    std::weak_ptr<const CardMemory> memory;
+    std::unique_ptr<CardBuffer> buffer;
+  };
+  struct InUse {
+    Fence fence;
+    std::shared_ptr<Store> store;
+  };
+
+  const CardBuffer& buffer_of(const std::shared_ptr<const CardMemory>& memory) {
+    std::erase_if(imports_, [](const Import& import) { return import.memory.expired(); });
+    const auto known = std::ranges::find_if(imports_, [&](const Import& i) { return i.memory.lock() == memory; });
+    if (known != imports_.end()) return *known->buffer;
+    imports_.push_back({memory, std::make_unique<CardBuffer>(*memory)});
+    return *imports_.back().buffer;
+  }
 
   int device_;
-  Stream stream_;
-  SharedBuffer buffer_;
-  std::shared_ptr<Pool> pool_ = std::make_shared<Pool>();
+  std::shared_ptr<Pool> pool_;
+  std::vector<Import> imports_;
+  std::deque<InUse> in_use_;  // oldest first
 };
 
 }  // namespace
@@ -186,17 +190,16 @@ int cuda_device_of_current_context() {
   return -1;
 }
 
-std::unique_ptr<PositionBridge> make_cuda_bridge(const Simulation& simulation, const render::Renderer& renderer) {
-  const int simulating = simulation.cuda_device();
+std::unique_ptr<PositionBridge> make_cuda_bridge(int simulating) {
   if (simulating < 0) throw NoInterop("the robots are not on one CUDA device");
-  if (simulation.mass_count() == 0) throw NoInterop("there are no robots");
   const int drawing = cuda_device_of_current_context();
   if (drawing < 0) throw NoInterop("OpenGL does not draw on a card that CUDA knows");
   if (drawing != simulating)
     throw NoInterop("CUDA device " + std::to_string(simulating) + " simulates, device " + std::to_string(drawing) +
                     " draws");
   check(cudaSetDevice(simulating), "choosing the device");
-  return std::make_unique<CudaBridge>(simulating, renderer.position_buffer());
+  check(cudaFree(nullptr), "starting the device");
+  return std::make_unique<CudaBridge>(simulating);
 }
 
 }  // namespace mercury

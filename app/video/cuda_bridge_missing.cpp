@@ -4,9 +4,7 @@
 
 namespace mercury {
 
-std::unique_ptr<PositionBridge> make_cuda_bridge(const Simulation&, const render::Renderer&) {
-  throw NoInterop("this build has no CUDA");
-}
+std::unique_ptr<PositionBridge> make_cuda_bridge(int) { throw NoInterop("this build has no CUDA"); }
 int cuda_device_of_current_context() { return -1; }
 
 }  // namespace mercury

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/video/position_bridge.h"
 
+#include <algorithm>
 #include <mutex>
 
 namespace mercury {
@@ -37,6 +38,9 @@ class HostSnapshot final : public PositionSnapshot {
   }
   ~HostSnapshot() override { pool_->put(std::move(positions_)); }
 
+  void read(std::span<Vec3> out) const override {
+    std::copy_n(positions_.begin(), std::min(out.size(), positions_.size()), out.begin());
+  }
   std::span<const float> floats() const { return {&positions_.data()->x, 3 * positions_.size()}; }
 
  private:
@@ -61,10 +65,10 @@ class HostBridge final : public PositionBridge {
 
 std::unique_ptr<PositionBridge> make_host_bridge() { return std::make_unique<HostBridge>(); }
 
-ChosenBridge choose_bridge(const Simulation& simulation, const render::Renderer& renderer, bool interop) {
-  if (!interop || simulation.cuda_device() < 0) return {.bridge = make_host_bridge()};
+ChosenBridge choose_bridge(int cuda_device, bool interop) {
+  if (!interop || cuda_device < 0) return {.bridge = make_host_bridge()};
   try {
-    return {.bridge = make_cuda_bridge(simulation, renderer), .on_card = true};
+    return {.bridge = make_cuda_bridge(cuda_device), .on_card = true};
   } catch (const NoInterop& error) {
     return {.bridge = make_host_bridge(),
             .note = std::string("positions are copied through the host: ") + error.what()};

@@ -7,11 +7,12 @@
 //   drawing thread                                      queue --> show() --> Renderer::draw()
 //
 // 1. A snapshot is a copy, because the simulation has stepped on when it is drawn.
-// 2. The CUDA bridge copies twice, simulation -> snapshot -> OpenGL buffer, because there is one OpenGL buffer and
-//    several snapshots may be waiting. Events between its stream and the simulation's keep the order.
+// 2. The CUDA bridge copies twice, simulation -> snapshot -> the renderer's buffer, because there is one such buffer
+//    and several snapshots may be waiting. Both copies stay on the card.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ namespace mercury {
 class PositionSnapshot {
  public:
   virtual ~PositionSnapshot() = default;
+  // Copies the first out.size() positions to the host; waits for them. Safe to call from any thread.
+  virtual void read(std::span<Vec3> out) const = 0;
 };
 
 // The simulating thread calls take() and the drawing thread calls show(), possibly at the same time.
@@ -48,10 +51,9 @@ class NoInterop : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Copies from CUDA's memory into the renderer's buffer on the GPU that both use. The renderer must have the
-// simulation's bodies. Its context must be current here, in show() and in the bridge's destructor. Destroy the bridge
-// before the next Renderer::set_bodies(). Throws NoInterop.
-std::unique_ptr<PositionBridge> make_cuda_bridge(const Simulation& simulation, const render::Renderer& renderer);
+// Copies from CUDA's memory into the renderer's buffer on the GPU `cuda_device`, which must also draw in the current
+// context. That context must be current here, in show() and in the bridge's destructor. Throws NoInterop.
+std::unique_ptr<PositionBridge> make_cuda_bridge(int cuda_device);
 
 // CUDA ordinal of the GPU that draws in the current context; -1 = none that CUDA knows.
 int cuda_device_of_current_context();
@@ -61,7 +63,8 @@ struct ChosenBridge {
   bool on_card = false;  // positions do not pass through the host
   std::string note;      // why they do although a GPU simulates; empty = nothing to say
 };
-// The CUDA bridge if `interop` allows it and it works, else the host's. The rules of make_cuda_bridge() apply.
-ChosenBridge choose_bridge(const Simulation& simulation, const render::Renderer& renderer, bool interop);
+// The CUDA bridge if `interop` allows it and it works with the device that simulates (Simulation::cuda_device()), else
+// the host's. The rules of make_cuda_bridge() apply.
+ChosenBridge choose_bridge(int cuda_device, bool interop);
 
 }  // namespace mercury

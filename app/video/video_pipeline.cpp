@@ -28,7 +28,7 @@ VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation
     : offscreen_(offscreen), simulation_(std::move(simulation)),
       drawing_(simulation_, settings, aspect_of(offscreen.renderer), names) {
   drawing_.set_bodies(offscreen.renderer);
-  bridge_ = choose_bridge(simulation_, offscreen.renderer, settings.interop);
+  bridge_ = choose_bridge(simulation_.cuda_device(), settings.interop);
 }
 
 VideoResult VideoPipeline::run(FrameWriter& writer, render::PixelFormat pixels, const VideoTiming& timing, bool quiet,

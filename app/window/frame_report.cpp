@@ -76,6 +76,8 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"scale", {scene.picture().scene().scale.low, scene.picture().scene().scale.high}},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
+                      {"on_card", scene.picture().positions_on_card()},
+                      {"speed", scene.snapshot().achieved_speed},
                       {"seconds", dt},
                       {"picture", cost.picture}});
 }

@@ -84,6 +84,8 @@ class Viewer {
   void present();
   void update_screenshot();
   bool anything_moves() const;
+  double wait_after(double spent) const;
+  bool leaves_card_to_steps() const;
   std::filesystem::path settings(const char* name) const { return folder_.empty() ? folder_ : folder_ / name; }
 
   FrameReport report_;  // first member, since it measures the time from the start
@@ -118,8 +120,8 @@ class Viewer {
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
-  Clock::time_point shown_at_;
-  double draw_seconds_ = 0;  // what drawing it took
+  Clock::time_point shown_at_, drawn_at_;  // present() ended; the robots were drawn
+  double draw_seconds_ = 0;                // what drawing it took
 
   FrameTimes times_;  // of this frame
 };
@@ -127,9 +129,12 @@ class Viewer {
 Viewer::Viewer(ViewerOptions options)
     : options_(std::move(options)), folder_(options_.remember ? settings_folder() : std::filesystem::path()),
       preferences_(preferences_for(options_, folder_)),
-      log_(options_.report.empty() ? EventLog() : EventLog(options_.report)), window_("Mercury", preferences_.size),
-      imgui_(window_, settings("window.ini")), viewport_(window_.gl_context(), preferences_.quality),
+      log_(options_.report.empty() ? EventLog() : EventLog(options_.report)),
+      window_("Mercury", preferences_.size, options_.paced), imgui_(window_, settings("window.ini")),
+      viewport_(window_.gl_context(), preferences_.quality),
       scene_({.configuration = options_.configuration, .view = options_.view}) {
+  if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
+    scene_.set_bridge(std::move(chosen.bridge));
   load_settings();
   fill_scene();
 }
@@ -182,7 +187,7 @@ int Viewer::run() {
       panels_.quit();
     }
     const double spent = since(last);
-    window_.poll(window_.input().has_backlog() ? 0 : anything_moves() ? std::max(0.0, frame_time - spent) : idle_time);
+    window_.poll(window_.input().has_backlog() ? 0 : anything_moves() ? wait_after(spent) : idle_time);
     const double dt = since(last);
     last = Clock::now();
     if (window_.take_activity()) redraws_ = std::max(redraws_, 3);
@@ -190,6 +195,9 @@ int Viewer::run() {
   }
   return 0;
 }
+
+// How long the next frame can wait for events [s].
+double Viewer::wait_after(double spent) const { return options_.paced ? std::max(0.0, frame_time - spent) : 0; }
 
 bool Viewer::anything_moves() const {
   return redraws_ > 0 || camera_moved_ || scene_.playing() || camera_.gliding() ||
@@ -296,6 +304,15 @@ void Viewer::update_renderer() {
   }
 }
 
+// At unlimited speed, what a card spends on pictures is missing in the steps. While the user only watches, pictures get
+// a small share of its time.
+bool Viewer::leaves_card_to_steps() const {
+  constexpr double share = 0.1;
+  if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
+  if (redraws_ > 0 || mouse_.busy() || camera_.gliding() || recorder_.busy()) return false;
+  return since(drawn_at_) < (1 / share - 1) * viewport_.draw_seconds();
+}
+
 void Viewer::draw_picture(double dt) {
   update_renderer();
   LivePicture& live = scene_.picture();
@@ -308,8 +325,11 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse()) return;
+  if (leaves_card_to_steps()) return;
   const auto begin = Clock::now();
+  live.show_positions(viewport_.renderer());
   viewport_.draw(without_text(live.scene()), camera, moving);
+  drawn_at_ = Clock::now();
   times_.picture = since(begin);
   shown_camera_ = camera;
   shown_steps_ = scene_.snapshot().steps;

@@ -58,11 +58,11 @@ GLFWwindow* open_window(const std::string& title, WindowSize size) {
 
 }  // namespace
 
-Window::Window(const std::string& title, WindowSize size) {
+Window::Window(const std::string& title, WindowSize size, bool paced) {
   start_glfw();
   window_ = open_window(title, size);
   glfwMakeContextCurrent(window_);
-  glfwSwapInterval(1);
+  glfwSwapInterval(paced ? 1 : 0);
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   install_callbacks();
   try {

@@ -41,7 +41,7 @@ std::vector<KeyPress> key_presses_in(const std::vector<InputEvent>& events);
 class Window {
  public:
   // Throws NoDisplay.
-  Window(const std::string& title, WindowSize size);
+  Window(const std::string& title, WindowSize size, bool paced = true);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

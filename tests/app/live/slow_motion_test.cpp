@@ -18,8 +18,9 @@ std::shared_ptr<const Snapshot> snapshot_at(std::int64_t steps, double speed, bo
   snapshot->steps = steps;
   snapshot->resets = resets;
   snapshot->time = static_cast<double>(steps) * snapshot->configuration.dt;
-  snapshot->positions = {{static_cast<float>(2 * snapshot->time), 0, 1}};
-  snapshot->telemetry = {{.center_of_mass = snapshot->positions[0]}};
+  const Vec3 place{static_cast<float>(2 * snapshot->time), 0, 1};
+  snapshot->positions.set_on_host(1)[0] = place;
+  snapshot->telemetry = {{.center_of_mass = place}};
   snapshot->playing = playing;
   snapshot->speed = speed;
   snapshot->due_at = snapshot->time / speed;

@@ -70,19 +70,19 @@ TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirPositions) {
 TEST_F(PositionBridgeTest, CpuSimulationsUseTheHostBridgeWithoutANote) {
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
   if (IsSkipped()) return;
-  const ChosenBridge chosen = choose_bridge(*simulation_, *renderer_, true);
+  const ChosenBridge chosen = choose_bridge(simulation_->cuda_device(), true);
   EXPECT_FALSE(chosen.on_card);
   EXPECT_EQ(chosen.note, "");
-  EXPECT_THROW(make_cuda_bridge(*simulation_, *renderer_), NoInterop);
+  EXPECT_THROW(make_cuda_bridge(simulation_->cuda_device()), NoInterop);
 }
 
 TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
   if (IsSkipped()) return;
-  const ChosenBridge card = choose_bridge(*simulation_, *renderer_, true);
+  const ChosenBridge card = choose_bridge(simulation_->cuda_device(), true);
   if (!card.on_card) GTEST_SKIP() << card.note;
-  const ChosenBridge host = choose_bridge(*simulation_, *renderer_, false);
+  const ChosenBridge host = choose_bridge(simulation_->cuda_device(), false);
   EXPECT_FALSE(host.on_card);
   EXPECT_EQ(host.note, "");
   for (int moment = 0; moment < 4; ++moment) {
@@ -98,7 +98,7 @@ TEST_F(PositionBridgeTest, SnapshotsFromAnotherThreadAreShownInOrder) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
   if (IsSkipped()) return;
-  const ChosenBridge card = choose_bridge(*simulation_, *renderer_, true);
+  const ChosenBridge card = choose_bridge(simulation_->cuda_device(), true);
   if (!card.on_card) GTEST_SKIP() << card.note;
   const auto host = make_host_bridge();
   std::vector<std::unique_ptr<PositionSnapshot>> on_card, on_host;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Positions that stay on the card: the window's pictures, picks and figures are those of positions on the host. Skipped
+// where no GPU both simulates and draws.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/video/position_bridge.h"
+#include "mercury/cuda_devices.h"
+#include "mercury/random_voxel.h"
+#include "render/context.h"
+#include "render/readback.h"
+#include "render/renderer.h"
+#include "tests/app/live/live_scene_setup.h"
+
+namespace mercury {
+namespace {
+
+class LiveSceneOnCard : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+    try {
+      context_ = render::make_context({.cuda_device = 0});
+    } catch (const render::ContextError& error) {
+      GTEST_SKIP() << "no OpenGL here: " << error.what();
+    }
+    on_host_ = std::make_unique<LiveScene>(options());
+    on_card_ = std::make_unique<LiveScene>(options());
+    chosen_ = choose_bridge(on_card_->cuda_device(), true);
+    if (!chosen_.on_card) GTEST_SKIP() << chosen_.note;
+    on_card_->set_bridge(std::move(chosen_.bridge));
+  }
+
+  static LiveSceneOptions options() { return {.configuration = {.device = {.kind = DeviceKind::cuda}}}; }
+
+  template <class Change>
+  void both(Change change) {
+    change(*on_host_);
+    change(*on_card_);
+    on_host_->wait_until_done();
+    on_card_->wait_until_done();
+  }
+
+  render::Image picture_of(LiveScene& scene) {
+    render::Renderer renderer(*context_, {.width = 320, .height = 180});
+    LivePicture& picture = scene.picture();
+    picture.set_bodies(renderer);
+    picture.show_positions(renderer);
+    renderer.draw(picture.scene(), camera_);
+    return render::read(renderer);
+  }
+
+  std::unique_ptr<render::Context> context_;
+  ChosenBridge chosen_;
+  std::unique_ptr<LiveScene> on_host_, on_card_;
+  render::Camera camera_ = render::Orbit{.target = {1, 0, 0}, .distance = 6}.camera();
+};
+
+TEST_F(LiveSceneOnCard, GivesTheSamePicturesBitForBit) {
+  both([](LiveScene& scene) { test::make_robots(scene, 4); });
+  for (int moment = 0; moment < 5; ++moment) {
+    both([](LiveScene& scene) { scene.step(300); });
+    ASSERT_TRUE(on_card_->picture().positions_on_card());
+    ASSERT_FALSE(on_host_->picture().positions_on_card());
+    EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes) << moment;
+  }
+}
+
+TEST_F(LiveSceneOnCard, FollowsRobotsThatComeAndGo) {
+  for (int count = 1; count < 4; ++count) {
+    both([&](LiveScene& scene) {
+      test::make_robots(scene, static_cast<std::size_t>(count));
+      scene.step(100);
+    });
+    EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes) << count;
+  }
+  both([](LiveScene& scene) {
+    scene.remove({test::ids_of(scene)[1]});
+    scene.step(50);
+  });
+  EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes);
+}
+
+TEST_F(LiveSceneOnCard, GivesPositionsToTheHostWhenAsked) {
+  both([](LiveScene& scene) {
+    test::make_robots(scene, 3);
+    scene.step(500);
+  });
+  const std::shared_ptr<const Snapshot> early = on_card_->hold_snapshot();
+  EXPECT_TRUE(std::ranges::equal(early->positions.host(), on_host_->snapshot().positions.host()));
+  const auto expected = on_host_->hold_snapshot();
+  both([](LiveScene& scene) { scene.step(500); });
+  EXPECT_TRUE(std::ranges::equal(early->positions.host(), expected->positions.host()));
+  EXPECT_FALSE(std::ranges::equal(on_card_->snapshot().positions.host(), expected->positions.host()));
+}
+
+TEST_F(LiveSceneOnCard, PicksTheSameRobots) {
+  both([](LiveScene& scene) {
+    test::make_robots(scene, 4);
+    scene.step(200);
+  });
+  const render::Bounds& target = on_host_->picture().bounds()[2];
+  const Eigen::Vector3f eye = target.center() + Eigen::Vector3f(0, -5, 0);
+  const render::Ray ray{.origin = eye, .direction = {0, 1, 0}};
+  const auto from_card = on_card_->pick(ray), from_host = on_host_->pick(ray);
+  ASSERT_EQ(from_card.has_value(), from_host.has_value());
+  ASSERT_TRUE(from_host);
+  EXPECT_EQ(from_card->index, from_host->index);
+  EXPECT_EQ(from_card->mass, from_host->mass);
+}
+
+}  // namespace
+}  // namespace mercury
