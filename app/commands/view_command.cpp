@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/commands/commands.h"
+#include "app/live/snapshot.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
@@ -31,8 +32,16 @@ struct ViewCommandOptions {
   ViewOptions view;
   OutputOptions output;
   std::string size, quality = "auto", report;
+  double speed = 1;
   bool fresh = false, paused = false, no_interop = false, unpaced = false;
 };
+
+// "0.1", or "max": as fast as possible.
+double speed_from(const std::string& option, const std::string& text) {
+  const double speed = text == "max" ? unlimited_speed : number_from<double>(option, text);
+  if (!(speed > 0)) throw InputError(option, text + " is not accepted; give a number above 0, or max");
+  return speed;
+}
 
 window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   window::ViewerOptions result;
@@ -45,6 +54,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.report = options.report;
   result.remember = !options.fresh;
   result.playing = !options.paused;
+  result.speed = options.speed;
   result.interop = !options.no_interop;
   result.paced = !options.unpaced;
   result.view = options.view.settings();
@@ -129,6 +139,10 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
       ->group("Window");
   add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
+      ->group("Window");
+  offer(add_value(*command, "--speed", options->speed,
+                  "Simulated seconds per second, or max: as fast as possible (default 1)", "X|max", speed_from),
+        {"max"})
       ->group("Window");
   command->add_flag("--paused", options->paused, "Start paused")->group("Window");
   command

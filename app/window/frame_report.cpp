@@ -78,6 +78,8 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"camera", name_of(context.camera.mode())},
                       {"on_card", scene.picture().positions_on_card()},
                       {"speed", scene.snapshot().achieved_speed},
+                      {"drawn", picture.drawn},
+                      {"clock", seconds()},
                       {"seconds", dt},
                       {"picture", cost.picture}});
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 #include "app/window/panels/panel_context.h"
 #include "app/window/toolkit/window.h"
@@ -13,7 +14,8 @@ namespace mercury::window {
 struct ShownPicture {
   ViewportArea area;
   render::Camera camera;
-  double time;  // simulated [s]
+  double time;         // simulated [s]
+  std::int64_t drawn;  // number of pictures of the robots so far
 };
 
 class FrameReport {

@@ -122,6 +122,7 @@ class Viewer {
   render::Camera shown_camera_;
   Clock::time_point shown_at_, drawn_at_;  // present() ended; the robots were drawn
   double draw_seconds_ = 0;                // what drawing it took
+  std::int64_t pictures_ = 0;              // of the robots, drawn so far
 
   FrameTimes times_;  // of this frame
 };
@@ -176,6 +177,7 @@ void Viewer::fill_scene() {
   for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
   if (!options_.run.empty()) open_first_run(context_, options_.run);
   for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
+  scene_.set_speed(options_.speed);
   if (options_.playing) scene_.play();
 }
 
@@ -241,7 +243,7 @@ void Viewer::frame(double dt) {
   draw_frame(events, dt);
   times_.whole = dt;
   frame_history_.add(times_);
-  report_.write(context_, {area_, shown_camera_, shown_time_}, times_, dt);
+  report_.write(context_, {area_, shown_camera_, shown_time_, pictures_}, times_, dt);
 }
 
 void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
@@ -330,6 +332,7 @@ void Viewer::draw_picture(double dt) {
   live.show_positions(viewport_.renderer());
   viewport_.draw(without_text(live.scene()), camera, moving);
   drawn_at_ = Clock::now();
+  ++pictures_;
   times_.picture = since(begin);
   shown_camera_ = camera;
   shown_steps_ = scene_.snapshot().steps;
