@@ -65,10 +65,13 @@ class Fence {
   GLsync sync_;
 };
 
-// Memory for the positions of one snapshot.
+// Room for the positions of one snapshot in memory that several stores share.
 struct Store {
-  Store(int device, std::size_t bytes) : memory(std::make_shared<const CardMemory>(device, bytes)) {}
+  Store(std::shared_ptr<const CardMemory> block, std::size_t begin, std::size_t bytes)
+      : memory(std::move(block)), offset(begin), size(bytes) {}
+  float* data() const { return reinterpret_cast<float*>(static_cast<char*>(memory->data()) + offset); }
   std::shared_ptr<const CardMemory> memory;
+  std::size_t offset, size;  // [bytes]
   Mark taken;
 };
 
@@ -88,9 +91,14 @@ class Pool : public std::enable_shared_from_this<Pool> {
     while (!free_.empty()) {
       std::unique_ptr<Store> store = std::move(free_.back());
       free_.pop_back();
-      if (store->memory->size() >= bytes) return store;
+      if (store->size >= bytes) return store;
     }
-    return std::make_unique<Store>(device_, bytes);
+    // Making memory that OpenGL can read takes milliseconds, so it is made for several stores at once.
+    constexpr std::size_t stores = 8, alignment = 256;
+    const std::size_t each = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+    const auto block = std::make_shared<const CardMemory>(device_, stores * each);
+    for (std::size_t i = 1; i < stores; ++i) free_.push_back(std::make_unique<Store>(block, i * each, each));
+    return std::make_unique<Store>(block, 0, each);
   }
   void put(Store* store) {
     const std::lock_guard lock(mutex_);
@@ -107,14 +115,14 @@ class CudaSnapshot final : public PositionSnapshot {
   CudaSnapshot(int device, const std::shared_ptr<Pool>& pool, const Simulation& simulation)
       : device_(device), masses_(simulation.mass_count()), store_(pool->take(masses_ * sizeof(Vec3))) {
     // The simulation's kernels run in the same stream, so the copy lies between the earlier and the later steps.
-    simulation.copy_positions(static_cast<float*>(store_->memory->data()));
+    simulation.copy_positions(store_->data());
     store_->taken.set(cudaStreamLegacy);
   }
 
   void read(std::span<Vec3> out) const override {
     check(cudaSetDevice(device_), "choosing the device");
     store_->taken.wait();
-    check(cudaMemcpyAsync(out.data(), store_->memory->data(), std::min(out.size(), masses_) * sizeof(Vec3),
+    check(cudaMemcpyAsync(out.data(), store_->data(), std::min(out.size(), masses_) * sizeof(Vec3),
                           cudaMemcpyDeviceToHost, cudaStreamPerThread),
           "reading positions");
     check(cudaStreamSynchronize(cudaStreamPerThread), "reading positions");
@@ -150,7 +158,7 @@ class CudaBridge final : public PositionBridge {
     shown.store()->taken.wait();
     if (renderer.mass_count() != shown.masses())
       throw std::logic_error("the renderer's bodies are not those of the simulation");
-    glCopyNamedBufferSubData(buffer.name(), renderer.position_buffer(), 0, 0,
+    glCopyNamedBufferSubData(buffer.name(), renderer.position_buffer(), static_cast<GLintptr>(shown.store()->offset), 0,
                              static_cast<GLsizeiptr>(shown.masses() * sizeof(Vec3)));
     in_use_.push_back({{}, shown.store()});
     scene.positions = {};
