@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions that stay on the card: the window's pictures, picks and figures are those of positions on the host. Skipped
-// where no GPU both simulates and draws.
+// Positions that stay on the card: the window's pictures, picks and figures are those of positions on the host. The
+// cases of CUDA are skipped where no GPU both simulates and draws.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
@@ -17,23 +19,53 @@
 namespace mercury {
 namespace {
 
-class LiveSceneOnCard : public testing::Test {
+// Keeps positions where only show() and read() reach them, as a card does, so that machines without a GPU test the
+// rest.
+class PretendedCard final : public PositionBridge {
+ public:
+  class Kept final : public PositionSnapshot {
+   public:
+    explicit Kept(const Simulation& simulation) : positions(simulation.mass_count()) {
+      simulation.read_positions(positions);
+    }
+    void read(std::span<Vec3> out) const override { std::copy_n(positions.begin(), out.size(), out.begin()); }
+    std::vector<Vec3> positions;
+  };
+  std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
+    return std::make_unique<Kept>(simulation);
+  }
+  void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
+    const std::vector<Vec3>& positions = dynamic_cast<const Kept&>(snapshot).positions;
+    scene.positions = {&positions.data()->x, 3 * positions.size()};
+  }
+};
+
+enum class Card { pretended, real };
+
+class LiveSceneOnCard : public testing::TestWithParam<Card> {
  protected:
   void SetUp() override {
-    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+    if (GetParam() == Card::real && cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
     try {
-      context_ = render::make_context({.cuda_device = 0});
+      context_ = render::make_context({.cuda_device = GetParam() == Card::real ? 0 : -1});
     } catch (const render::ContextError& error) {
       GTEST_SKIP() << "no OpenGL here: " << error.what();
     }
     on_host_ = std::make_unique<LiveScene>(options());
     on_card_ = std::make_unique<LiveScene>(options());
-    chosen_ = choose_bridge(on_card_->cuda_device(), true);
-    if (!chosen_.on_card) GTEST_SKIP() << chosen_.note;
-    on_card_->set_bridge(std::move(chosen_.bridge));
+    std::shared_ptr<PositionBridge> bridge = std::make_shared<PretendedCard>();
+    if (GetParam() == Card::real) {
+      ChosenBridge chosen = choose_bridge(on_card_->cuda_device(), true);
+      if (!chosen.on_card) GTEST_SKIP() << chosen.note;
+      bridge = std::move(chosen.bridge);
+    }
+    on_card_->set_bridge(std::move(bridge));
   }
 
-  static LiveSceneOptions options() { return {.configuration = {.device = {.kind = DeviceKind::cuda}}}; }
+  static LiveSceneOptions options() {
+    if (GetParam() == Card::pretended) return test::on_cpu();
+    return {.configuration = {.device = {.kind = DeviceKind::cuda}}};
+  }
 
   template <class Change>
   void both(Change change) {
@@ -53,12 +85,14 @@ class LiveSceneOnCard : public testing::Test {
   }
 
   std::unique_ptr<render::Context> context_;
-  ChosenBridge chosen_;
   std::unique_ptr<LiveScene> on_host_, on_card_;
   render::Camera camera_ = render::Orbit{.target = {1, 0, 0}, .distance = 6}.camera();
 };
 
-TEST_F(LiveSceneOnCard, GivesTheSamePicturesBitForBit) {
+INSTANTIATE_TEST_SUITE_P(All, LiveSceneOnCard, testing::Values(Card::pretended, Card::real),
+                         [](const auto& each) { return each.param == Card::real ? "cuda" : "pretended"; });
+
+TEST_P(LiveSceneOnCard, GivesTheSamePicturesBitForBit) {
   both([](LiveScene& scene) { test::make_robots(scene, 4); });
   for (int moment = 0; moment < 5; ++moment) {
     both([](LiveScene& scene) { scene.step(300); });
@@ -68,7 +102,7 @@ TEST_F(LiveSceneOnCard, GivesTheSamePicturesBitForBit) {
   }
 }
 
-TEST_F(LiveSceneOnCard, FollowsRobotsThatComeAndGo) {
+TEST_P(LiveSceneOnCard, FollowsRobotsThatComeAndGo) {
   for (int count = 1; count < 4; ++count) {
     both([&](LiveScene& scene) {
       test::make_robots(scene, static_cast<std::size_t>(count));
@@ -83,7 +117,7 @@ TEST_F(LiveSceneOnCard, FollowsRobotsThatComeAndGo) {
   EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes);
 }
 
-TEST_F(LiveSceneOnCard, GivesPositionsToTheHostWhenAsked) {
+TEST_P(LiveSceneOnCard, GivesPositionsToTheHostWhenAsked) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 3);
     scene.step(500);
@@ -96,7 +130,7 @@ TEST_F(LiveSceneOnCard, GivesPositionsToTheHostWhenAsked) {
   EXPECT_FALSE(std::ranges::equal(on_card_->snapshot().positions.host(), expected->positions.host()));
 }
 
-TEST_F(LiveSceneOnCard, PicksTheSameRobots) {
+TEST_P(LiveSceneOnCard, PicksTheSameRobots) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 4);
     scene.step(200);
