@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "app/commands/commands.h"
-#include "app/live/snapshot.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
@@ -38,7 +38,7 @@ struct ViewCommandOptions {
 
 // "0.1", or "max": as fast as possible.
 double speed_from(const std::string& option, const std::string& text) {
-  const double speed = text == "max" ? unlimited_speed : number_from<double>(option, text);
+  const double speed = text == "max" ? std::numeric_limits<double>::infinity() : number_from<double>(option, text);
   if (!(speed > 0)) throw InputError(option, text + " is not accepted; give a number above 0, or max");
   return speed;
 }
