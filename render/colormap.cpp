@@ -12,18 +12,22 @@
 namespace mercury::render {
 namespace {
 
-constexpr std::array<std::pair<Colormap, std::string_view>, 4> map_names{{
+constexpr std::array<std::pair<Colormap, std::string_view>, colormap_count> map_names{{
     {Colormap::viridis, "viridis"},
     {Colormap::magma, "magma"},
+    {Colormap::cividis, "cividis"},
     {Colormap::turbo, "turbo"},
     {Colormap::diverging, "diverging"},
 }};
 
-// Evenly spaced samples of the published maps: viridis and magma (van der Walt and Smith, CC0), turbo (Mikhailov).
+// Evenly spaced samples of the published maps: viridis and magma (van der Walt and Smith, CC0), cividis (Nuñez,
+// Anderton and Renslow 2018), turbo (Mikhailov).
 constexpr std::array viridis{rgb(0x440154), rgb(0x482878), rgb(0x3e4989), rgb(0x31688e), rgb(0x26828e),
                              rgb(0x1f9e89), rgb(0x35b779), rgb(0x6ece58), rgb(0xb5de2b), rgb(0xfde725)};
 constexpr std::array magma{rgb(0x000004), rgb(0x180f3d), rgb(0x440f76), rgb(0x721f81), rgb(0x9e2f7f),
                            rgb(0xcd4071), rgb(0xf1605d), rgb(0xfd9668), rgb(0xfeca8d), rgb(0xfcfdbf)};
+constexpr std::array cividis{rgb(0x00224e), rgb(0x123570), rgb(0x3b496c), rgb(0x575d6d), rgb(0x707173),
+                             rgb(0x8a8678), rgb(0xa59c74), rgb(0xc3b369), rgb(0xe1cc55), rgb(0xfee838)};
 constexpr std::array turbo{rgb(0x30123b), rgb(0x4145ab), rgb(0x4675ed), rgb(0x39a2fc), rgb(0x1bcfd4),
                            rgb(0x24eca6), rgb(0x61fc6c), rgb(0xa4fc3b), rgb(0xd1e834), rgb(0xf3c63a),
                            rgb(0xfe9b2d), rgb(0xf36315), rgb(0xd93806), rgb(0xb11901), rgb(0x7a0402)};
@@ -34,12 +38,30 @@ std::span<const Color> samples(Colormap map) {
   switch (map) {
     case Colormap::magma:
       return magma;
+    case Colormap::cividis:
+      return cividis;
     case Colormap::turbo:
       return turbo;
     case Colormap::diverging:
       return diverging;
     default:
       return viridis;
+  }
+}
+
+// The share of a published map, from its dark end, that is left out.
+float darkest(Colormap map) {
+  switch (map) {
+    case Colormap::viridis:
+      return 0.1f;
+    case Colormap::magma:
+      return 0.22f;
+    case Colormap::cividis:
+      return 0.22f;
+    case Colormap::turbo:
+      return 0.05f;
+    default:
+      return 0;
   }
 }
 
@@ -107,7 +129,7 @@ Colormap colormap_named(std::string_view name) {
   for (const auto& [value, known] : map_names)
     if (known == name) return value;
   throw std::invalid_argument("'" + std::string(name) +
-                              "' is not a colour map; give viridis, magma, turbo or diverging");
+                              "' is not a colour map; give viridis, magma, cividis, turbo or diverging");
 }
 
 Color mix(Color a, Color b, float t) {
@@ -120,7 +142,8 @@ Color mix(Color a, Color b, float t) {
 Color color_at(Colormap map, float t) {
   if (std::isnan(t)) return rgb(0x808080);
   const std::span<const Color> table = samples(map);
-  const float position = std::clamp(t, 0.0f, 1.0f) * float(table.size() - 1);
+  const float first = darkest(map);
+  const float position = (first + (1 - first) * std::clamp(t, 0.0f, 1.0f)) * float(table.size() - 1);
   const std::size_t index = std::min(std::size_t(position), table.size() - 2);
   return mix(table[index], table[index + 1], position - float(index));
 }

@@ -24,16 +24,18 @@ constexpr Color rgb(std::uint32_t hex) {
 std::array<float, 3> linear_of(Color color);
 Color color_of_linear(std::array<float, 3> linear);
 
+// The published maps without their darkest part, which would be invisible against dark water.
 enum class Colormap {
   viridis,    // dark blue to yellow, even lightness steps: amounts
-  magma,      // black to cream: amounts, on a dark ground
+  magma,      // dark violet to cream, even lightness steps: amounts
+  cividis,    // blue to yellow, even lightness steps: amounts, nearly the same without red or green cones
   turbo,      // rainbow with smooth lightness: shows small differences
   diverging,  // blue over grey to red: signed numbers, 0 in the middle
 };
 
-inline constexpr int colormap_count = 4;
+inline constexpr int colormap_count = 5;
 
-// "viridis", "magma", "turbo", "diverging".
+// "viridis", "magma", "cividis", "turbo", "diverging".
 std::string_view name_of(Colormap map);
 // Throws std::invalid_argument that lists them.
 Colormap colormap_named(std::string_view name);

@@ -8,12 +8,10 @@
 namespace mercury::render {
 
 void set_scale(GLint location, const Scale& scale) {
-  const float width = scale.high - scale.low;
-  const float inverse = width != 0 ? 1 / width : 0;
+  const ScaleFactors f = factors_of(scale);
   const float inner = float(colormap_entries - 1) / float(colormap_entries);
-  const float start = width != 0 ? -scale.low * inverse * inner : 0.5f * inner;
-  glUniform3f(location, inner * inverse, start + 0.5f / float(colormap_entries),
-              (float(scale.map) + 0.5f) / float(colormap_count));
+  glUniform4f(location, inner * f.factor, inner * f.offset + 0.5f / float(colormap_entries),
+              (float(scale.map) + 0.5f) / float(colormap_count), f.spacing);
 }
 
 LatticePass::LatticePass(const std::string& defines)

@@ -52,27 +52,10 @@ PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& ca
   return {&label, middle.x(), 0.9f * top + 0.1f * middle.y(), middle.z()};
 }
 
-constexpr float small = 0.82f;  // size of second lines
+constexpr float small = 0.82f;           // size of second lines
+constexpr float histogram_width = 2.2f;  // [sizes of text]
 
 }  // namespace
-
-std::string tick_text(float value, float step) {
-  if (std::abs(value) < 1e-6f * std::abs(step)) value = 0;
-  std::array<char, 32> text{};
-  const float size = std::max(std::abs(value), std::abs(step));
-  if (size >= 1e5f || std::abs(step) < 1e-4f) {
-    std::snprintf(text.data(), text.size(), "%.3g", double(value));
-  } else {
-    int digits = std::clamp(int(std::ceil(-std::log10(std::abs(step)) - 1e-4f)), 0, 6);
-    // A step of 0.25 needs one digit more than its magnitude suggests.
-    const float scaled = std::abs(step) * std::pow(10.0f, float(digits));
-    if (std::abs(scaled - std::round(scaled)) > 1e-3f) ++digits;
-    std::snprintf(text.data(), text.size(), "%.*f", digits, double(value));
-  }
-  std::string result(text.data());
-  if (!result.empty() && result[0] == '-') result.replace(0, 1, "\u2212");
-  return result;
-}
 
 float round_length(float most) {
   const float power = std::pow(10.0f, std::floor(std::log10(std::max(most, 1e-30f))));
@@ -168,21 +151,37 @@ void Overlay::texts(std::span<const Text> texts, const Camera& camera) {
   }
 }
 
+void Overlay::histogram(const Rectangle& area, std::span<const float> shares) {
+  const float step = area.height / float(shares.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const float across = std::clamp(shares[i], 0.0f, 1.0f) * area.width;
+    if (across <= 0) continue;
+    const float top = area.y + area.height - float(i + 1) * step;
+    box({area.x + area.width - across, top, across, 0.8f * step}, 0, style_.text, 0.6f);
+  }
+}
+
+void Overlay::draw_scale(const Legend& legend, std::span<const Tick> ticks, float left, float top, float height) {
+  const float size = text_size_, graph = legend.histogram.empty() ? 0 : histogram_width * size;
+  const Rectangle area{std::round(left + graph), std::round(top), std::round(1.1f * size), height};
+  if (graph > 0) histogram({left, area.y, area.x - left - 0.15f * size, height}, legend.histogram);
+  scale_bar(area, legend.scale->map);
+  for (const Tick& tick : ticks) {
+    const float line = area.y + (1 - tick.position) * height;
+    box({area.x + area.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+    text(tick.text, area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
+  }
+}
+
 void Overlay::legend(const Legend& legend) {
   const float size = text_size_, pad = 0.7f * size;
   const std::string title = legend.title + (legend.unit.empty() ? "" : " [" + legend.unit + "]");
-  std::vector<std::string> numbers;
-  std::vector<float> values;
-  float widest = 0;
-  if (legend.scale) {
-    values = ticks(legend.scale->low, legend.scale->high, 6);
-    const float step = values.size() > 1 ? values[1] - values[0] : values[0];
-    for (const float value : values) numbers.push_back(tick_text(value, step));
-    for (const std::string& number : numbers) widest = std::max(widest, 1.9f * size + text_width(number, 0.9f * size));
-  }
+  const std::vector<Tick> ticks = legend.scale ? ticks_of(*legend.scale) : std::vector<Tick>();
+  const float graph = legend.histogram.empty() ? 0 : histogram_width * size;
+  float widest = text_width(title, size);
+  for (const Tick& tick : ticks) widest = std::max(widest, graph + 1.9f * size + text_width(tick.text, 0.9f * size));
   for (const auto& [color, name] : legend.swatches)
     widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
-  widest = std::max(widest, text_width(title, size));
   const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
   const float rows = 1.25f * size * float(legend.swatches.size());
   const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + rows;
@@ -193,15 +192,7 @@ void Overlay::legend(const Legend& legend) {
   text(title, left, y, size);
   y += 1.5f * size;
   if (legend.scale) {
-    const Rectangle area{std::round(left), std::round(y + 0.3f * size), std::round(1.1f * size), bar};
-    scale_bar(area, legend.scale->map);
-    const float range = legend.scale->high - legend.scale->low;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const float at = range != 0 ? (values[i] - legend.scale->low) / range : 0.5f;
-      const float line = area.y + (1 - at) * bar;
-      box({area.x + area.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
-      text(numbers[i], area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
-    }
+    draw_scale(legend, ticks, left, y + 0.3f * size, bar);
     y += bar + 0.6f * size;
   }
   for (const auto& [color, name] : legend.swatches) {

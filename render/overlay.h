@@ -45,6 +45,8 @@ class Overlay {
   void box(const Rectangle& area, float radius, Color color, float opacity);
   // A vertical bar with the high end of the scale at the top.
   void scale_bar(const Rectangle& area, Colormap map);
+  // Bars that grow to the left from the area's right edge, one per element, the first at the bottom.
+  void histogram(const Rectangle& area, std::span<const float> shares);
 
   // Labels above bodies, given each body's box in the picture. Leaves out labels outside the picture and those that
   // would cover the label of a nearer body.
@@ -58,15 +60,13 @@ class Overlay {
 
  private:
   void backing(const Rectangle& area, float opacity);
+  void draw_scale(const Legend& legend, std::span<const Tick> ticks, float left, float top, float height);
   void label(const Rectangle& area, std::span<const std::string_view> lines);
 
   float width_, height_, text_size_;
   Style style_;
   std::vector<OverlayQuad> quads_;
 };
-
-// "0.25", "1e-05": as few digits as distinguish neighbouring ticks.
-std::string tick_text(float value, float step);
 
 // The longest of 1, 2, 5 times a power of ten that is not above `most`.
 float round_length(float most);

@@ -131,7 +131,8 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
 
 void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
-  const Style style = style_of(scene.surroundings, scene.theme);
+  const bool values = !scene.face_values.empty() || !scene.mass_values.empty() || !scene.spring_values.empty();
+  const Style style = style_of(scene.surroundings, scene.theme, values);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw in this context, too
   p.pace.begin();
   p.timer.begin();

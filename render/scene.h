@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "render/colormap.h"
+#include "render/scale.h"
 
 namespace mercury::render {
 
@@ -40,12 +41,6 @@ struct Placement {
   bool faulty = false;               // drawn grey, with a red rim: it has exploded
   bool smooth = false;               // skin rounded rather than with its edges
   std::uint32_t first_material = 0;  // added to the body's face_materials and spring_materials, below 2^24
-};
-
-// How numbers become colours.
-struct Scale {
-  float low = 0, high = 1;
-  Colormap map = Colormap::viridis;
 };
 
 enum class Surroundings {
@@ -97,6 +92,9 @@ struct Legend {
   std::string unit;            // "m/s"; empty = none
   std::optional<Scale> scale;  // a bar with numbers
   std::vector<std::pair<Color, std::string>> swatches;
+  // How many values are in each part of the scale, from its low end to its high one, as shares of the largest; drawn
+  // beside the bar. Empty = not drawn.
+  std::vector<float> histogram;
 };
 
 // Cuts away everything with normal . x > offset, in the picture's coordinates.

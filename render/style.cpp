@@ -6,6 +6,8 @@ namespace {
 
 using Eigen::Vector3f;
 
+constexpr float dimmed_water = 0.25f;  // of its light, behind values
+
 Style dark_water() {
   Style s;
   s.to_key = {-0.34f, -0.22f, 0.92f};
@@ -76,11 +78,16 @@ Style light_land() {
 
 }  // namespace
 
-Style style_of(Surroundings surroundings, Theme theme) {
+Style style_of(Surroundings surroundings, Theme theme, bool values) {
   const bool dark = theme == Theme::dark;
   Style s =
       surroundings == Surroundings::water ? (dark ? dark_water() : light_water()) : (dark ? dark_land() : light_land());
   if (surroundings == Surroundings::none) s.fog.setZero();
+  if (values && dark && surroundings == Surroundings::water) {
+    s.backdrop_high *= dimmed_water;
+    s.backdrop_low *= dimmed_water;
+    s.floor_color *= dimmed_water;
+  }
   s.text = dark ? rgb(0xf2f6f8) : rgb(0x16232c);
   s.text_edge_opacity = dark ? 0.85f : 0.0f;
   s.text_edge = dark ? rgb(0x04121c) : rgb(0xffffff);

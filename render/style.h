@@ -23,6 +23,7 @@ struct Style {
   float text_edge_opacity = 0.85f;
 };
 
-Style style_of(Surroundings surroundings, Theme theme);
+// `values`: bodies are coloured by values. Dark water is darker then, because the low ends of colour maps are as dark.
+Style style_of(Surroundings surroundings, Theme theme, bool values = false);
 
 }  // namespace mercury::render

@@ -2,11 +2,12 @@
 // A mass as a square of 6 vertices around its ball.
 #include "frame.glsl"
 #include "bodies.glsl"
+#include "values.glsl"
 #include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(location = 0) uniform float radius;      // [m]
 layout(location = 1) uniform int color_by;      // 0 plain, 1 mass values
-layout(location = 2) uniform vec3 value_scale;
+layout(location = 2) uniform vec4 value_scale;
 layout(binding = 7) uniform sampler2D colormap;
 
 layout(location = 0) out vec2 on_ball;  // -1 to 1 over the ball
@@ -35,7 +36,7 @@ void main() {
   vec3 up = cross(to_eye, right);
   on_ball = vec2(2.0 * corner.x - 1.0, corner.y) * 1.08;
   vec3 world = center + ball_radius * (right * on_ball.x + up * on_ball.y);
-  albedo = color_by == 1 ? textureLod(colormap, vec2(mass_values[mass] * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb
+  albedo = color_by == 1 ? textureLod(colormap, on_colormap(mass_values[mass], value_scale), 0.0).rgb
                          : vec3(0.62, 0.66, 0.70);
   if ((placement.flags & PLACEMENT_FAULTY) != 0u) albedo = vec3(0.8, 0.08, 0.05);
 #ifdef SHADOW

@@ -2,13 +2,14 @@
 // A spring near the cut: a square of 6 vertices in the cut's plane, around the point nearest to the spring's middle.
 #include "frame.glsl"
 #include "bodies.glsl"
+#include "values.glsl"
 #include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
 layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
 layout(location = 0) uniform float reach;       // [m]
 layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 grey, for values of faces
-layout(location = 2) uniform vec3 value_scale;
+layout(location = 2) uniform vec4 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
 
@@ -20,7 +21,7 @@ vec4 material_of(uint spring, uint a, uint b, uint flags) {
   if (color_by == 0) return material_at(spring_materials[spring], flags);
   if (color_by == 2) return vec4(0.35, 0.35, 0.35, 0.0);
   float value = 0.5 * (mass_values[a] + mass_values[b]);
-  return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
+  return vec4(textureLod(colormap, on_colormap(value, value_scale), 0.0).rgb, 0.0);
 }
 
 void main() {

@@ -8,6 +8,7 @@
 // CUT           draws the backs of skins, in place of which the cut's plane shows
 #include "frame.glsl"
 #include "bodies.glsl"
+#include "values.glsl"
 #include "shadow.glsl"
 #include "shading.glsl"
 #include "caustics.glsl"
@@ -36,7 +37,7 @@ layout(location = 4) in float mass_value;
 #endif
 #if COLOR_BY != 0
 layout(binding = 7) uniform sampler2D colormap;
-layout(location = 1) uniform vec3 value_scale;
+layout(location = 1) uniform vec4 value_scale;
 #endif
 layout(location = 0) out vec4 color;  // a = share of light that glows
 
@@ -117,7 +118,7 @@ void main() {
   float value = mass_value;
 #endif
   float activation = 0.0;
-  vec3 albedo = textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb;
+  vec3 albedo = textureLod(colormap, on_colormap(value, value_scale), 0.0).rgb;
 #endif
 #ifdef CUT
   vec4 inside = texelFetch(section, ivec2(gl_FragCoord.xy), 0);

@@ -2,6 +2,7 @@
 // A spring as a strip of 6 vertices that faces the eye or, with SHADOW, the key light.
 #include "frame.glsl"
 #include "bodies.glsl"
+#include "values.glsl"
 #include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
@@ -10,7 +11,7 @@ layout(std430, binding = 13) readonly buffer SpringValues { float spring_values[
 
 layout(location = 0) uniform float radius;      // [m]
 layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 spring values
-layout(location = 2) uniform vec3 value_scale;
+layout(location = 2) uniform vec4 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
 
@@ -29,7 +30,7 @@ out gl_PerVertex {
 vec4 material_of(uint spring, uint mass, uint placement_flags) {
   if (color_by == 0) return material_at(spring_materials[spring], placement_flags);
   float value = color_by == 1 ? mass_values[mass] : spring_values[spring];
-  return vec4(textureLod(colormap, vec2(value * value_scale.x + value_scale.y, value_scale.z), 0.0).rgb, 0.0);
+  return vec4(textureLod(colormap, on_colormap(value, value_scale), 0.0).rgb, 0.0);
 }
 
 void main() {

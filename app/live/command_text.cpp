@@ -155,6 +155,8 @@ OptionValues options_of(const ViewSettings& settings) {
   const bool race = settings.layout == Layout::race;
   options.text("--color", std::string(settings.color->key), std::string(material_color().key));
   if (settings.scale) options.text("--scale", fmt::format("{},{}", settings.scale->first, settings.scale->second), "");
+  if (settings.colormap) options.text("--colormap", std::string(render::name_of(*settings.colormap)), "");
+  options.flag("--log-scale", settings.log_scale);
   Shown shown;
   shown.legend = settings.color->has_values();
   shown.labels = shown.path = race;

@@ -30,6 +30,10 @@ void ViewOptions::add_to(CLI::App& command) {
                  fmt::format("Colour by (default {})", words_.color)));
   add(add_value(command, "--scale", words_.scale, "Ends of the colours' scale (default: fits)", "LOW,HIGH",
                 range_from));
+  std::vector<std::string> maps;
+  for (int i = 0; i < render::colormap_count; ++i) maps.emplace_back(render::name_of(static_cast<render::Colormap>(i)));
+  add(add_choice(command, "--colormap", words_.colormap, std::move(maps), "Colours of values (default: by quantity)"));
+  add(command.add_flag("--log-scale", words_.log_scale, "Spread the colours by ratios of values"));
   add(offer(add_value(command, "--show", words_.show,
                       "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
                       "path,labels,captions,legend,clock,scale (default skin,clock)",

@@ -93,8 +93,7 @@ Group group_of(const Simulation& simulation) {
 }
 
 GroupScene::GroupScene(const Group& given, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
-    : settings_(settings), scale_(*settings.color, settings.scale), names_(given.names),
-      environment_(given.environment) {
+    : settings_(settings), scale_(settings), names_(given.names), environment_(given.environment) {
   Group group = given;
   if (group.shapes.empty())
     for (const Robot* robot : group.robots) group.shapes.push_back(shape_of(*robot));
@@ -124,8 +123,9 @@ void GroupScene::show_surroundings() {
 }
 
 void GroupScene::set_settings(const ViewSettings& settings) {
-  if (settings.color != settings_.color || settings.scale != settings_.scale)
-    scale_ = {*settings.color, settings.scale};
+  if (settings.color != settings_.color || settings.scale != settings_.scale ||
+      settings.colormap != settings_.colormap || settings.log_scale != settings_.log_scale)
+    scale_ = ColorScale(settings);
   settings_ = settings;
   for (std::size_t i = 0; i < placements_.size(); ++i) placements_[i].smooth = settings.smooth || smooth_[i];
   // Clears what may no longer be shown.
@@ -217,6 +217,9 @@ void GroupScene::add(const Robot& robot, std::span<const Material> materials, co
   rest.low *= room_to_deform;
   rest.high *= room_to_deform;
   rest_.push_back(rest);
+  mass_counts_.push_back(robot.masses.size());
+  face_counts_.push_back(robot.faces.size());
+  spring_counts_.push_back(robot.springs.size());
 }
 
 void GroupScene::set_bodies(render::Renderer& renderer) const { renderer.set_bodies(bodies_); }
@@ -230,7 +233,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   place(telemetry);
   if (settings_.shown.path) lengthen_paths(telemetry);
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
-  color(std::move(details));
+  color(time, std::move(details));
 }
 
 void GroupScene::place(std::span<const Telemetry> telemetry) {
@@ -285,9 +288,34 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   scene_.labels = labels_;
 }
 
-void GroupScene::color(SceneDetails details) {
+// Fits the scale to the values that are visible: those of robots that are neither hidden nor have exploded, and of what
+// is shown of them.
+void GroupScene::fit_scale(double time) {
+  const render::Show& show = scene_.show;
+  const ColorValues& values = details_.values;
+  const bool on_springs = !values.spring.empty() && (show.springs && !show.skin);
+  const bool on_faces = !values.face.empty() && !on_springs && (show.skin || values.mass.empty());
+  const bool on_masses = !values.mass.empty() && !on_springs && !on_faces;
+  const std::vector<float>& all = on_faces ? values.face : on_masses ? values.mass : values.spring;
+  const std::vector<std::size_t>& counts = on_faces ? face_counts_ : on_masses ? mass_counts_ : spring_counts_;
+  std::vector<bool> counted;
+  std::vector<ValueRange> ranges;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    counted.push_back(!placements_[i].hidden && !placements_[i].faulty);
+    if (counted.back() && counts[i] > 0) ranges.push_back({first, counts[i]});
+    first += counts[i];
+  }
+  if (all.size() != first) ranges.clear();
+  const bool others = counted != counted_ || show.skin != counted_show_.skin || show.springs != counted_show_.springs;
+  counted_ = std::move(counted);
+  counted_show_ = show;
+  scale_.fit(time, sample(all, ranges), others);
+}
+
+void GroupScene::color(double time, SceneDetails details) {
   details_ = std::move(details);
-  scale_.fit(details_.values);
+  fit_scale(time);
   scene_.face_values = details_.values.face;
   scene_.mass_values = details_.values.mass;
   scene_.spring_values = details_.values.spring;

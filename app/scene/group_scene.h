@@ -90,10 +90,15 @@ class GroupScene {
   void place(std::span<const Telemetry> telemetry);
   void lengthen_paths(std::span<const Telemetry> telemetry);
   void write_labels(std::span<const Telemetry> telemetry);
-  void color(SceneDetails details);
+  void fit_scale(double time);
+  void color(double time, SceneDetails details);
 
   ViewSettings settings_;
-  GrowingScale scale_;
+  ColorScale scale_;
+  std::vector<std::size_t> face_counts_, spring_counts_, mass_counts_;  // one per robot
+  // The robots that the scale counts, and what is shown of them, at the last update().
+  std::vector<bool> counted_;
+  render::Show counted_show_;
   std::vector<std::string> names_;
   std::shared_ptr<const render::BodyData> bodies_;
   std::vector<Table> tables_;

@@ -29,7 +29,9 @@ struct Shown {
 
 struct ViewSettings {
   const ColorQuantity* color = &material_color();
-  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits all values so far
+  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits what is visible (ColorScale)
+  std::optional<render::Colormap> colormap;      // absent = that of the quantity
+  bool log_scale = false;
   Shown shown;
   render::Theme theme = render::Theme::dark;
   bool plain = false;  // a plain backdrop rather than water or land

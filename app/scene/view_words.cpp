@@ -34,6 +34,15 @@ Layout layout_named(const std::string& name) {
   throw ParameterError("layout", fmt::format("\"{}\" is not accepted; give grid, race", name));
 }
 
+render::Colormap colormap_named(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (int i = 0; i < render::colormap_count; ++i) {
+    names.push_back(render::name_of(static_cast<render::Colormap>(i)));
+    if (names.back() == name) return static_cast<render::Colormap>(i);
+  }
+  throw ParameterError("colormap", fmt::format("\"{}\" is not accepted; give {}", name, fmt::join(names, ", ")));
+}
+
 render::CutPlane cut_from(const std::string& text) {
   static const std::map<std::string, Eigen::Vector3f> axes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
                                                            {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
@@ -117,6 +126,8 @@ ViewSettings view_settings(const ViewWords& words) {
   validate(words);
   ViewSettings settings{
       .color = &color_quantity(words.color), .scale = words.scale, .smooth = words.smooth, .grid = words.grid};
+  if (!words.colormap.empty()) settings.colormap = colormap_named(words.colormap);
+  settings.log_scale = words.log_scale;
   settings.caption = words.caption;
   settings.theme = theme_named(words.theme);
   settings.plain = words.plain;

@@ -13,6 +13,8 @@ namespace mercury {
 struct ViewWords {
   std::string color{material_color().key};       // key of a quantity: "strain"
   std::optional<std::pair<float, float>> scale;  // ends of the colours' scale; absent = fits
+  std::string colormap;                          // "magma"; empty = that of the quantity
+  bool log_scale = false;                        // equal ratios are equally far apart
   std::optional<std::string> show;               // exactly what is shown: "skin,labels"; absent = the usual
   std::string caption;                           // text in the upper left corner; further lines are smaller
   std::string theme = "dark";                    // "dark" or "light"

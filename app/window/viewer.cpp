@@ -24,6 +24,7 @@
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
+#include "app/window/viewport/legend_view.h"
 #include "app/window/viewport/mouse_controller.h"
 #include "app/window/viewport/viewport_text.h"
 
@@ -77,6 +78,7 @@ class Viewer {
   void frame(double dt);
   void handle_input(const std::vector<InputEvent>& events);
   void draw_frame(const std::vector<InputEvent>& events, double dt);
+  void draw_legend();
   bool skips_picture() const;
   void update_renderer();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
@@ -108,6 +110,7 @@ class Viewer {
                         toasts_, dialogs_, window_, viewport_,    recorder_, frame_history_};
   Panels panels_{context_};
   MouseController mouse_{scene_, camera_, log_, toasts_};
+  LegendView legend_;
   Screenshot screenshot_;
 
   ViewportArea area_{{0, 0}, {16, 9}};
@@ -255,6 +258,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   const bool clock = !preferences_.panels;  // the play bar has its own clock
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, clock);
+  draw_legend();
   mouse_.draw(area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
@@ -267,6 +271,11 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   present();
   shown_at_ = Clock::now();
   draw_seconds_ = since(drawing);
+}
+
+void Viewer::draw_legend() {
+  ViewSettings view = scene_.view();
+  if (legend_.draw(scene_.picture().scene().legend, area_, view, log_)) scene_.set_view(view);
 }
 
 // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.

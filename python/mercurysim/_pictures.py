@@ -29,6 +29,8 @@ class Look(TypedDict, total=False):
 
     color: str  # colour by "material", "activation", "strain", "force", "speed", "pressure", "energy", ...
     scale: tuple[float, float]  # ends of the colours' scale; else it fits
+    colormap: str  # "viridis", "magma", "cividis", "turbo" or "diverging"; else that of the quantity
+    log_scale: bool  # equal ratios of values are equally far apart
     show: str | Sequence[str]  # exactly what is shown: "skin,springs,labels,path,legend,clock,scale,velocity,..."
     camera: str  # "group", "follow", "follow:NAME", "turntable", "top", "still", or a camera file (.json)
     azimuth: float  # where the eye is, around the robots from +x [degrees]

@@ -111,6 +111,8 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
   const std::map<std::string, std::function<void()>> takes{
       {"color", [&] { words.color = text_from(name, value); }},
       {"scale", [&] { words.scale = pair_from(name, value, "a pair of numbers", small_number_from); }},
+      {"colormap", [&] { words.colormap = text_from(name, value); }},
+      {"log_scale", [&] { words.log_scale = bool_from(name, value); }},
       {"show", [&] { words.show = text_from(name, value); }},
       {"camera", [&] { words.camera = text_from(name, value); }},
       {"azimuth", [&] { words.azimuth = small_number_from(name, value); }},

@@ -106,7 +106,8 @@ TEST(Overlay, BodiesBehindTheCameraOrHiddenHaveNoLabel) {
 
 TEST(Overlay, EverythingStaysInsideThePicture) {
   Overlay overlay = make_overlay();
-  overlay.legend({"strain", "1", Scale{-0.2f, 0.2f, Colormap::diverging}, {{rgb(0xff0000), "muscle 1"}}});
+  overlay.legend(
+      {"strain", "1", Scale{-0.2f, 0.2f, Colormap::diverging}, {{rgb(0xff0000), "muscle 1"}}, {0.2f, 1, 0.5f}});
   overlay.clock("12.3 s");
   overlay.caption("Mercury\n12 robots");
   overlay.length(Orbit{}.camera());
@@ -117,6 +118,30 @@ TEST(Overlay, EverythingStaysInsideThePicture) {
     EXPECT_LE(quad.rectangle.x + quad.rectangle.width, 640);
     EXPECT_LE(quad.rectangle.y + quad.rectangle.height, 360);
   }
+}
+
+// Bars beside the scale, the first at the bottom, as long as their shares.
+TEST(Overlay, LegendHasAHistogram) {
+  Overlay without = make_overlay(), with = make_overlay();
+  Legend legend{"speed", "m/s", Scale{0, 1, Colormap::viridis}, {}, {}};
+  without.legend(legend);
+  legend.histogram = {0.25f, 0, 1, 0.5f};
+  with.legend(legend);
+  std::vector<Rectangle> bars;
+  Rectangle scale;
+  for (const OverlayQuad& quad : with.quads()) {
+    if (quad.kind == OverlayQuad::scale) scale = quad.rectangle;
+    if (quad.kind == OverlayQuad::box && quad.rectangle.height > 20 && quad.source.x == 0)
+      bars.push_back(quad.rectangle);
+  }
+  ASSERT_EQ(bars.size(), 3u) << "an empty part has no bar";
+  EXPECT_EQ(with.quads().size(), without.quads().size() + 3);
+  EXPECT_FLOAT_EQ(bars[0].width / bars[1].width, 0.25f);
+  EXPECT_FLOAT_EQ(bars[2].width / bars[1].width, 0.5f);
+  for (const Rectangle& bar : bars) EXPECT_LE(bar.x + bar.width, scale.x);
+  EXPECT_GT(bars[0].y, bars[1].y);
+  EXPECT_GE(bars[2].y, scale.y - 0.01f);
+  EXPECT_LE(bars[0].y + bars[0].height, scale.y + scale.height + 0.01f);
 }
 
 TEST(Overlay, ScaleBarHasTheLengthThatItShows) {

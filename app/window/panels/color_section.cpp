@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -30,7 +31,7 @@ bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log
     view.scale = fixed ? std::optional(shown) : std::nullopt;
     changed = true;
   }
-  tooltip("on: the scale stays as it is now; off: it grows with the values seen so far");
+  tooltip("on: the scale stays as it is now; off: it fits the visible values (2nd to 98th percentile)");
   if (view.scale) {
     float ends[2] = {view.scale->first, view.scale->second};
     row("from, to", "the values at the ends of the colour map");
@@ -40,6 +41,20 @@ bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log
       changed = true;
     }
   }
+  return changed;
+}
+
+bool draw_map(ViewSettings& view, EventLog& log) {
+  std::vector<const char*> names{"usual"};
+  for (int i = 0; i < render::colormap_count; ++i)
+    names.push_back(render::name_of(static_cast<render::Colormap>(i)).data());  // literals
+  int index = view.colormap ? 1 + static_cast<int>(*view.colormap) : 0;
+  bool changed = combo("colours", "the colour map; usual: the one that suits the quantity", index, names);
+  log.item("color.map");
+  if (changed) view.colormap = index > 0 ? std::optional(static_cast<render::Colormap>(index - 1)) : std::nullopt;
+  changed |= ImGui::Checkbox("Log scale", &view.log_scale);
+  log.item("color.log");
+  tooltip("spreads the colours by ratios of values rather than by differences");
   return changed;
 }
 
@@ -71,7 +86,9 @@ bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const
     if (!offered) text += fmt::format("; only in: {}", environments_of(quantity));
     tooltip(text.c_str());
   }
-  if (view.color->has_values()) changed |= draw_scale(view, shown, log);
+  if (!view.color->has_values()) return changed;
+  changed |= draw_map(view, log);
+  changed |= draw_scale(view, shown, log);
   return changed;
 }
 

@@ -93,50 +93,6 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
   for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) line(box->low, *box->text);
 }
 
-void draw_scale(const render::Legend& legend, ImVec2 low, ImVec2 high) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  constexpr int bands = 64;
-  const float text = ImGui::GetFontSize(), right = low.x + text, height = high.y - low.y;
-  for (int i = 0; i < bands; ++i) {
-    const auto t = static_cast<float>(i);
-    list.AddRectFilled({low.x, high.y - (t + 1) / bands * height}, {right, high.y - t / bands * height + 0.5f},
-                       packed(render::color_at(legend.scale->map, (t + 0.5f) / bands)));
-  }
-  const std::vector<float> ticks = render::ticks(legend.scale->low, legend.scale->high);
-  const float span = legend.scale->high - legend.scale->low;
-  for (const float tick : ticks) {
-    const float y = high.y - (tick - legend.scale->low) / (span > 0 ? span : 1) * height;
-    list.AddLine({right, y}, {right + 0.25f * text, y}, text_color());
-    list.AddText({right + 0.4f * text, y - 0.5f * text}, text_color(),
-                 render::tick_text(tick, ticks.size() > 1 ? ticks[1] - ticks[0] : 1).c_str());
-  }
-}
-
-void draw_legend(const render::Legend& legend, const ViewportArea& area) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float text = ImGui::GetFontSize(), step = 1.35f * text;
-  const std::string title = legend.unit.empty() ? legend.title : fmt::format("{} [{}]", legend.title, legend.unit);
-  float width = ImGui::CalcTextSize(title.c_str()).x;
-  for (const auto& [color, name] : legend.swatches)
-    width = std::max(width, 1.4f * text + ImGui::CalcTextSize(name.c_str()).x);
-  width = std::max(width, 5 * text);
-  const float rows = legend.scale ? 9 : static_cast<float>(legend.swatches.size());
-  const ImVec2 low{area.high.x - width - 1.6f * text, area.low.y + 1.2f * text};
-  backing({low.x - 0.6f * text, low.y - 0.5f * text},
-          {low.x + width + 0.6f * text, low.y + (rows + 1) * step + 0.4f * text});
-  list.AddText(low, text_color(), title.c_str());
-  if (legend.scale) {
-    draw_scale(legend, {low.x, low.y + 1.6f * text}, {low.x + width, low.y + (rows + 1) * step - 0.3f * text});
-    return;
-  }
-  float y = low.y + step;
-  for (const auto& [color, name] : legend.swatches) {
-    list.AddRectFilled({low.x, y + 0.05f * text}, {low.x + text, y + 1.05f * text}, packed(color), 0.2f * text);
-    list.AddText({low.x + 1.4f * text, y}, text_color(), name.c_str());
-    y += step;
-  }
-}
-
 // The scale bar: a round length, to scale at the distance of the camera's target.
 void draw_scale_bar(const ViewportArea& area, const render::Camera& camera) {
   const float depth = (camera.target - camera.eye).norm();
@@ -175,7 +131,6 @@ void draw_viewport_text(const render::Scene& scene, std::span<const render::Boun
   draw_labels(scene, bounds, area, camera);
   if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
   if (clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
-  if (scene.legend) draw_legend(*scene.legend, area);
   if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();
 }

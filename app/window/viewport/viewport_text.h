@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text on the picture: names, legend, clock, scale bar. ImGui draws it, so that it is sharp even if the picture is
-// coarse.
+// The text on the picture: names, clock, scale bar (the legend has a file of its own). ImGui draws it, so that it is
+// sharp even if the picture is coarse.
 #pragma once
 
 #include <span>

@@ -71,6 +71,8 @@ std::vector<ViewSettings> views() {
     all.push_back(view);
   };
   add([](ViewSettings& v) { v.scale = {-0.25f, 0.1f}; });
+  add([](ViewSettings& v) { v.colormap = render::Colormap::cividis; });
+  add([](ViewSettings& v) { v.log_scale = true; });
   for (bool Shown::*what : {&Shown::skin, &Shown::springs, &Shown::masses, &Shown::path, &Shown::labels,
                             &Shown::captions, &Shown::legend, &Shown::clock, &Shown::scale_bar})
     add([&](ViewSettings& v) { v.shown.*what = !(v.shown.*what); });

@@ -280,23 +280,6 @@ TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
   EXPECT_NEAR(all[2].vector.norm(), 2 * half_a_robot, 2e-3);
 }
 
-TEST(GrowingScale, GrowsByRoundStepsAndNeverShrinks) {
-  GrowingScale scale(color_quantity("force"), std::nullopt);
-  scale.fit({.spring = {3, -4}});
-  EXPECT_FLOAT_EQ(scale.scale().high, 5);
-  EXPECT_FLOAT_EQ(scale.scale().low, -5);
-  scale.fit({.spring = {0.1f, NAN}});
-  EXPECT_FLOAT_EQ(scale.scale().high, 5);
-  EXPECT_EQ(scale.legend().unit, "N");
-}
-
-TEST(GrowingScale, KeepsAScaleThatTheUserGives) {
-  GrowingScale scale(color_quantity("speed"), std::pair(0.5f, 2.0f));
-  scale.fit({.mass = {100}});
-  EXPECT_EQ(scale.scale().low, 0.5f);
-  EXPECT_EQ(scale.scale().high, 2.0f);
-}
-
 TEST(RoundUp, GivesOneTwoFive) {
   EXPECT_FLOAT_EQ(round_up(1), 1);
   EXPECT_FLOAT_EQ(round_up(1.1f), 2);

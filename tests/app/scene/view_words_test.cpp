@@ -26,6 +26,8 @@ TEST(ViewWords, WithoutWordsSettingsHaveTheirDefaults) {
 TEST(ViewWords, WordsBecomeSettings) {
   const ViewSettings settings = view_settings({.color = "strain",
                                                .scale = std::pair(-1.0f, 2.0f),
+                                               .colormap = "cividis",
+                                               .log_scale = true,
                                                .caption = "eels",
                                                .theme = "light",
                                                .plain = true,
@@ -36,6 +38,8 @@ TEST(ViewWords, WordsBecomeSettings) {
                                                .zoom = 2.0f});
   EXPECT_EQ(settings.color, &color_quantity("strain"));
   EXPECT_EQ(settings.scale, std::pair(-1.0f, 2.0f));
+  EXPECT_EQ(settings.colormap, render::Colormap::cividis);
+  EXPECT_TRUE(settings.log_scale);
   EXPECT_EQ(settings.caption, "eels");
   EXPECT_EQ(settings.theme, render::Theme::light);
   EXPECT_TRUE(settings.plain);
@@ -68,6 +72,7 @@ TEST(ViewWords, ErrorsNameTheParameter) {
     return std::string("nothing");
   };
   EXPECT_EQ(refused([](ViewWords& w) { w.color = "mood"; }), "color");
+  EXPECT_EQ(refused([](ViewWords& w) { w.colormap = "jet"; }), "colormap");
   EXPECT_EQ(refused([](ViewWords& w) { w.theme = "pink"; }), "theme");
   EXPECT_EQ(refused([](ViewWords& w) { w.layout = "heap"; }), "layout");
   EXPECT_EQ(refused([](ViewWords& w) { w.camera = "drone"; }), "camera");

@@ -71,6 +71,40 @@ class PanelsTest(WindowCase):
         self.assertEqual(window.frame()["scale"], still)
         self.finish(window)
 
+    def test_the_ends_of_a_legend_are_dragged(self):
+        window = self.small()
+        window.click("tab.View")
+        since = window.mark()
+        window.click("color.strain")
+        window.frame(lambda frame: frame["color"] == "strain" and frame["time"] > 0.5, since)
+        since = window.mark()
+        window.key("space")
+        fitted = window.frame(lambda frame: not frame["playing"], since)
+        self.assertGreater(fitted["scale"][1], 1)
+        x, y = window.place("legend.high")
+        bar = window.place("legend.low")[1] - y
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("mousedown", 1)
+        window.frame()
+        window.do("mousemove", x, y + 10)
+        window.frame()
+        window.do("mousemove", x, y + bar // 4)
+        moved = window.frame(lambda frame: frame["scale"] != fitted["scale"])
+        window.do("mouseup", 1)
+        moved = window.frame()
+        # The upper end was at 1 of the bar and is at 3/4 now: halfway from the middle, which stays 0.
+        self.assertAlmostEqual(moved["scale"][1] / fitted["scale"][1], 0.5, delta=0.08)
+        self.assertAlmostEqual(moved["scale"][0], -moved["scale"][1], places=4)
+        self.assertEqual(moved["azimuth"], fitted["azimuth"], "the camera does not take the mouse from the legend")
+        self.assertEqual(window.place("legend.high"), (x, y), "after the drag, the bar shows the new scale")
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("click", "--repeat", 2, "--delay", 60, 1)
+        self.assertEqual(window.frame(lambda frame: frame["scale"] != moved["scale"])["scale"], fitted["scale"])
+        window.click("color.log")
+        self.finish(window)
+
     def test_a_message_has_a_bar_in_the_color_of_its_tone(self):
         window = self.small()
         bad = numpy.array([0xf0, 0x70, 0x5f]) / 255
