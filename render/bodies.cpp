@@ -16,6 +16,8 @@ void Bodies::set(std::shared_ptr<const BodyData> data) {
   mass_face_ends.write(data->mass_face_ends);
   mass_faces.write(data->mass_faces);
   mass_offsets_ = data->mass_offsets;
+  face_offsets_ = data->face_offsets;
+  spring_offsets_ = data->spring_offsets;
   face_count_ = data->records.size();
   spring_count_ = data->spring_materials.size();
   typical_spring_ = data->typical_spring;

@@ -25,7 +25,10 @@ class Bodies {
   std::size_t mass_count() const { return mass_offsets_.back(); }
   std::size_t face_count() const { return face_count_; }
   std::size_t spring_count() const { return spring_count_; }
+  // Body i has the elements from offsets[i] to offsets[i + 1].
   std::span<const std::uint32_t> mass_offsets() const { return mass_offsets_; }
+  std::span<const std::uint32_t> face_offsets() const { return face_offsets_; }
+  std::span<const std::uint32_t> spring_offsets() const { return spring_offsets_; }
   float typical_spring() const { return typical_spring_; }  // median rest length of the springs [m]
 
   // One body after the other; indices count over all bodies.
@@ -40,7 +43,7 @@ class Bodies {
   Buffer mass_faces;        // the faces at each mass
 
  private:
-  std::vector<std::uint32_t> mass_offsets_{0};
+  std::vector<std::uint32_t> mass_offsets_{0}, face_offsets_{0}, spring_offsets_{0};
   std::shared_ptr<const BodyData> springs_to_write_;  // nullptr = they are on the GPU
   std::size_t face_count_ = 0, spring_count_ = 0;
   float typical_spring_ = 0.1f;

@@ -136,6 +136,8 @@ std::shared_ptr<const BodyData> assemble(std::span<const std::shared_ptr<const P
     append(data->mass_faces, body.mass_faces, first_face);
     append(lengths, body.lengths);
     data->mass_offsets.push_back(std::uint32_t(data->rest_positions.size() / 3));
+    data->face_offsets.push_back(std::uint32_t(data->records.size()));
+    data->spring_offsets.push_back(std::uint32_t(data->spring_materials.size()));
   }
   data->typical_spring = median(std::move(lengths), 0.1f);
   return data;

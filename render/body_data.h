@@ -28,7 +28,7 @@ std::shared_ptr<const PreparedBody> prepare_body(const Body& body, std::size_t i
 
 // All bodies of a group, one after the other; indices count over all of them.
 struct BodyData {
-  std::vector<std::uint32_t> mass_offsets{0};  // one per body, and one more
+  std::vector<std::uint32_t> mass_offsets{0}, face_offsets{0}, spring_offsets{0};  // one per body, and one more
   std::vector<float> rest_positions;
   std::vector<std::uint32_t> owners;  // the body of each mass
   std::vector<std::uint32_t> faces, springs, spring_materials;

@@ -14,6 +14,11 @@ class LatticePass {
   // Draws what Scene::show requests, into the picture or the shadow map. Uses the buffers bound for the skins.
   void draw(const Bodies& bodies, const Scene& scene);
   void draw_shadow(const Bodies& bodies, const Scene& scene);
+  // How far what is drawn reaches beyond the masses [m].
+  static float reach(const Bodies& bodies, const Scene& scene);
+  // Draws the depth of some springs or masses, in the picture's view.
+  void draw_spring_depth(const Bodies& bodies, const Scene& scene, std::size_t first, std::size_t count);
+  void draw_mass_depth(const Bodies& bodies, const Scene& scene, std::size_t first, std::size_t count);
 
  private:
   void draw_springs(const Bodies& bodies, const Scene& scene, GLuint program);
@@ -21,6 +26,7 @@ class LatticePass {
 
   VertexArray empty_;
   Program spring_, spring_shadow_, mass_, mass_shadow_;
+  Program spring_depth_, mass_depth_;  // made when first needed
   StreamBuffer values_;
 };
 

@@ -46,6 +46,7 @@ void Renderer::resize(int width, int height) {
   p.targets = make_targets(width, height, p.settings.samples);
   p.passes->resize(width, height);
   p.section.resize(width, height);
+  p.outline.resize(width, height);
   p.width = width;
   p.height = height;
 }
@@ -74,6 +75,7 @@ void Renderer::set_bodies(std::span<const Body> bodies) {
 void Renderer::set_bodies(std::shared_ptr<const BodyData> bodies) {
   parts_->bodies.set(std::move(bodies));
   parts_->passes->skin.attach(parts_->bodies);
+  parts_->outline.attach(parts_->bodies);
 }
 
 std::size_t Renderer::body_count() const { return parts_->bodies.body_count(); }

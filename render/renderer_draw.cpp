@@ -37,7 +37,7 @@ bool draws_inside(const Scene& scene, const Camera& camera) {
 
 std::string skin_variant(const Scene& scene) {
   const bool rounded = any_placement(scene, [](const Placement& p) { return p.smooth; });
-  const bool marked = any_placement(scene, [](const Placement& p) { return p.selected || p.faulty; });
+  const bool marked = any_placement(scene, [](const Placement& p) { return p.faulty; });
   return std::string(rounded ? "#define ROUNDED\n" : "") + (marked ? "#define MARKED\n" : "");
 }
 
@@ -146,6 +146,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   if (scene.surroundings == Surroundings::water)
     p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
   p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), scene.tiles.empty() ? style.vignette : 0);
+  p.outline.draw(p.bodies, scene, p.passes->lattice, p.bounds.boxes(), p.targets);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.
   const std::vector<Bounds> boxes =
       scene.labels.empty() ? std::vector<Bounds>() : placed(p.bounds.read(), scene.placements);

@@ -10,7 +10,8 @@
 //   occlusion           ambient occlusion of those surfaces, at half the picture's size
 //   skins, springs and masses, surroundings
 //                       linear light, 4 samples per pixel
-//   finish              paths and particles; then glow, tone curve, average of the samples; then text
+//   finish              paths and particles; then glow, tone curve, average of the samples; then outlines of selected
+//                       bodies, and text
 //
 // 1. What costs much per pixel is computed once per pixel, before the 4 samples are drawn.
 // 2. No pass waits for an answer from the GPU. What depends on the positions stays there, in FrameBlock. Only labels
@@ -30,6 +31,7 @@
 #include "render/lattice_pass.h"
 #include "render/light_pass.h"
 #include "render/occlusion_pass.h"
+#include "render/outline_pass.h"
 #include "render/overlay_pass.h"
 #include "render/pace.h"
 #include "render/quality.h"
@@ -82,6 +84,7 @@ struct Renderer::Parts {
   BoundsPass bounds;
   FitPass fit;
   SectionPass section;
+  OutlinePass outline;
   PassTimer timer;
   Pace pace;
   std::string variant;  // lines of #define for this picture

@@ -37,7 +37,7 @@ struct RenderMaterial {
 struct Placement {
   Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
-  bool selected = false;             // drawn with a bright rim
+  bool selected = false;             // drawn with a bright outline around it
   bool faulty = false;               // drawn grey, with a red rim: it has exploded
   bool smooth = false;               // skin rounded rather than with its edges
   std::uint32_t first_material = 0;  // added to the body's face_materials and spring_materials, below 2^24

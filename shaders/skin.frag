@@ -3,7 +3,7 @@
 //
 // COLOR_BY      0 materials, 1 face values, 2 mass values
 // ROUNDED       some bodies are smooth
-// MARKED        some bodies are selected or faulty
+// MARKED        some bodies are faulty
 // FRONT_LIGHT   front_light.comp has computed how much key light arrives
 // CUT           draws the backs of skins, in place of which the cut's plane shows
 #include "frame.glsl"
@@ -150,10 +150,7 @@ void main() {
   float strength = max(activation, 0.0);
   vec3 glow = frame.key_light.w * strength * strength * albedo * (0.35 + 0.65 * albedo) * (0.35 + 0.65 * max(dot(normal, to_eye), 0.0));
 #ifdef MARKED
-  if ((flags & (PLACEMENT_SELECTED | PLACEMENT_FAULTY)) != 0u) {
-    float rim = pow(1.0 - abs(dot(normal, to_eye)), 2.5);
-    glow += rim * ((flags & PLACEMENT_FAULTY) != 0u ? vec3(2.0, 0.15, 0.1) : vec3(1.6, 1.3, 0.5));
-  }
+  if ((flags & PLACEMENT_FAULTY) != 0u) glow += pow(1.0 - abs(dot(normal, to_eye)), 2.5) * vec3(2.0, 0.15, 0.1);
 #endif
   vec3 total = through_fog(light + glow, -to_eye, range);
   color = vec4(total, clamp(dot(glow, vec3(1.0)) / (dot(total, vec3(1.0)) + 1e-4), 0.0, 1.0));
