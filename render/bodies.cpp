@@ -21,6 +21,7 @@ void Bodies::set(std::shared_ptr<const BodyData> data) {
   face_count_ = data->records.size();
   spring_count_ = data->spring_materials.size();
   typical_spring_ = data->typical_spring;
+  rest_to_write_ = data;
   springs_to_write_ = std::move(data);
 }
 
@@ -29,6 +30,12 @@ void Bodies::write_springs() {
   springs.write(springs_to_write_->springs);
   spring_materials.write(springs_to_write_->spring_materials);
   springs_to_write_.reset();
+}
+
+void Bodies::write_rest() {
+  if (!rest_to_write_) return;
+  rest_positions.write(rest_to_write_->rest_positions);
+  rest_to_write_.reset();
 }
 
 }  // namespace mercury::render

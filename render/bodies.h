@@ -20,6 +20,8 @@ class Bodies {
   void set(std::shared_ptr<const BodyData> data);
   // Uploads the springs before they are first drawn: they are most of the data and seldom visible.
   void write_springs();
+  // Uploads the positions at rest before they are first needed.
+  void write_rest();
 
   std::size_t body_count() const { return mass_offsets_.size() - 1; }
   std::size_t mass_count() const { return mass_offsets_.back(); }
@@ -33,6 +35,7 @@ class Bodies {
 
   // One body after the other; indices count over all bodies.
   Buffer positions;         // float[3] per mass
+  Buffer rest_positions;    // the same
   Buffer mass_bodies;       // uint per mass
   Buffer first_masses;      // uint per body, and one more: its first mass
   Buffer faces;             // uint[3] per face
@@ -44,7 +47,7 @@ class Bodies {
 
  private:
   std::vector<std::uint32_t> mass_offsets_{0}, face_offsets_{0}, spring_offsets_{0};
-  std::shared_ptr<const BodyData> springs_to_write_;  // nullptr = they are on the GPU
+  std::shared_ptr<const BodyData> springs_to_write_, rest_to_write_;  // nullptr = they are on the GPU
   std::size_t face_count_ = 0, spring_count_ = 0;
   float typical_spring_ = 0.1f;
 };

@@ -43,7 +43,6 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.floor_color = with(style.floor_color, 0);
   b.line_color = with(style.line_color, 0);
   b.fog = with(style.fog / distance, 0.55f * distance);
-  b.cut = scene.cut ? with(scene.cut->normal, scene.cut->offset) : Vector4f(0, 0, 0, 1);
   b.screen = {float(width), float(height), 1 / float(width), 1 / float(height)};
   const float scale = 1 / std::tan(0.5f * camera.field_of_view);
   // Depth d in the buffer is the distance near far / (near + d (far - near)).

@@ -13,7 +13,7 @@ namespace mercury::render {
 struct FrameBlock {
   Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow = Eigen::Matrix4f::Identity();
   Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color,
-      fog, cut, screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
+      fog, screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
 };
 
 // The size of a pattern that is fixed in the world and suits any viewing distance: a power of two, which fades into its

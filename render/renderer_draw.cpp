@@ -28,11 +28,10 @@ bool any_placement(const Scene& scene, Property property) {
   return std::any_of(scene.placements.begin(), scene.placements.end(), property);
 }
 
-// Whether the eye is on the side that the cut removes, so that bodies show their solid inside. When springs or masses
-// are drawn, bodies stay hollow so that those are visible.
-bool draws_inside(const Scene& scene, const Camera& camera) {
-  return scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses &&
-         scene.cut->normal.dot(camera.eye) > scene.cut->offset;
+// Whether cut bodies show their solid inside. When springs or masses are drawn, bodies stay hollow so that those are
+// visible.
+bool draws_inside(const Scene& scene) {
+  return scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses;
 }
 
 std::string skin_variant(const Scene& scene) {
@@ -61,6 +60,7 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   scene_buffers.upload(scene, bodies);
   scene_buffers.bind(bodies);
   bounds.measure(bodies);
+  if (scene.cut) cut.find(bodies, *scene.cut);
   if (!scene.labels.empty()) bounds.start_reading();
   const FrameBlock block = frame_block(scene, camera, style, width, height);
   frame.write(&block, sizeof block);
@@ -73,9 +73,9 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
 // Calls draw_skins(variant) for each visible side of the skins: the fronts, and where a cut shows solid insides, the
 // backs.
 template <typename Draw>
-void Renderer::Parts::draw_sides(const Scene& scene, const Camera& camera, Draw draw_skins) {
+void Renderer::Parts::draw_sides(const Scene& scene, Draw draw_skins) {
   if (!scene.show.skin) return;
-  const bool inside = draws_inside(scene, camera);
+  const bool inside = draws_inside(scene);
   // Skins are closed, so backs are visible only through a cut.
   scene.cut && !inside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   draw_skins("");
@@ -85,7 +85,7 @@ void Renderer::Parts::draw_sides(const Scene& scene, const Camera& camera, Draw 
   glCullFace(GL_BACK);
 }
 
-void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
+void Renderer::Parts::draw_light(const Scene& scene) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
@@ -96,7 +96,7 @@ void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
   timer.mark("shadow map");
   passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
   timer.mark("light on the floor");
-  passes->front.draw([&] { draw_sides(scene, camera, [&](const char* side) { passes->skin.draw_depth(side); }); });
+  passes->front.draw([&] { draw_sides(scene, [&](const char* side) { passes->skin.draw_depth(side); }); });
   timer.mark("nearest surfaces");
   passes->front.find_light();
   timer.mark("light on skins");
@@ -107,7 +107,13 @@ void Renderer::Parts::draw_light(const Scene& scene, const Camera& camera) {
 
 void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   glBindTextureUnit(binding::colormap, colormaps.get());
-  if (draws_inside(scene, camera)) section.draw(bodies, scene);
+  if (draws_inside(scene))
+    section.draw(bodies, scene, [&] {
+      glEnable(GL_CULL_FACE);
+      glCullFace(GL_FRONT);
+      passes->skin.draw_depth(cut_variant);
+      glCullFace(GL_BACK);
+    });
   glBindFramebuffer(GL_FRAMEBUFFER, targets.drawing.get());
   glViewport(0, 0, width, height);
   const float farthest = 0;
@@ -117,7 +123,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::materials;
-  draw_sides(scene, camera,
+  draw_sides(scene,
              [&](const char* side) { passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");
@@ -138,7 +144,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.timer.begin();
   p.prepare(scene, camera, style);
   p.timer.mark("positions");
-  p.draw_light(scene, camera);
+  p.draw_light(scene);
   p.draw_solid(scene, camera);
   glDepthFunc(GL_GREATER);
   p.passes->annotation.draw_tiles(scene.tiles);

@@ -2,7 +2,8 @@
 // What a Renderer consists of, and how it draws one picture.
 //
 //   positions           each body's box; each face's normal and axes; what the shadow map and the floor's light map
-//                       cover; lists of the faces that turn towards the eye and towards the light
+//                       cover; the plane that cuts each body; lists of the faces that turn towards the eye and towards
+//                       the light
 //   shadow map          depth, seen from the key light
 //   light on the floor  soft shadows on the floor as a map; under water, a tile of caustics
 //   nearest surfaces    depth and face of the first surface in each pixel, one sample per pixel
@@ -25,6 +26,7 @@
 #include "render/annotation_pass.h"
 #include "render/bodies.h"
 #include "render/bounds_pass.h"
+#include "render/cut_pass.h"
 #include "render/finish_pass.h"
 #include "render/fit_pass.h"
 #include "render/front_pass.h"
@@ -83,6 +85,7 @@ struct Renderer::Parts {
   std::optional<Passes> passes;
   BoundsPass bounds;
   FitPass fit;
+  CutPass cut;
   SectionPass section;
   OutlinePass outline;
   PassTimer timer;
@@ -91,8 +94,8 @@ struct Renderer::Parts {
 
   void prepare(const Scene& scene, const Camera& camera, const Style& style);
   template <typename Draw>
-  void draw_sides(const Scene& scene, const Camera& camera, Draw draw_skins);
-  void draw_light(const Scene& scene, const Camera& camera);
+  void draw_sides(const Scene& scene, Draw draw_skins);
+  void draw_light(const Scene& scene);
   void draw_solid(const Scene& scene, const Camera& camera);
 };
 

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "render/colormap.h"
+#include "render/cut.h"
 #include "render/scale.h"
 
 namespace mercury::render {
@@ -97,12 +98,6 @@ struct Legend {
   std::vector<float> histogram;
 };
 
-// Cuts away everything with normal . x > offset, in the picture's coordinates.
-struct CutPlane {
-  Eigen::Vector3f normal{1, 0, 0};
-  float offset = 0;  // [m]
-};
-
 struct Show {
   bool skin = true;
   bool springs = false;
@@ -122,7 +117,7 @@ struct Scene {
   Scale scale;
 
   Show show;
-  std::optional<CutPlane> cut;
+  std::optional<Cut> cut;   // opens each body
   float spring_radius = 0;  // [m]; 0 = chosen from the springs' lengths
   float mass_radius = 0;    // [m]; 0 = chosen from the springs' lengths
 

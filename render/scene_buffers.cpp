@@ -17,6 +17,7 @@ using Eigen::Vector4f;
 struct PlacementRecord {
   float x = 0, y = 0, z = 0;
   std::uint32_t flags = 0;
+  Vector4f cut{0, 0, 0, 1};  // filled in by CutPass
 };
 
 std::uint32_t flags_of(const Placement& placement) {
@@ -28,7 +29,10 @@ std::vector<PlacementRecord> placement_records(std::span<const Placement> placem
   std::vector<PlacementRecord> records(std::max<std::size_t>(bodies, 1));
   for (std::size_t i = 0; i < placements.size(); ++i) {
     const Vector3f& offset = placements[i].offset;
-    records[i] = {offset.x(), offset.y(), offset.z(), flags_of(placements[i])};
+    records[i].x = offset.x();
+    records[i].y = offset.y();
+    records[i].z = offset.z();
+    records[i].flags = flags_of(placements[i]);
   }
   return records;
 }

@@ -22,21 +22,35 @@ void SectionPass::resize(int width, int height) {
   colors_ = Texture();
 }
 
-void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
+// Prepares the map of bodies in their cuts.
+void SectionPass::begin() {
   if (!colors_) {
     colors_ = make_texture(GL_RGBA16F, width_, height_);
+    bodies_ = make_texture(GL_R32UI, width_, height_);
+    glTextureParameteri(bodies_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(bodies_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     nearness_ = make_texture(GL_DEPTH_COMPONENT32F, width_, height_);
     framebuffer_ = make_framebuffer({colors_.get()}, nearness_.get());
+    bodies_framebuffer_ = make_framebuffer({bodies_.get()}, nearness_.get());
   }
+  const std::array<GLuint, 4> none{};
+  const float nothing = 0;
+  glClearNamedFramebufferuiv(bodies_framebuffer_.get(), GL_COLOR, 0, none.data());
+  glClearNamedFramebufferfv(bodies_framebuffer_.get(), GL_DEPTH, 0, &nothing);
+  glBindFramebuffer(GL_FRAMEBUFFER, bodies_framebuffer_.get());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+}
+
+void SectionPass::draw_springs(const Bodies& bodies, const Scene& scene) {
   const std::array<float, 4> plain{0.35f, 0.35f, 0.35f, 0};
   const float nothing = 0;
   glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 0, plain.data());
   glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, &nothing);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
-  glViewport(0, 0, width_, height_);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
+  glBindTextureUnit(binding::faces_seen, bodies_.get());
   bodies.springs.bind_storage(binding::first_free);
   bodies.spring_materials.bind_storage(binding::first_free + 1);
   glUseProgram(program_.get());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of bodies where a plane cuts them.
+// The inside of bodies where planes cut them.
 #pragma once
 
 #include "render/bodies.h"
@@ -8,22 +8,31 @@
 
 namespace mercury::render {
 
-// Draws a map of the cut's plane at the picture's size: each point takes the material, or the value's colour, of the
-// nearest spring. This is a Voronoi diagram, drawn with the depth test as in Hoff et al. 1999: each spring draws a
-// square whose depth is the distance to the spring's middle, and the nearest wins.
+// Draws a map of the cuts' planes at the picture's size: each point takes the material, or the value's colour, of the
+// nearest spring of the body that is cut there. This is a Voronoi diagram, drawn with the depth test as in Hoff et al.
+// 1999: each spring draws a square whose depth is the distance to the spring's middle, and the nearest wins.
 class SectionPass {
  public:
   SectionPass();
   void resize(int width, int height);
-  // Draws the map and binds it for the skins. Uses the buffers bound for the skins and the colour maps.
-  void draw(const Bodies& bodies, const Scene& scene);
+  // Draws the map and binds it for the skins. Uses the buffers bound for the skins and the colour maps. `cuts`: draws
+  // the points in the cuts with the number of their body (surface.frag), and the nearest wins.
+  template <typename Cuts>
+  void draw(const Bodies& bodies, const Scene& scene, Cuts cuts) {
+    begin();
+    cuts();
+    draw_springs(bodies, scene);
+  }
 
  private:
+  void begin();
+  void draw_springs(const Bodies& bodies, const Scene& scene);
+
   VertexArray empty_;
   Program program_;
   int width_ = 0, height_ = 0;
-  Texture colors_, nearness_;  // made when first needed
-  Framebuffer framebuffer_;
+  Texture colors_, bodies_, nearness_;  // made when first needed
+  Framebuffer framebuffer_, bodies_framebuffer_;
 };
 
 }  // namespace mercury::render

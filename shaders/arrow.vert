@@ -43,5 +43,5 @@ void main() {
   albedo = arrow.color.rgb;
   gl_Position = frame.view_projection * vec4(world, 1.0);
   if ((placement.flags & PLACEMENT_HIDDEN) != 0u || size < pixel) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, tail);
+  gl_ClipDistance[0] = placement.cut.w - dot(placement.cut.xyz, tail);
 }

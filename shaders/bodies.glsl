@@ -6,6 +6,7 @@
 struct Placement {
   vec3 offset;
   uint flags;  // PLACEMENT_...; from bit 8 on, what is added to the body's material indices
+  vec4 cut;    // normal and offset in the picture's coordinates: dot(cut.xyz, x) > cut.w is removed; 0, 1 = nothing
 };
 #define PLACEMENT_HIDDEN 1u
 #define PLACEMENT_SELECTED 2u
@@ -43,7 +44,11 @@ vec3 unpacked_direction(uint bits) {
 }
 
 layout(std430, binding = 1) readonly buffer Positions { float positions[]; };
+#ifdef WRITES_PLACEMENTS
+layout(std430, binding = 2) buffer Placements { Placement placements[]; };
+#else
 layout(std430, binding = 2) readonly buffer Placements { Placement placements[]; };
+#endif
 layout(std430, binding = 3) readonly buffer MassBodies { uint mass_bodies[]; };
 layout(std430, binding = 4) readonly buffer FaceRecords { FaceRecord face_records[]; };
 layout(std430, binding = 6) readonly buffer Materials { vec4 materials[]; };  // linear colour, activation

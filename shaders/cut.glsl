@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cut bodies are drawn as solid: where the back of a skin is visible through the cut, the cut's plane is drawn instead.
-// Needs frame.glsl.
+// Needs frame.glsl. `cut`: Placement::cut of the body.
+
+// Added to the number of a body that is seen in its cut, where faces have their numbers.
+#define CUT_BODY 0x80000000u
 
 // The point where a line of sight crosses the cut's plane. The eye is on the removed side.
-vec3 point_of_cut(vec3 sight) {
-  float share = (frame.cut.w - dot(frame.cut.xyz, frame.eye.xyz)) / min(dot(frame.cut.xyz, sight), -1e-6);
+vec3 point_of_cut(vec4 cut, vec3 sight) {
+  float share = (cut.w - dot(cut.xyz, frame.eye.xyz)) / min(dot(cut.xyz, sight), -1e-6);
   return frame.eye.xyz + share * sight;
 }
 

@@ -20,7 +20,6 @@ layout(std140, binding = 0) uniform Frame {
   vec4 floor_color;
   vec4 line_color;               // of the grid on land
   vec4 fog;                      // extinction [1/m]; w = distance where it begins [m]
-  vec4 cut;                      // normal, offset; normal 0 = nothing is cut
   vec4 screen;                   // width, height, 1/width, 1/height [pixels]
   vec4 depth;                    // near, far [m]; half width and height of the picture at distance 1
   vec4 shadow_size;              // width and depth of what the shadow map covers [m]

@@ -4,6 +4,7 @@
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "shadow.glsl"
+#include "cut.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depths;
 layout(binding = 12) uniform usampler2D faces;  // of surface.frag
@@ -21,7 +22,11 @@ void main() {
   float range = distance_of_depth(texelFetch(depths, texel, 0).r);
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
-  vec3 normal = face == 0xffffffffu ? frame.cut.xyz : normalize(unpacked_direction(face_normals[face - 1u]));
+  vec3 normal;
+  if ((face & CUT_BODY) != 0u)
+    normal = placements[face & ~CUT_BODY].cut.xyz;
+  else
+    normal = normalize(unpacked_direction(face_normals[face - 1u]));
   if (dot(normal, sight) > 0.0) normal = -normal;
   float visibility = 0.0;  // 0 for surfaces that turn away from the light
   if (dot(normal, frame.to_key.xyz) > -0.6)

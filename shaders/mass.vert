@@ -46,5 +46,5 @@ void main() {
   gl_Position = frame.view_projection * vec4(world, 1.0);
 #endif
   if ((placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, center);
+  gl_ClipDistance[0] = placement.cut.w - dot(placement.cut.xyz, center);
 }

@@ -10,7 +10,8 @@ out gl_PerVertex {
 };
 
 void main() {
-  vec3 world = position + placements[body].offset;
+  Placement placement = placements[body];
+  vec3 world = position + placement.offset;
   gl_Position = frame.view_projection * vec4(world, 1.0);
-  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, world);
+  gl_ClipDistance[0] = placement.cut.w - dot(placement.cut.xyz, world);
 }

@@ -15,6 +15,7 @@ layout(binding = 7) uniform sampler2D colormap;
 
 layout(location = 0) out vec3 offset;  // from the spring's middle
 layout(location = 1) flat out vec4 material;  // colour, activation
+layout(location = 2) flat out uint body;
 out gl_PerVertex { vec4 gl_Position; };
 
 vec4 material_of(uint spring, uint a, uint b, uint flags) {
@@ -28,14 +29,16 @@ void main() {
   uint spring = first + uint(gl_VertexID) / 6u;
   vec2 corner = vec2(2.0, 1.0) * ribbon_corner(gl_VertexID % 6) - vec2(1.0, 0.0);
   uint a = springs[2u * spring], b = springs[2u * spring + 1u];
-  Placement placement = placements[mass_bodies[a]];
+  body = mass_bodies[a];
+  Placement placement = placements[body];
   vec3 middle = 0.5 * (position_of(a) + position_of(b)) + placement.offset;
-  vec3 normal = frame.cut.xyz;
-  float height = dot(normal, middle) - frame.cut.w;
+  vec3 normal = placement.cut.xyz;
+  float height = dot(normal, middle) - placement.cut.w;
   vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
   float half_side = sqrt(max(0.0, reach * reach - height * height));
   offset = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
   material = material_of(spring, a, b, placement.flags);
   gl_Position = frame.view_projection * vec4(middle + offset, 1.0);
-  if (abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  bool seen = dot(normal, frame.eye.xyz) > placement.cut.w;
+  if (!seen || abs(height) > reach || (placement.flags & PLACEMENT_HIDDEN) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -16,5 +16,5 @@ void main() {
   vec3 on_map = (frame.shadow * vec4(world, 1.0)).xyz;
   bool hidden = (placement.flags & PLACEMENT_HIDDEN) != 0u;
   gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(2.0 * on_map.xy - 1.0, on_map.z, 1.0);
-  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, world);
+  gl_ClipDistance[0] = placement.cut.w - dot(placement.cut.xyz, world);
 }

@@ -35,6 +35,9 @@ layout(std430, binding = 9) readonly buffer FaceValues { float face_values[]; };
 #elif COLOR_BY == 2
 layout(location = 4) in float mass_value;
 #endif
+#ifdef CUT
+layout(location = 5) flat in vec4 cut;
+#endif
 #if COLOR_BY != 0
 layout(binding = 7) uniform sampler2D colormap;
 layout(location = 1) uniform vec4 value_scale;
@@ -79,9 +82,9 @@ void main() {
   FaceFrame face_frame = face_frames[face];
   vec3 world = skin_point;
 #ifdef CUT
-  // Computed from the pixel and not from the skin, so that all faces in the cut share one plane.
+  // Computed from the pixel and not from the skin, so that all faces of a body in its cut share one plane.
   vec2 uv = gl_FragCoord.xy * frame.screen.zw;
-  world = point_of_cut(transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0));
+  world = point_of_cut(cut, transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0));
   gl_FragDepth = depth_of(world);
 #endif
   vec3 from_eye = world - frame.eye.xyz;
@@ -99,7 +102,7 @@ void main() {
 #endif
   normal = normalize(normal);
 #ifdef CUT
-  normal = flat_normal = frame.cut.xyz;
+  normal = flat_normal = cut.xyz;
   seam = 0.0;
 #endif
   if (dot(flat_normal, to_eye) < 0.0) {

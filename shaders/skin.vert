@@ -20,6 +20,10 @@ layout(location = 3) out vec3 smooth_normal;
 #if COLOR_BY == 2
 layout(location = 4) out float mass_value;
 #endif
+#ifdef CUT
+layout(location = 5) flat out vec4 cut;
+layout(location = 6) flat out uint body_index;
+#endif
 
 out gl_PerVertex {
   vec4 gl_Position;
@@ -38,5 +42,11 @@ void main() {
   mass_value = mass_values[gl_VertexID];
 #endif
   gl_Position = (flags & PLACEMENT_HIDDEN) != 0u ? vec4(0.0, 0.0, -1.0, 0.0) : frame.view_projection * vec4(world, 1.0);
-  gl_ClipDistance[0] = frame.cut.w - dot(frame.cut.xyz, world);
+  gl_ClipDistance[0] = placement.cut.w - dot(placement.cut.xyz, world);
+#ifdef CUT
+  cut = placement.cut;
+  body_index = body;
+  // From the other side, the cut is not visible.
+  if (dot(cut.xyz, frame.eye.xyz) <= cut.w) gl_Position = vec4(0.0, 0.0, -1.0, 0.0);
+#endif
 }

@@ -73,11 +73,11 @@ std::string shown_text(const Shown& shown) {
   return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ","));
 }
 
-std::string cut_text(const render::CutPlane& cut) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(cut.normal[axis]) > 0.99f)
-      return fmt::format("{}{}:{}", cut.normal[axis] < 0 ? "-" : "", "xyz"[axis], cut.normal[axis] * cut.offset);
-  return "x";
+std::string cut_text(const render::Cut& cut) {
+  const std::string axis = fmt::format("{}{}", cut.below ? "-" : "", "xyz"[cut.axis]);
+  // In metres from the middle, as old files have it, or as a share.
+  if (cut.shift != 0) return fmt::format("{}:{}", axis, cut.shift);
+  return fmt::format("{}:{}%", axis, cut.percent);
 }
 
 // The parser turns these degrees into the same radians again.

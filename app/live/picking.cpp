@@ -54,10 +54,6 @@ Nearest nearest_to_segment(const render::Ray& ray, const Vector3f& a, const Vect
   return nearest_to_point(ray, a + s * d);
 }
 
-bool cut_away(const std::optional<render::CutPlane>& cut, const Vector3f& point) {
-  return cut && cut->normal.dot(point) > cut->offset;
-}
-
 bool misses(const render::Ray& ray, const render::Bounds& box) {
   if (box.empty()) return true;
   float enter = 0, leave = far_away;
@@ -76,7 +72,13 @@ bool misses(const render::Ray& ray, const render::Bounds& box) {
 // One robot that the ray may hit.
 class Target {
  public:
-  Target(const Robot& robot, std::span<const Vec3> positions, const Vector3f& offset) : robot_(robot) {
+  Target(const Robot& robot, std::span<const Vec3> positions, const Vector3f& offset,
+         const std::optional<render::Cut>& cut)
+      : robot_(robot) {
+    if (const auto frame = cut ? render::cut_frame(cut->axis, floats(robot.masses), floats(positions)) : std::nullopt) {
+      cut_ = frame->plane_of(*cut);
+      cut_.offset += cut_.normal.dot(offset);
+    }
     points_.reserve(positions.size());
     for (const Vec3 p : positions) {
       points_.push_back(eigen(p) + offset);
@@ -98,30 +100,30 @@ class Target {
     return box_.empty() || misses(ray, roomy);
   }
 
-  void meet_skin(const render::Ray& ray, const PickOptions& options, Hit& best) const {
+  void meet_skin(const render::Ray& ray, Hit& best) const {
     for (std::uint32_t i = 0; i < robot_.faces.size(); ++i) {
       const Face& face = robot_.faces[i];
       const float t = distance_to_triangle(ray, points_[face.a], points_[face.b], points_[face.c]);
-      if (!(t < best.distance) || cut_away(options.cut, ray.origin + t * ray.direction)) continue;
+      if (!(t < best.distance) || cut_.removes(ray.origin + t * ray.direction)) continue;
       best = {.face = i, .point = ray.origin + t * ray.direction, .distance = t};
       best.mass = nearest_of({face.a, face.b, face.c}, best.point);
     }
   }
-  void meet_springs(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
+  void meet_springs(const render::Ray& ray, float room, Hit& best) const {
     for (std::uint32_t i = 0; i < robot_.springs.size(); ++i) {
       const Spring& spring = robot_.springs[i];
       const Nearest near = nearest_to_segment(ray, points_[spring.a], points_[spring.b]);
       if (!(near.apart <= room && near.along < best.distance)) continue;
       const Vector3f point = ray.origin + near.along * ray.direction;
-      if (cut_away(options.cut, point)) continue;
+      if (cut_.removes(point)) continue;
       best = {.spring = i, .point = point, .distance = near.along};
       best.mass = nearest_of({spring.a, spring.b}, point);
     }
   }
-  void meet_masses(const render::Ray& ray, const PickOptions& options, float room, Hit& best) const {
+  void meet_masses(const render::Ray& ray, float room, Hit& best) const {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Nearest near = nearest_to_point(ray, points_[i]);
-      if (!(near.apart <= room && near.along < best.distance) || cut_away(options.cut, points_[i])) continue;
+      if (!(near.apart <= room && near.along < best.distance) || cut_.removes(points_[i])) continue;
       best = {.mass = static_cast<std::uint16_t>(i), .point = points_[i], .distance = near.along};
     }
   }
@@ -154,7 +156,12 @@ class Target {
                                      [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
   }
 
+  static std::span<const float> floats(std::span<const Vec3> points) {
+    return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
+  }
+
   const Robot& robot_;
+  render::CutPlane cut_;  // in the picture's coordinates
   std::vector<Vector3f> points_;
   render::Bounds box_;
 };
@@ -167,14 +174,14 @@ std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Vector3f> offs
   for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
     if (!options.hidden.empty() && options.hidden[i]) continue;
     const Robot& robot = *snapshot.robots->robots[i].robot;
-    const Target target(robot, snapshot.positions_of(i), offsets[i]);
+    const Target target(robot, snapshot.positions_of(i), offsets[i], options.cut);
     const float room = target.radius(options.radius);
     if (target.missed_by(ray, room)) continue;
     Hit best{.distance = nearest ? nearest->distance : far_away};
     const bool skin = options.skin && !robot.faces.empty();
-    if (skin) target.meet_skin(ray, options, best);
-    if (options.springs || (!skin && !robot.springs.empty())) target.meet_springs(ray, options, room, best);
-    if (options.masses || (!skin && robot.springs.empty())) target.meet_masses(ray, options, room, best);
+    if (skin) target.meet_skin(ray, best);
+    if (options.springs || (!skin && !robot.springs.empty())) target.meet_springs(ray, room, best);
+    if (options.masses || (!skin && robot.springs.empty())) target.meet_masses(ray, room, best);
     if (nearest ? best.distance >= nearest->distance : best.distance == far_away) continue;
     if (best.face) best.spring = target.spring_at(*best.face, best.point);
     best.robot = snapshot.robots->robots[i].id;

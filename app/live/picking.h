@@ -26,9 +26,9 @@ struct Hit {
 
 struct PickOptions {
   bool skin = true, springs = false, masses = false;  // what the ray can meet: what is shown
-  float radius = 0;                     // how near the ray must pass a spring or mass [m]; 0 = from the lengths
-  std::optional<render::CutPlane> cut;  // the ray ignores what it cuts away
-  std::span<const bool> hidden;         // robots left out; empty = none
+  float radius = 0;                // how near the ray must pass a spring or mass [m]; 0 = from the lengths
+  std::optional<render::Cut> cut;  // the ray ignores what it cuts away
+  std::span<const bool> hidden;    // robots left out; empty = none
 };
 
 // Returns the nearest hit. `offsets`: per robot, added to its coordinates in the picture [m]. A robot without faces is

@@ -45,7 +45,8 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colours of the surroundings (default dark)"));
   add(command.add_flag("--plain", words_.plain, "A plain backdrop rather than water or land"));
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
-  add(add_value(command, "--cut", words_.cut, "Cut away what lies beyond a plane, as in y:0.2", "AXIS[:M]", text_from));
+  add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
+                text_from));
   add(add_choice(command, "--layout", words_.layout, {"grid", "race"}, "Robots in a grid, or in lanes side by side"));
   add(add_value(command, "--grid", words_.grid, "Columns and rows (default: what fills the picture)", "CxR",
                 grid_from));

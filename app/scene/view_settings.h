@@ -36,7 +36,7 @@ struct ViewSettings {
   render::Theme theme = render::Theme::dark;
   bool plain = false;  // a plain backdrop rather than water or land
   bool smooth = false;
-  std::optional<render::CutPlane> cut;
+  std::optional<render::Cut> cut;  // opens each robot
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;

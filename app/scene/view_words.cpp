@@ -18,7 +18,7 @@ namespace mercury {
 namespace {
 
 constexpr int most_cells = 10000;     // of a grid in a row, or a column
-constexpr float farthest_cut = 1e6f;  // from the origin of a robot, which explodes there [m]
+constexpr float farthest_cut = 1e6f;  // from the middle of a robot, which explodes there [m]
 
 float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180; }
 
@@ -43,22 +43,31 @@ render::Colormap colormap_named(const std::string& name) {
   throw ParameterError("colormap", fmt::format("\"{}\" is not accepted; give {}", name, fmt::join(names, ", ")));
 }
 
-render::CutPlane cut_from(const std::string& text) {
-  static const std::map<std::string, Eigen::Vector3f> axes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
-                                                           {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+// "y", "-y:30%" or "y:0.2"
+render::Cut cut_from(const std::string& text) {
+  static constexpr std::string_view axes = "xyz";
+  const auto refuse = [&] {
+    throw ParameterError("cut", fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place: y:30% of "
+                                            "each robot (0 to 100), or y:0.2 in metres from its middle",
+                                            text));
+  };
   const std::size_t colon = text.find(':');
-  const auto axis = axes.find(text.substr(0, colon));
-  float place = 0;
-  bool placed = true;
-  if (colon != std::string::npos) {
-    const char *begin = text.data() + colon + 1, *all = text.data() + text.size();
-    const auto [end, error] = std::from_chars(begin, all, place);
-    placed = begin != all && end == all && error == std::errc{} && std::abs(place) <= farthest_cut;
-  }
-  if (axis == axes.end() || !placed)
-    throw ParameterError(
-        "cut", fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place as in y:0.2", text));
-  return {.normal = axis->second, .offset = axis->second.sum() * place};
+  std::string_view axis = std::string_view(text).substr(0, colon);
+  render::Cut cut{.below = axis.starts_with('-')};
+  if (cut.below) axis.remove_prefix(1);
+  if (axis.size() != 1 || axes.find(axis) == std::string_view::npos) refuse();
+  cut.axis = static_cast<int>(axes.find(axis));
+  if (colon == std::string::npos) return cut;
+  std::string_view place = std::string_view(text).substr(colon + 1);
+  const bool is_share = place.ends_with('%');
+  if (is_share) place.remove_suffix(1);
+  float value = 0;
+  const char* const all = place.data() + place.size();
+  const auto [end, error] = std::from_chars(place.data(), all, value);
+  if (place.empty() || end != all || error != std::errc{}) refuse();
+  if (is_share ? !(value >= 0 && value <= 100) : !(std::abs(value) <= farthest_cut)) refuse();
+  (is_share ? cut.percent : cut.shift) = value;
+  return cut;
 }
 
 void validate(const ViewWords& words) {

@@ -20,7 +20,7 @@ struct ViewWords {
   std::string theme = "dark";                    // "dark" or "light"
   bool plain = false;                            // a plain backdrop rather than water or land
   bool smooth = false;                           // round skins rather than edged ones
-  std::optional<std::string> cut;                // cuts away what lies beyond a plane: "y:0.2"
+  std::optional<std::string> cut;                // opens each robot beyond a plane: "y:30%"
   std::string layout = "grid";                   // "grid" or "race"
   std::optional<Grid> grid;                      // absent = what fills the picture
   std::string camera;                            // see camera_named(); empty = the whole group

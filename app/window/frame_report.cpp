@@ -74,6 +74,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},
                       {"scale", {scene.picture().scene().scale.low, scene.picture().scene().scale.high}},
+                      {"cut", scene.view().cut ? scene.view().cut->percent : -1},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
                       {"on_card", scene.picture().positions_on_card()},

@@ -24,6 +24,7 @@
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
+#include "app/window/viewport/cut_handle.h"
 #include "app/window/viewport/legend_view.h"
 #include "app/window/viewport/mouse_controller.h"
 #include "app/window/viewport/viewport_text.h"
@@ -78,7 +79,7 @@ class Viewer {
   void frame(double dt);
   void handle_input(const std::vector<InputEvent>& events);
   void draw_frame(const std::vector<InputEvent>& events, double dt);
-  void draw_legend();
+  void draw_handles();
   bool skips_picture() const;
   void update_renderer();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
@@ -111,6 +112,7 @@ class Viewer {
   Panels panels_{context_};
   MouseController mouse_{scene_, camera_, log_, toasts_};
   LegendView legend_;
+  CutHandle cut_handle_;
   Screenshot screenshot_;
 
   ViewportArea area_{{0, 0}, {16, 9}};
@@ -258,7 +260,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   const bool clock = !preferences_.panels;  // the play bar has its own clock
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, clock);
-  draw_legend();
+  draw_handles();
   mouse_.draw(area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
@@ -273,9 +275,12 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   draw_seconds_ = since(drawing);
 }
 
-void Viewer::draw_legend() {
+// What the mouse moves in the picture besides robots and camera.
+void Viewer::draw_handles() {
   ViewSettings view = scene_.view();
-  if (legend_.draw(scene_.picture().scene().legend, area_, view, log_)) scene_.set_view(view);
+  bool changed = legend_.draw(scene_.picture().scene().legend, area_, view, log_);
+  changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
+  if (changed) scene_.set_view(view);
 }
 
 // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.

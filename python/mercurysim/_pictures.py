@@ -41,7 +41,7 @@ class Look(TypedDict, total=False):
     theme: str  # "dark" or "light"
     caption: str  # text in the upper left corner; further lines are smaller
     plain: bool  # a plain backdrop rather than water or land
-    cut: str  # cuts away what lies beyond a plane: "y:0.2"
+    cut: str  # opens each robot beyond a plane: "y:30%"
     smooth: bool  # round skins rather than edged ones
     quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
 

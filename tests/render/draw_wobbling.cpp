@@ -37,7 +37,7 @@ Scene make_scene(const WobblingGroup& group) {
   scene.show = {settings["show"].find("skin") != std::string::npos,
                 settings["show"].find("springs") != std::string::npos,
                 settings["show"].find("masses") != std::string::npos};
-  if (!settings["cut"].empty()) scene.cut = CutPlane{{0, 1, 0}, float(number("cut"))};
+  if (!settings["cut"].empty()) scene.cut = Cut{.axis = 1, .percent = float(number("cut"))};
   return scene;
 }
 

@@ -94,7 +94,7 @@ TEST_F(OutlineTest, FollowsACut) {
   Renderer renderer = make_renderer(width, height);
   const Mesh mesh = triangle();
   Scene scene = plain();
-  scene.cut = CutPlane{{0, 0, 1}, 0};
+  scene.cut = Cut{.axis = 2, .percent = 100 * 0.5f / 1.3f};  // at z = 0
   const Image empty = drawn(renderer, scene);
   renderer.set_bodies(std::array{mesh.body()});
   const Image plain_image = with(renderer, scene, false), marked = with(renderer, scene, true);

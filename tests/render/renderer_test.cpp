@@ -81,7 +81,7 @@ TEST_F(RendererTest, EveryModeIsDrawnWithoutMessagesFromTheDriver) {
           scene.theme = theme;
           scene.floor = -0.5f;
           scene.show = {(shown & 1) != 0, (shown & 2) != 0, (shown & 4) != 0};
-          if (shown & 4) scene.cut = CutPlane{};
+          if (shown & 4) scene.cut = Cut{};
           scene.labels = labels;
           scene.clock = "1.0 s";
           scene.scale_bar = true;

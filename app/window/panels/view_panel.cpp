@@ -78,25 +78,24 @@ bool draw_cut_section(ViewSettings& view, EventLog& log) {
   heading("Cut");
   bool on = view.cut.has_value(), changed = false;
   if (ImGui::Checkbox("Cut the robots open", &on)) {
-    view.cut = on ? std::optional(render::CutPlane{.normal = {0, -1, 0}, .offset = 0}) : std::nullopt;
+    view.cut = on ? std::optional(render::Cut{.below = true}) : std::nullopt;
     changed = true;
   }
   log.item("cut");
+  tooltip("each robot across its own middle; drag the handle in the picture to move the planes");
   if (!view.cut) return changed;
-  int axis = 0;
-  view.cut->normal.cwiseAbs().maxCoeff(&axis);
-  bool other_side = view.cut->normal[axis] < 0;
-  // The position on the axis, whichever side is cut away.
-  float position = other_side ? -view.cut->offset : view.cut->offset;
-  bool moved = combo("across", "the axis perpendicular to the plane", axis, {"x", "y", "z"});
-  moved |= slider("at", "position of the plane on the axis", position, 0, {-5, 5, "%.2f m"});
-  moved |= ImGui::Checkbox("Other side", &other_side);
-  if (moved) {
-    view.cut->normal = Eigen::Vector3f::Zero();
-    view.cut->normal[axis] = other_side ? -1.0f : 1.0f;
-    view.cut->offset = other_side ? -position : position;
+  changed |= combo("across", "the axis perpendicular to the plane, of each robot as it was at rest", view.cut->axis,
+                   {"x", "y", "z"});
+  log.item("cut.axis");
+  if (slider("at", "from the robot's lowest point on the axis to its highest", view.cut->percent, 50,
+             {0, 100, "%.0f %%"})) {
+    view.cut->shift = 0;
+    changed = true;
   }
-  return changed || moved;
+  log.item("cut.at");
+  changed |= ImGui::Checkbox("Other side", &view.cut->below);
+  log.item("cut.side");
+  return changed;
 }
 
 void draw_camera_section(OrbitController& camera, EventLog& log) {

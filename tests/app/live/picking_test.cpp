@@ -126,10 +126,13 @@ TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
   const auto hit = scene.pick(ray);
   ASSERT_TRUE(hit);
   ViewSettings view = scene.view();
-  view.cut = render::CutPlane{.normal = {0, 0, 1}, .offset = hit->point.z() - 1e-3f};
+  view.cut = render::Cut{.axis = 2, .percent = 50};
   scene.set_view(view);
   const auto deeper = scene.pick(ray);
   EXPECT_TRUE(!deeper || deeper->distance > hit->distance);
+  view.cut->below = true;
+  scene.set_view(view);
+  EXPECT_EQ(scene.pick(ray)->distance, hit->distance) << "what is above the middle is still there";
   scene.set_hidden(test::ids_of(scene)[0], true);
   EXPECT_FALSE(scene.pick(ray));
 }

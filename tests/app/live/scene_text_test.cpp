@@ -82,7 +82,8 @@ std::vector<ViewSettings> views() {
   add([](ViewSettings& v) { v.shown = {.skin = false, .clock = false}; });
   add([](ViewSettings& v) { v.theme = render::Theme::light; });
   add([](ViewSettings& v) { v.plain = v.smooth = true; });
-  add([](ViewSettings& v) { v.cut = render::CutPlane{.normal = {0, -1, 0}, .offset = -0.2f}; });
+  add([](ViewSettings& v) { v.cut = render::Cut{.axis = 1, .below = true, .percent = 33.3f}; });
+  add([](ViewSettings& v) { v.cut = render::Cut{.axis = 2, .shift = -0.2f}; });
   add([](ViewSettings& v) { v.grid = Grid{3, 2}; });
   add([](ViewSettings& v) {
     v.layout = Layout::race;

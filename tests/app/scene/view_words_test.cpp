@@ -31,7 +31,7 @@ TEST(ViewWords, WordsBecomeSettings) {
                                                .caption = "eels",
                                                .theme = "light",
                                                .plain = true,
-                                               .cut = "-y:0.25",
+                                               .cut = "-y:25%",
                                                .grid = Grid{3, 2},
                                                .camera = "turntable",
                                                .azimuth = 180.0f,
@@ -43,14 +43,21 @@ TEST(ViewWords, WordsBecomeSettings) {
   EXPECT_EQ(settings.caption, "eels");
   EXPECT_EQ(settings.theme, render::Theme::light);
   EXPECT_TRUE(settings.plain);
-  // What has y < 0.25 is cut away: -y > -0.25.
-  EXPECT_EQ(settings.cut->normal, Eigen::Vector3f(0, -1, 0));
-  EXPECT_EQ(settings.cut->offset, -0.25f);
+  EXPECT_EQ(settings.cut, (render::Cut{.axis = 1, .below = true, .percent = 25}));
   EXPECT_EQ(settings.grid->columns, 3);
   EXPECT_EQ(settings.camera.mode, CameraMode::turntable);
   EXPECT_FLOAT_EQ(settings.camera.azimuth.value(), std::numbers::pi_v<float>);
   EXPECT_EQ(settings.camera.zoom, 2);
   EXPECT_TRUE(settings.shown.legend) << "values need a legend";
+}
+
+TEST(ViewWords, ACutIsAShareOfEachRobotOrMetresFromItsMiddle) {
+  const auto cut = [](const char* text) { return view_settings({.cut = text}).cut.value(); };
+  EXPECT_EQ(cut("x"), (render::Cut{.axis = 0, .percent = 50}));
+  EXPECT_EQ(cut("z:0%"), (render::Cut{.axis = 2, .percent = 0}));
+  EXPECT_EQ(cut("-x:12.5%"), (render::Cut{.axis = 0, .below = true, .percent = 12.5f}));
+  // As files before percentages have it.
+  EXPECT_EQ(cut("y:-0.25"), (render::Cut{.axis = 1, .percent = 50, .shift = -0.25f}));
 }
 
 TEST(ViewWords, ShowIsExact) {
@@ -78,7 +85,7 @@ TEST(ViewWords, ErrorsNameTheParameter) {
   EXPECT_EQ(refused([](ViewWords& w) { w.camera = "drone"; }), "camera");
   for (const char* show : {"bones", "", "skin,", "skin,,clock", "skin clock"})
     EXPECT_EQ(refused([&](ViewWords& w) { w.show = show; }), "show") << show;
-  for (const char* cut : {"w", "", "y:", "y:here", "y:0.2m", "y:nan"})
+  for (const char* cut : {"w", "", "-", "xy", "y:", "y:%", "y:here", "y:0.2m", "y:nan", "y:nan%", "y:101%", "y:-1%"})
     EXPECT_EQ(refused([&](ViewWords& w) { w.cut = cut; }), "cut") << cut;
   for (const auto& scale : {std::pair(1.0f, 1.0f), std::pair(2.0f, 1.0f), std::pair(0.0f, INFINITY)})
     EXPECT_EQ(refused([&](ViewWords& w) { w.scale = scale; }), "scale");
