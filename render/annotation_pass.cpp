@@ -83,7 +83,7 @@ void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
   glUseProgram(arrow_.get());
   glBindVertexArray(empty_.get());
   glEnable(GL_CLIP_DISTANCE0);
-  glDrawArrays(GL_TRIANGLES, 0, GLsizei(9 * arrows.size()));
+  glDrawArrays(GL_TRIANGLES, 0, GLsizei(18 * arrows.size()));
   glDisable(GL_CLIP_DISTANCE0);
 }
 

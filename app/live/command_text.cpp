@@ -161,6 +161,9 @@ OptionValues options_of(const ViewSettings& settings) {
   shown.legend = settings.color->has_values();
   shown.labels = shown.path = race;
   options.text("--show", shown_text(settings.shown), shown_text(shown));
+  options.number("--arrow-length", settings.shown.arrows.length, 1.0f);
+  options.number("--arrow-density", settings.shown.arrows.density, 1.0f);
+  options.number("--arrow-threshold", settings.shown.arrows.threshold, 0.0f);
   options.text("--caption", settings.caption, "");
   options.text("--theme", settings.theme == render::Theme::light ? "light" : "dark", "dark");
   options.flag("--plain", settings.plain);

@@ -40,6 +40,11 @@ void ViewOptions::add_to(CLI::App& command) {
                       "LIST", text_from),
             {"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "path", "labels",
              "captions", "legend", "clock", "scale"}));
+  add(add_number(command, "--arrow-length", words_.arrow_length, "Above 1: longer arrows (default 1)", "X"));
+  add(add_number(command, "--arrow-density", words_.arrow_density, "Share of the arrows that is drawn (default 1)",
+                 "X"));
+  add(add_number(command, "--arrow-threshold", words_.arrow_threshold,
+                 "Leave out arrows below this share of the longest (default 0)", "X"));
   add(add_text(command, "--caption", words_.caption, "Text in the upper left corner; further lines are smaller",
                "TEXT"));
   add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colours of the surroundings (default dark)"));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <variant>
 
 #include "app/scene/color_scale.h"
@@ -16,11 +17,22 @@
 namespace mercury {
 namespace {
 
-constexpr render::Color drag_color = render::rgb(0xff7043);
-constexpr render::Color lift_color = render::rgb(0x4fc3f7);
-constexpr render::Color velocity_color = render::rgb(0xaed581);
+// Of strong arrows. Muscles are coral, gold, teal and violet.
+constexpr render::Color drag_color = render::rgb(0x3dff4e);
+constexpr render::Color lift_color = render::rgb(0x3d8bff);
+constexpr render::Color velocity_color = render::rgb(0xffffff);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
-constexpr render::Color contact_color = render::rgb(0xffca28);
+constexpr render::Color contact_color = render::rgb(0xff3dc2);
+constexpr render::Color weak_color = render::rgb(0xdfe6e4);
+
+// Whether the arrow with this index is drawn: the same ones at any time, and more of them with a higher density.
+bool is_drawn(std::size_t index, float density) {
+  std::uint32_t x =
+      static_cast<std::uint32_t>(index) * 0x9e3779b9u;  // spreads neighbours (Knuth's multiplicative hash)
+  x ^= x >> 15;
+  x *= 0x85ebca6bu;
+  return static_cast<float>((x ^ (x >> 13)) >> 8) < density * static_cast<float>(1u << 24);
+}
 
 // The largest arrow of each robot, and of these the median, so that one strong robot does not make the arrows of all
 // others invisible.
@@ -35,11 +47,15 @@ float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
   return *middle;
 }
 
-void scale(std::span<render::Arrow> arrows, float factor, float most) {
+// Makes an arrow of the value `full` as long as `longest`, none longer than twice that, and colours them by their
+// values.
+void scale(std::vector<render::Arrow>& arrows, float full, float longest, float threshold) {
+  if (!(full > 0)) return arrows.clear();
+  std::erase_if(arrows, [&](const render::Arrow& arrow) { return arrow.vector.norm() < threshold * full; });
   for (render::Arrow& arrow : arrows) {
-    arrow.vector *= factor;
-    const float length = arrow.vector.norm();
-    if (length > most) arrow.vector *= most / length;
+    const float share = arrow.vector.norm() / full;
+    arrow.vector *= longest / full * (share > 2 ? 2 / share : 1);
+    arrow.color = render::mix(weak_color, arrow.color, std::min(std::sqrt(share), 1.0f));
   }
 }
 
@@ -52,7 +68,7 @@ float mean_size(const Simulation& simulation) {
 }  // namespace
 
 Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
-    : simulation_(simulation), kinds_(kinds), longest_(0.5f * mean_size(simulation)) {
+    : simulation_(simulation), kinds_(kinds), longest_(0.5f * kinds.length * mean_size(simulation)) {
   const Environment& environment = simulation.configuration().environment;
   if (kinds.contact && !std::holds_alternative<Land>(environment))
     throw ParameterError("show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
@@ -61,10 +77,8 @@ Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
                                              kinds.drag ? "drag" : "lift", name_of(environment)));
 }
 
-// The length of an arrow of one unit, as a share of the longest.
-float Arrows::Gauge::fit(float largest) {
+void Arrows::Gauge::fit(float largest) {
   if (largest > most) most = round_up(largest);
-  return most > 0 ? 1 / most : 0;
 }
 
 void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
@@ -72,7 +86,9 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
   const Robot& body = simulation_.robot(robot);
   const auto positions = masses_of(simulation_, robot, state.positions);
   const auto velocities = masses_of(simulation_, robot, state.velocities);
-  for (const Face& face : body.faces) {
+  for (std::size_t i = 0; i < body.faces.size(); ++i) {
+    if (!is_drawn(i, kinds_.density)) continue;
+    const Face& face = body.faces[i];
     const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
     const auto index = static_cast<std::uint32_t>(robot);
     if (kinds_.drag) drag.push_back({index, eigen(force.center), eigen(force.drag), drag_color});
@@ -83,8 +99,9 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
 void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const {
   const std::size_t first = simulation_.mass_offsets()[robot];
   for (const FloorForce& contact : floor_forces(simulation_, robot, state))
-    contacts.push_back({static_cast<std::uint32_t>(robot), eigen(state.positions[first + contact.mass]),
-                        eigen(contact.force), contact_color});
+    if (is_drawn(contact.mass, kinds_.density))
+      contacts.push_back({static_cast<std::uint32_t>(robot), eigen(state.positions[first + contact.mass]),
+                          eigen(contact.force), contact_color});
 }
 
 std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
@@ -103,7 +120,8 @@ std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const T
   }
   forces.insert(forces.end(), lifts.begin(), lifts.end());
   const auto fit = [&](std::vector<render::Arrow>& arrows, Gauge& gauge) {
-    scale(arrows, longest_ * gauge.fit(largest_of(arrows, simulation_.size())), 2 * longest_);
+    gauge.fit(largest_of(arrows, simulation_.size()));
+    scale(arrows, gauge.most, longest_, kinds_.threshold);
   };
   fit(forces, force_);
   fit(velocities, velocity_);

@@ -11,18 +11,23 @@
 
 namespace mercury {
 
+// Which arrows are shown, and how.
 struct ArrowKinds {
   bool drag = false, lift = false;  // on each face
   bool velocity = false;            // of each robot's centre of mass
   bool gravity = false;             // at each robot's centre of mass
   bool contact = false;             // force of the floor on each mass
+  float length = 1;                 // factor, 0.01 to 100
+  float density = 1;                // share of the arrows of faces and contacts that is drawn, 0 to 1
+  float threshold = 0;              // arrows shorter than this share of the usual longest are left out, 0 to 1
 
   bool any() const { return drag || lift || velocity || gravity || contact; }
   friend bool operator==(const ArrowKinds&, const ArrowKinds&) = default;
 };
 
 // Turns forces and velocities into arrows. The scale makes the longest arrow of the median robot about half a robot
-// long. It grows with larger values by steps of 1, 2 and 5. No arrow is longer than one robot.
+// long, times ArrowKinds::length. It grows with larger values by steps of 1, 2 and 5. No arrow is longer than twice
+// that. Weak arrows are pale and strong ones vivid, in colours that no muscle has.
 class Arrows {
  public:
   // Throws ParameterError("show", ...) for drag or lift in an environment without forces on faces, and for contact in
@@ -41,7 +46,7 @@ class Arrows {
     const char* name;
     const char* unit;
     float most = 0;
-    float fit(float largest);
+    void fit(float largest);
   };
   void add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
                  std::vector<render::Arrow>& lift) const;
@@ -49,7 +54,7 @@ class Arrows {
 
   const Simulation& simulation_;
   ArrowKinds kinds_;
-  float longest_;  // of an arrow [m]
+  float longest_;  // of an arrow whose value is that of its gauge [m]
   Gauge force_{"force", "N"}, velocity_{"velocity", "m/s"}, contact_{"contact", "N"};
 };
 

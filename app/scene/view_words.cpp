@@ -77,6 +77,14 @@ void validate(const ViewWords& words) {
       throw ParameterError(
           "scale", fmt::format("\"{:g},{:g}\" is not accepted; give two finite numbers, the lower first", low, high));
   }
+  if (!(words.arrow_length >= 0.01f && words.arrow_length <= 100))
+    throw ParameterError("arrow_length", fmt::format("{} is not accepted; give 0.01 to 100", words.arrow_length));
+  if (!(words.arrow_density > 0 && words.arrow_density <= 1))
+    throw ParameterError("arrow_density",
+                         fmt::format("{} is not accepted; give a share above 0, up to 1", words.arrow_density));
+  if (!(words.arrow_threshold >= 0 && words.arrow_threshold <= 1))
+    throw ParameterError("arrow_threshold",
+                         fmt::format("{} is not accepted; give a share from 0 to 1", words.arrow_threshold));
   if (words.grid && (std::min(words.grid->columns, words.grid->rows) < 1 ||
                      std::max(words.grid->columns, words.grid->rows) > most_cells))
     throw ParameterError("grid", fmt::format("{}x{} is not accepted; give 1 to {} columns and rows",
@@ -149,6 +157,9 @@ ViewSettings view_settings(const ViewWords& words) {
   if (words.zoom) settings.camera.zoom = *words.zoom;
   settings.shown.legend = settings.color->has_values();
   if (words.show) settings.shown = shown_from(*words.show);
+  settings.shown.arrows.length = words.arrow_length;
+  settings.shown.arrows.density = words.arrow_density;
+  settings.shown.arrows.threshold = words.arrow_threshold;
   return settings;
 }
 

@@ -16,6 +16,9 @@ struct ViewWords {
   std::string colormap;                          // "magma"; empty = that of the quantity
   bool log_scale = false;                        // equal ratios are equally far apart
   std::optional<std::string> show;               // exactly what is shown: "skin,labels"; absent = the usual
+  float arrow_length = 1;                        // factor, 0.01 to 100
+  float arrow_density = 1;                       // share of the arrows that is drawn, above 0 to 1
+  float arrow_threshold = 0;                     // share of the usual longest arrow, 0 to 1: shorter ones are left out
   std::string caption;                           // text in the upper left corner; further lines are smaller
   std::string theme = "dark";                    // "dark" or "light"
   bool plain = false;                            // a plain backdrop rather than water or land

@@ -32,6 +32,9 @@ class Look(TypedDict, total=False):
     colormap: str  # "viridis", "magma", "cividis", "turbo" or "diverging"; else that of the quantity
     log_scale: bool  # equal ratios of values are equally far apart
     show: str | Sequence[str]  # exactly what is shown: "skin,springs,labels,path,legend,clock,scale,velocity,..."
+    arrow_length: float  # factor
+    arrow_density: float  # share of the arrows that is drawn, up to 1
+    arrow_threshold: float  # arrows shorter than this share of the longest are left out
     camera: str  # "group", "follow", "follow:NAME", "turntable", "top", "still", or a camera file (.json)
     azimuth: float  # where the eye is, around the robots from +x [degrees]
     elevation: float  # height of the eye above the horizon [degrees]

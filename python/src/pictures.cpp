@@ -125,6 +125,9 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
          words.grid = Grid{columns, rows};
        }},
       {"theme", [&] { words.theme = text_from(name, value); }},
+      {"arrow_length", [&] { words.arrow_length = small_number_from(name, value); }},
+      {"arrow_density", [&] { words.arrow_density = small_number_from(name, value); }},
+      {"arrow_threshold", [&] { words.arrow_threshold = small_number_from(name, value); }},
       {"caption", [&] { words.caption = text_from(name, value); }},
       {"plain", [&] { words.plain = bool_from(name, value); }},
       {"cut", [&] { words.cut = text_from(name, value); }},

@@ -71,6 +71,21 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, Even
     ImGui::EndDisabled();
     ImGui::EndTable();
   }
+  if (!shown.arrows.any()) return changed;
+  changed |= slider("length", "a factor", shown.arrows.length, 1, {0.1f, 10, "%.2f", true});
+  log.item("arrows.length");
+  float density = 100 * shown.arrows.density, threshold = 100 * shown.arrows.threshold;
+  if (slider("density", "how many of the arrows are drawn", density, 100, {1, 100, "%.0f %%", true})) {
+    shown.arrows.density = std::clamp(density / 100, 0.001f, 1.0f);
+    changed = true;
+  }
+  log.item("arrows.density");
+  if (slider("threshold", "arrows weaker than this share of the usual strongest are left out", threshold, 0,
+             {0, 100, "%.0f %%"})) {
+    shown.arrows.threshold = std::clamp(threshold / 100, 0.0f, 1.0f);
+    changed = true;
+  }
+  log.item("arrows.threshold");
   return changed;
 }
 

@@ -55,9 +55,9 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
                                        floats(scene.picture().positions_of(*robot)));
   if (!frame) return false;
   const auto at = [&](float place) {
-    return on_screen(area, camera,
-                     scene.picture().offsets()[*robot] + frame->center +
-                         (place - frame->axis.dot(frame->center)) * frame->axis);
+    return on_screen(
+        area, camera,
+        scene.picture().offsets()[*robot] + frame->center + (place - frame->axis.dot(frame->center)) * frame->axis);
   };
   const ImVec2 low = at(frame->low), high = at(frame->high), handle = at(frame->place_of(*view.cut));
   const float text = ImGui::GetFontSize(), radius = 0.55f * text;

@@ -79,6 +79,7 @@ std::vector<ViewSettings> views() {
   for (bool ArrowKinds::*what :
        {&ArrowKinds::drag, &ArrowKinds::lift, &ArrowKinds::velocity, &ArrowKinds::gravity, &ArrowKinds::contact})
     add([&](ViewSettings& v) { v.shown.arrows.*what = true; });
+  add([](ViewSettings& v) { v.shown.arrows = {.drag = true, .length = 2.5f, .density = 0.25f, .threshold = 0.125f}; });
   add([](ViewSettings& v) { v.shown = {.skin = false, .clock = false}; });
   add([](ViewSettings& v) { v.theme = render::Theme::light; });
   add([](ViewSettings& v) { v.plain = v.smooth = true; });

@@ -5,14 +5,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "app/scene/arrows.h"
 #include "app/scene/color_scale.h"
 #include "app/scene/group_state.h"
 #include "mercury/error.h"
+#include "mercury/random_voxel.h"
 
 namespace mercury::test {
 namespace {
@@ -278,6 +282,61 @@ TEST(Arrows, OneStrongRobotDoesNotMakeTheOthersInvisible) {
   EXPECT_NEAR(all[0].vector.norm(), half_a_robot, 1e-3);
   EXPECT_NEAR(all[1].vector.norm(), half_a_robot, 1e-3);
   EXPECT_NEAR(all[2].vector.norm(), 2 * half_a_robot, 2e-3);
+}
+
+TEST(Arrows, AreAsLongAndDenseAsTheUserWants) {
+  const Simulation simulation(cpu, std::vector<Robot>{random_voxel_robot({}, 1)});
+  GroupState moving = read_state(simulation);
+  for (std::size_t i = 0; i < moving.velocities.size(); ++i)
+    moving.velocities[i] = {0.1f * static_cast<float>(i % 7), 0.2f, -0.1f};
+  const auto arrows = [&](ArrowKinds kinds) { return Arrows(simulation, kinds).at(moving, simulation.telemetry()); };
+  const auto all = arrows({.drag = true}), longer = arrows({.drag = true, .length = 3});
+  ASSERT_EQ(all.size(), simulation.robot(0).faces.size());
+  ASSERT_EQ(longer.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_LT((longer[i].vector - 3 * all[i].vector).norm(), 1e-4f * (1 + longer[i].vector.norm()));
+
+  const auto from = [](const std::vector<render::Arrow>& list) {
+    std::vector<std::array<float, 3>> points;
+    for (const render::Arrow& arrow : list) points.push_back({arrow.from.x(), arrow.from.y(), arrow.from.z()});
+    std::ranges::sort(points);
+    return points;
+  };
+  const auto half = arrows({.drag = true, .density = 0.5f}), few = arrows({.drag = true, .density = 0.1f});
+  EXPECT_NEAR(static_cast<double>(half.size()), 0.5 * static_cast<double>(all.size()),
+              0.08 * static_cast<double>(all.size()));
+  EXPECT_NEAR(static_cast<double>(few.size()), 0.1 * static_cast<double>(all.size()),
+              0.05 * static_cast<double>(all.size()));
+  EXPECT_TRUE(std::ranges::includes(from(half), from(few))) << "fewer of the same";
+
+  const auto strong = arrows({.drag = true, .threshold = 0.3f});
+  float longest_left_out = 0;
+  std::size_t kept = 0;
+  for (const render::Arrow& arrow : all) {
+    const bool is_kept =
+        std::ranges::binary_search(from(strong), std::array{arrow.from.x(), arrow.from.y(), arrow.from.z()});
+    kept += is_kept;
+    if (!is_kept) longest_left_out = std::max(longest_left_out, arrow.vector.norm());
+  }
+  EXPECT_EQ(kept, strong.size());
+  EXPECT_LT(kept, all.size());
+  for (const render::Arrow& arrow : strong) EXPECT_GE(arrow.vector.norm(), longest_left_out);
+}
+
+// Muscles are coral, gold, teal and violet; none has the hue of a strong arrow. A weak arrow is paler.
+TEST(Arrows, TakeTheirColorFromTheirValue) {
+  const Simulation simulation(cpu, std::vector<Robot>{plate()});
+  Arrows arrows(simulation, {.drag = true});
+  const auto strong = arrows.at(state(plate().masses, {0, 0, -1}), simulation.telemetry());
+  const auto weak = arrows.at(state(plate().masses, {0, 0, -0.1f}), simulation.telemetry());
+  ASSERT_EQ(strong.size(), 1u);
+  ASSERT_EQ(weak.size(), 1u);
+  const auto chroma = [](render::Color c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); };
+  EXPECT_GT(chroma(strong[0].color), chroma(weak[0].color) + 80);
+  for (int phase = 0; phase < 16; ++phase) {
+    const render::Color muscle = render::muscle_color(static_cast<float>(phase) * 0.4f, 0.5f), arrow = strong[0].color;
+    EXPECT_GT(std::abs(muscle.r - arrow.r) + std::abs(muscle.g - arrow.g) + std::abs(muscle.b - arrow.b), 150) << phase;
+  }
 }
 
 TEST(RoundUp, GivesOneTwoFive) {

@@ -89,6 +89,12 @@ TEST(ViewWords, ErrorsNameTheParameter) {
     EXPECT_EQ(refused([&](ViewWords& w) { w.cut = cut; }), "cut") << cut;
   for (const auto& scale : {std::pair(1.0f, 1.0f), std::pair(2.0f, 1.0f), std::pair(0.0f, INFINITY)})
     EXPECT_EQ(refused([&](ViewWords& w) { w.scale = scale; }), "scale");
+  for (const float length : {0.0f, -1.0f, 1000.0f, NAN})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.arrow_length = length; }), "arrow_length") << length;
+  for (const float density : {0.0f, 1.5f, NAN})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.arrow_density = density; }), "arrow_density") << density;
+  for (const float threshold : {-0.1f, 1.5f, NAN})
+    EXPECT_EQ(refused([&](ViewWords& w) { w.arrow_threshold = threshold; }), "arrow_threshold") << threshold;
   EXPECT_EQ(refused([](ViewWords& w) { w.grid = Grid{0, 3}; }), "grid");
   EXPECT_EQ(refused([](ViewWords& w) { w.azimuth = NAN; }), "azimuth");
   EXPECT_EQ(refused([](ViewWords& w) { w.elevation = 91.0f; }), "elevation");
