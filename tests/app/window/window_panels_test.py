@@ -105,6 +105,54 @@ class PanelsTest(WindowCase):
         window.click("color.log")
         self.finish(window)
 
+    def test_a_selected_robot_keeps_its_colors(self):
+        window = self.small("--paused", "--color", "strain")
+        window.key("f")
+        x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][0])
+        aside = window.place("play.play") if "play.play" in window.items else (640, 715)
+        window.do("mousemove", *aside)
+        window.frame()
+        before = window.screenshot()
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("click", 1)
+        window.frame(lambda frame: frame["selected"] == 1)
+        window.do("mousemove", *aside)
+        window.frame()
+        after = window.screenshot()
+        changed = numpy.abs(after - before).max(axis=2) > 0.02
+        self.assertFalse(changed[y - 5:y + 6, x - 5:x + 6].any(), "the middle of the robot is as before")
+        red, green, blue = numpy.moveaxis(after, 2, 0)
+        line = changed & (red > 0.85) & (green > 0.75) & (blue < 0.75) & (red - blue > 0.2)
+        near = line[max(0, y - 200):y + 200, max(0, x - 250):x + 250]
+        self.assertGreater(near.sum(), 60, "there is a line")
+        # The line is thin: no block of 7 pixels is on it.
+        thick = numpy.lib.stride_tricks.sliding_window_view(near, (7, 7)).all(axis=(2, 3))
+        self.assertFalse(thick.any())
+        self.finish(window)
+
+    def test_a_handle_moves_the_cut_of_every_robot(self):
+        window = self.small("--paused", "--cut=-y:50%")
+        before = window.frame(lambda frame: frame["cut"] == 50)
+        whole = window.screenshot()
+        x, y = window.place("cut.handle")
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("mousedown", 1)
+        window.frame()
+        for step in range(1, 5):
+            window.do("mousemove", x + 10 * step, y - 10 * step)
+            window.frame()
+        window.do("mouseup", 1)
+        moved = window.frame(lambda frame: abs(frame["cut"] - 50) > 3)
+        self.assertEqual(moved["azimuth"], before["azimuth"], "the camera does not take the mouse from the handle")
+        cut = window.screenshot()
+        changed = numpy.abs(cut - whole).max(axis=2) > 0.05
+        for x, y in moved["where"]:
+            x, y = round(x), round(y)
+            self.assertGreater(changed[max(0, y - 60):y + 60, max(0, x - 60):x + 60].sum(), 20, "each robot is cut elsewhere now")
+        self.finish(window)
+
     def test_a_message_has_a_bar_in_the_color_of_its_tone(self):
         window = self.small()
         bad = numpy.array([0xf0, 0x70, 0x5f]) / 255
