@@ -103,7 +103,7 @@ void ColorScale::count(std::span<const float> values) {
     const float bin = render::position_on(scale_, value) * static_cast<float>(bins);
     ++histogram_[static_cast<std::size_t>(std::clamp(bin, 0.0f, static_cast<float>(bins - 1)))];
   }
-  const float most = std::ranges::max(histogram_);
+  const float most = *std::ranges::max_element(histogram_);
   // Square roots, so that a few values beside many stay visible.
   for (float& share : histogram_) share = std::sqrt(share / most);
 }
