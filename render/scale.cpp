@@ -23,9 +23,9 @@ float restored(float spacing, float transformed) {
 }
 
 // "2", "0.05", "1e-05", with a real minus sign.
-std::string short_text(float value) {
+std::string short_text(float value, int digits = 3) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", double(value));
+  std::snprintf(text.data(), text.size(), "%.*g", digits, double(value));
   std::string result(text.data());
   if (!result.empty() && result[0] == '-') result.replace(0, 1, "\u2212");
   return result;
@@ -97,7 +97,8 @@ std::string tick_text(float value, float step) {
 std::vector<Tick> ticks_of(const Scale& scale, int most) {
   std::vector<Tick> result;
   if (scale.logarithmic && scale.high > scale.low) {
-    for (const float value : log_ticks(scale, most)) result.push_back({position_on(scale, value), short_text(value)});
+    for (const float value : log_ticks(scale, most))
+      result.push_back({position_on(scale, value), short_text(value, 5)});
     if (result.size() > 1) return result;
     result.clear();
   }

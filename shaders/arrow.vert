@@ -38,7 +38,7 @@ void main() {
   if (vertex < 6) {
     vec2 corner = ribbon_corner(vertex);
     across = corner.y;
-    world = tail + axis * corner.x * (size - 0.9 * head) + side * corner.y * (shaft + grown) - axis * grown * (1.0 - corner.x);
+    world = tail + axis * corner.x * (size - 0.9 * head) + side * corner.y * (shaft + grown);
   } else {
     across = vertex == 8 ? 0.0 : float(2 * (vertex - 6) - 1);
     world = tail + axis * (vertex == 8 ? size + 2.6 * grown : size - head - grown) + side * across * (0.45 * head + 1.7 * grown);

@@ -27,7 +27,7 @@ struct ArrowKinds {
 
 // Turns forces and velocities into arrows. The scale makes the longest arrow of the median robot about half a robot
 // long, times ArrowKinds::length. It grows with larger values by steps of 1, 2 and 5. No arrow is longer than twice
-// that. Weak arrows are pale and strong ones vivid, in colours that no muscle has.
+// that. Weak arrows are pale and strong ones vivid, in hues between those of the default muscles.
 class Arrows {
  public:
   // Throws ParameterError("show", ...) for drag or lift in an environment without forces on faces, and for contact in

@@ -40,6 +40,7 @@ class FitPassTest : public Offscreen {
       for (const Vector3f& corner : {body.box.low, body.box.high}) corners.push_back(corner.homogeneous());
       const float flags = std::bit_cast<float>(body.hidden ? 1u : 0u);
       places.push_back({body.offset.x(), body.offset.y(), body.offset.z(), flags});
+      places.push_back({0, 0, 0, 1});  // it is not cut
     }
     boxes.write(corners);
     placements.write(places);

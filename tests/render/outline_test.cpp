@@ -17,11 +17,12 @@ constexpr float line = 3.1f;  // at most so far outside [pixels]
 class OutlineTest : public Offscreen {
  protected:
   // The picture with the first body selected, or not.
-  static Image with(Renderer& renderer, Scene scene, bool selected, std::size_t bodies = 1) {
+  static Image with(Renderer& renderer, Scene scene, bool selected, std::size_t bodies = 1,
+                    const Camera& camera = front()) {
     std::vector<Placement> placements(bodies);
     placements[0].selected = selected;
     scene.placements = placements;
-    return drawn(renderer, scene);
+    return drawn(renderer, scene, camera);
   }
 };
 
@@ -44,7 +45,7 @@ void expect_line_around(const Image& empty, const Image& plain, const Image& mar
         for (int u = -1; u <= 1; ++u)
           inside = inside && largest_difference(pixel(empty, x + u, y + v), pixel(plain, x + u, y + v)) > 4;
       const int change = largest_difference(pixel(plain, x, y), pixel(marked, x, y));
-      if (inside) ASSERT_EQ(change, 0) << x << ", " << y;
+      ASSERT_FALSE(inside && change > 0) << x << ", " << y;
       if (change == 0) continue;
       ++changed;
       ASSERT_TRUE(any_near(empty, plain, x, y, 4)) << "far from the body: " << x << ", " << y;
@@ -84,7 +85,7 @@ TEST_F(OutlineTest, IsAsWideAsItShouldBeOnEverySide) {
       const Vector2f at = middle + off * out;
       return largest_difference(pixel(plain_image, int(at.x()), int(at.y())), pixel(marked, int(at.x()), int(at.y())));
     };
-    EXPECT_GT(change(1.2f), 60) << i;
+    EXPECT_GT(std::max({change(0.5f), change(1), change(1.5f)}), 60) << i;
     EXPECT_EQ(change(line + 1), 0) << i;
     EXPECT_EQ(change(-2), 0) << i;
   }
@@ -110,9 +111,13 @@ TEST_F(OutlineTest, IsHiddenBehindNearerBodies) {
   const Mesh far = triangle(0), near = triangle(-1.5f);
   renderer.set_bodies(std::array{far.body(), near.body()});
   // The nearer triangle covers the farther one, which is smaller in the picture.
-  EXPECT_EQ(count_differing(with(renderer, plain(), false, 2), with(renderer, plain(), true, 2), 0), 0);
+  const Camera camera{.eye = {0.1f, -4, 0}, .target = {0.1f, 0, 0}};
+  const auto changed = [&] {
+    return count_differing(with(renderer, plain(), false, 2, camera), with(renderer, plain(), true, 2, camera), 0);
+  };
+  EXPECT_EQ(changed(), 0);
   renderer.set_bodies(std::array{near.body(), far.body()});
-  EXPECT_GT(count_differing(with(renderer, plain(), false, 2), with(renderer, plain(), true, 2), 20), 200);
+  EXPECT_GT(changed(), 200);
 }
 
 TEST_F(OutlineTest, HiddenBodiesHaveNone) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -323,7 +324,7 @@ TEST(Arrows, AreAsLongAndDenseAsTheUserWants) {
   for (const render::Arrow& arrow : strong) EXPECT_GE(arrow.vector.norm(), longest_left_out);
 }
 
-// Muscles are coral, gold, teal and violet; none has the hue of a strong arrow. A weak arrow is paler.
+// The default muscles are coral, gold, teal and violet; none has the hue of a strong arrow. A weak arrow is paler.
 TEST(Arrows, TakeTheirColorFromTheirValue) {
   const Simulation simulation(cpu, std::vector<Robot>{plate()});
   Arrows arrows(simulation, {.drag = true});
@@ -333,8 +334,9 @@ TEST(Arrows, TakeTheirColorFromTheirValue) {
   ASSERT_EQ(weak.size(), 1u);
   const auto chroma = [](render::Color c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); };
   EXPECT_GT(chroma(strong[0].color), chroma(weak[0].color) + 80);
-  for (int phase = 0; phase < 16; ++phase) {
-    const render::Color muscle = render::muscle_color(static_cast<float>(phase) * 0.4f, 0.5f), arrow = strong[0].color;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const float phase = static_cast<float>(quarter) * std::numbers::pi_v<float> / 2;
+    const render::Color muscle = render::muscle_color(phase, 0.5f), arrow = strong[0].color;
     EXPECT_GT(std::abs(muscle.r - arrow.r) + std::abs(muscle.g - arrow.g) + std::abs(muscle.b - arrow.b), 150) << phase;
   }
 }
