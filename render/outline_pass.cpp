@@ -100,7 +100,7 @@ void OutlinePass::draw_lines(const Buffer& boxes, const Targets& targets, std::s
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   glUseProgram(line_.get());
-  const float width = std::max(1.5f, float(height_) / 400);
+  const float width = std::max(2.0f, float(height_) / 300);
   glUniform2f(0, width, std::max(1.0f, 0.5f * width));
   glUniform1f(1, reach);
   glBindVertexArray(empty_.get());
