@@ -44,7 +44,8 @@ void append(const Path& path, std::vector<PathPoint>& points) {
   const std::size_t count = path.points.size() / 3;
   for (std::size_t i = 0; i < count; ++i) {
     const float* p = path.points.data() + 3 * i;
-    const float opacity = 0.05f + 0.9f * float(i) / float(std::max<std::size_t>(1, count - 1));
+    const float age = 1 - float(i) / float(std::max<std::size_t>(1, count - 1));
+    const float opacity = path.fades ? 0.95f - 0.9f * age : 0.8f;
     points.push_back({{p[0], p[1], p[2], bits_of(path.body)}, linear(path.color, i + 1 < count ? opacity : -opacity)});
   }
 }

@@ -41,7 +41,7 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.backdrop_high = with(style.backdrop_high, 0);
   b.backdrop_low = with(style.backdrop_low, 0);
   b.floor_color = with(style.floor_color, 0);
-  b.line_color = with(style.line_color, 0);
+  b.line_color = with(style.line_color, scene.patches.empty() ? 1 : 0);
   b.fog = with(style.fog / distance, 0.55f * distance);
   b.screen = {float(width), float(height), 1 / float(width), 1 / float(height)};
   const float scale = 1 / std::tan(0.5f * camera.field_of_view);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "render/font.h"
+#include "render/label_layout.h"
 
 namespace mercury::render {
 namespace {
@@ -27,29 +28,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return lines;
-}
-
-bool overlap(const Rectangle& a, const Rectangle& b) {
-  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
-}
-
-struct PlacedLabel {
-  const Label* label;
-  float x, y, depth;  // lower middle [pixels], distance of the body [m]
-};
-
-// Places the label between the middle and the highest visible point of the body's box.
-PlacedLabel place_label(const Label& label, const Bounds& body, const Camera& camera, int width, int height) {
-  const Eigen::Vector3f middle = camera.project(body.center(), width, height);
-  float top = middle.y();
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f point((corner & 1) ? body.high.x() : body.low.x(),
-                                (corner & 2) ? body.high.y() : body.low.y(),
-                                (corner & 4) ? body.high.z() : body.low.z());
-    const Eigen::Vector3f seen = camera.project(point, width, height);
-    if (seen.z() > 0) top = std::min(top, seen.y());
-  }
-  return {&label, middle.x(), 0.9f * top + 0.1f * middle.y(), middle.z()};
 }
 
 constexpr float small = 0.82f;           // size of second lines
@@ -119,28 +97,27 @@ void Overlay::label(const Rectangle& area, std::span<const std::string_view> lin
 }
 
 void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera) {
-  std::vector<PlacedLabel> placed;
-  for (const Label& label : labels)
-    if (label.body < bodies.size() && !bodies[label.body].empty() && !label.text.empty())
-      placed.push_back(place_label(label, bodies[label.body], camera, int(width_), int(height_)));
-  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
-  std::vector<Rectangle> taken;
   const float pad = 0.3f * text_size_;
-  for (const PlacedLabel& p : placed) {
-    if (p.depth < camera.near) continue;
-    const std::vector<std::string_view> lines = lines_of(p.label->text);
-    const float down = text_size_ * (1 + small * float(lines.size() - 1));
-    float across = 0;
+  std::vector<const Label*> shown;
+  std::vector<LabelRequest> requests;
+  for (const Label& label : labels) {
+    if (label.body >= bodies.size() || label.text.empty()) continue;
+    const auto body = covered_by(bodies[label.body], camera, int(width_), int(height_));
+    if (!body) continue;
+    const std::vector<std::string_view> lines = lines_of(label.text);
+    LabelRequest request{.body = *body,
+                         .height = text_size_ * (1 + small * float(lines.size() - 1)) + 0.8f * pad,
+                         .depth = camera.project(bodies[label.body].center(), int(width_), int(height_)).z(),
+                         .priority = label.priority,
+                         .forced = label.forced};
     for (std::size_t i = 0; i < lines.size(); ++i)
-      across = std::max(across, text_width(lines[i], text_size_ * (i == 0 ? 1 : small)));
-    Rectangle area{p.x - 0.5f * across - pad, p.y - down - 0.8f * pad, across + 2 * pad, down + 0.8f * pad};
-    if (area.x + area.width < 0 || area.x > width_ || p.y < 0 || area.y > height_) continue;
-    area.x = std::clamp(area.x, 0.0f, std::max(0.0f, width_ - area.width));
-    area.y = std::max(area.y, 0.0f);
-    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return overlap(area, other); })) continue;
-    taken.push_back(area);
-    label(area, lines);
+      request.width = std::max(request.width, text_width(lines[i], text_size_ * (i == 0 ? 1 : small)) + 2 * pad);
+    shown.push_back(&label);
+    requests.push_back(request);
   }
+  const auto placed = place_labels(requests, {0, 0, width_, height_});
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (placed[i]) label(*placed[i], lines_of(shown[i]->text));
 }
 
 void Overlay::texts(std::span<const Text> texts, const Camera& camera) {

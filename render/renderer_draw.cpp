@@ -132,6 +132,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   timer.mark("springs and masses");
   glDepthFunc(GL_GEQUAL);
   passes->backdrop.draw(variant + (shows_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
+  if (scene.surroundings == Surroundings::land) patches.draw(scene.patches, variant);
   timer.mark("surroundings");
 }
 

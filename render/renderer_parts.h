@@ -36,6 +36,7 @@
 #include "render/outline_pass.h"
 #include "render/overlay_pass.h"
 #include "render/pace.h"
+#include "render/patch_pass.h"
 #include "render/quality.h"
 #include "render/renderer.h"
 #include "render/scene_buffers.h"
@@ -86,6 +87,7 @@ struct Renderer::Parts {
   BoundsPass bounds;
   FitPass fit;
   CutPass cut;
+  PatchPass patches;
   SectionPass section;
   OutlinePass outline;
   PassTimer timer;

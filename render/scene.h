@@ -62,15 +62,19 @@ struct Arrow {
 
 // A line in a body's coordinates, such as the path of its centre of mass.
 struct Path {
+  static constexpr std::uint32_t no_body = 0xffffffff;  // the line is in the picture's coordinates
   std::uint32_t body = 0;
-  std::span<const float> points;  // 3 per point, oldest first; older points fade
+  std::span<const float> points;  // 3 per point, oldest first
   Color color;
+  bool fades = true;  // older points are fainter
 };
 
-// Text above a body; '\n' starts a new, smaller line.
+// Text beside a body; '\n' starts a new, smaller line. Of many, only some are shown (label_layout.h).
 struct Label {
   std::uint32_t body = 0;
   std::string text;
+  float priority = 0;   // higher ones are placed first
+  bool forced = false;  // shown even where it covers a body
 };
 
 // A flat rectangle behind bodies, with round corners: a cell of a table. It takes shadows, but no other light.
@@ -96,6 +100,14 @@ struct Legend {
   // How many values are in each part of the scale, from its low end to its high one, as shares of the largest; drawn
   // beside the bar. Empty = not drawn.
   std::vector<float> histogram;
+};
+
+// A disc on the ground that slides under a body which is kept in its place, so that the body is seen to move. While
+// there are patches, only they have metre lines.
+struct Patch {
+  Eigen::Vector2f center{0, 0};  // in the picture's coordinates [m]
+  float radius = 1;              // [m]
+  Eigen::Vector2f slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
 struct Show {
@@ -127,6 +139,7 @@ struct Scene {
   Eigen::Vector3f flow{0, 0, 0};  // of the water; particles drift with it [m/s]
   double time = 0;                // moves caustics and particles [s]
 
+  std::span<const Patch> patches;  // on land
   std::span<const Tile> tiles;
   std::span<const Text> texts;
   std::span<const Arrow> arrows;

@@ -42,7 +42,7 @@ Style light_water() {
   return s;
 }
 
-Style dark_land() {
+Style dark_plain() {
   Style s;
   s.to_key = {-0.50f, -0.28f, 0.82f};
   s.key_light = {2.45f, 2.35f, 2.20f};
@@ -59,7 +59,7 @@ Style dark_land() {
   return s;
 }
 
-Style light_land() {
+Style light_plain() {
   Style s;
   s.to_key = {-0.50f, -0.28f, 0.82f};
   s.key_light = {2.30f, 2.22f, 2.10f};
@@ -76,12 +76,44 @@ Style light_land() {
   return s;
 }
 
+// Evening: a low sun, long shadows, haze.
+Style dark_land() {
+  Style s = dark_plain();
+  s.to_key = {-0.72f, -0.40f, 0.62f};
+  s.key_light = {3.05f, 2.62f, 2.10f};
+  s.sky_light = {0.30f, 0.36f, 0.48f};
+  s.ground_light = {0.12f, 0.11f, 0.095f};
+  s.key_size = 0.085f;
+  s.backdrop_high = {0.105f, 0.110f, 0.125f};
+  s.backdrop_low = {0.012f, 0.022f, 0.050f};
+  s.floor_color = {0.098f, 0.090f, 0.078f};
+  s.line_color = {0.26f, 0.26f, 0.25f};
+  s.fog = {0.10f, 0.11f, 0.13f};
+  return s;
+}
+
+Style light_land() {
+  Style s = light_plain();
+  s.to_key = {-0.72f, -0.40f, 0.66f};
+  s.key_light = {2.75f, 2.52f, 2.18f};
+  s.sky_light = {0.46f, 0.53f, 0.62f};
+  s.ground_light = {0.24f, 0.22f, 0.19f};
+  s.key_size = 0.085f;
+  s.backdrop_high = {0.74f, 0.80f, 0.86f};
+  s.backdrop_low = {0.16f, 0.36f, 0.68f};
+  s.floor_color = {0.45f, 0.41f, 0.335f};
+  s.line_color = {0.20f, 0.19f, 0.17f};
+  s.fog = {0.10f, 0.11f, 0.13f};
+  return s;
+}
+
 }  // namespace
 
 Style style_of(Surroundings surroundings, Theme theme, bool values) {
   const bool dark = theme == Theme::dark;
-  Style s =
-      surroundings == Surroundings::water ? (dark ? dark_water() : light_water()) : (dark ? dark_land() : light_land());
+  Style s = dark ? dark_plain() : light_plain();
+  if (surroundings == Surroundings::water) s = dark ? dark_water() : light_water();
+  if (surroundings == Surroundings::land) s = dark ? dark_land() : light_land();
   if (surroundings == Surroundings::none) s.fog.setZero();
   if (values && dark && surroundings == Surroundings::water) {
     s.backdrop_high *= dimmed_water;

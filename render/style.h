@@ -13,7 +13,7 @@ struct Style {
   Eigen::Vector3f to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
   Eigen::Vector3f key_light, sky_light, ground_light;
   float key_size = 0.08f;                       // tangent of the key light's half angle; larger = softer shadows
-  Eigen::Vector3f backdrop_high, backdrop_low;  // far away: level and above; straight down
+  Eigen::Vector3f backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
   Eigen::Vector3f floor_color, line_color;
   Eigen::Vector3f fog{0, 0, 0};  // extinction of each colour [1 / distance from eye to target]
   float caustics = 0;            // contrast of the light pattern under water

@@ -18,12 +18,35 @@ float shafts(vec3 direction) {
   return 0.30 * sum / 6.0 * smoothstep(-0.05, 0.25, direction.z) * 2.0;
 }
 
+// The sky over land: haze at the horizon, blue above, light around the sun, thin clouds, and hills far away.
+vec3 sky(vec3 direction) {
+  float high = max(direction.z, 0.0);
+  vec3 haze = frame.backdrop_high.rgb, zenith = frame.backdrop_low.rgb;
+  vec3 light = mix(haze, zenith, 1.0 - exp(-3.2 * high));
+  float sun = max(dot(direction, frame.to_key.xyz), 0.0);
+  float bright = sun * sun * sun;
+  light += haze * (0.28 * bright + 0.5 * pow(sun, 48.0)) * frame.key_light.rgb / frame.key_light.g;
+  vec2 above = direction.xy / (high + 0.16);
+  float clouds = texture(sand_tile, above * vec2(0.05, 0.11)).a * 0.65 + texture(sand_tile, above.yx * 0.23).a * 0.35;
+  light = mix(light, haze * (1.12 + 0.5 * bright), 0.55 * smoothstep(0.46, 0.72, clouds) * smoothstep(0.02, 0.22, high));
+  vec2 around = normalize(direction.xy + vec2(1e-6));
+  float far_hills = 0.22 * (textureLod(sand_tile, around * 0.23, 2.0).a - 0.36);
+  float near_hills = 0.17 * (textureLod(sand_tile, around.yx * 0.41 + 0.3, 2.0).a - 0.42);
+  float edge = max(fwidth(direction.z), 1e-5);
+  vec3 ground = frame.floor_color.rgb * (0.5 * frame.sky_light.rgb + 0.35 * frame.key_light.rgb);
+  float low = smoothstep(0.03, -0.005, direction.z);  // haze lies in the plain
+  light = mix(light, mix(ground, haze, mix(0.72, 1.0, low)), clamp((far_hills - direction.z) / edge + 0.5, 0.0, 1.0));
+  return mix(light, mix(ground, haze, mix(0.48, 1.0, low)), clamp((near_hills - direction.z) / edge + 0.5, 0.0, 1.0));
+}
+
 void main() {
   vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
   vec3 direction = normalize(sight);
   vec3 light = backdrop(direction);
 #if AROUND == AROUND_WATER && defined(HORIZON)
   light *= 1.0 + shafts(direction);
+#elif AROUND == AROUND_LAND && defined(HORIZON)
+  light = sky(direction);
 #endif
 #if AROUND != AROUND_NONE
   // `sight` has length 1 along the camera's axis, so `steps` is the depth along that axis.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ground on land and the sand under water. Needs frame.glsl, caustics.glsl.
-layout(binding = 5) uniform sampler2D sand_tile;    // slope x, y, grain
+layout(binding = 5) uniform sampler2D sand_tile;    // slope x, y, grain, patches
 layout(binding = 6) uniform sampler2D ground_light_map;
 
 // 1 on lines `period` apart, smoothed over `pixel` metres. Fades out before lines are too dense to be resolved.
@@ -17,28 +17,50 @@ float key_on_floor(vec2 point) {
   return textureLod(ground_light_map, at, 0.0).r;
 }
 
-// `pixel` = size of a pixel on the floor [m], `open` = share of ambient light that occlusion leaves.
-vec3 land(vec2 point, vec2 pixel, float open) {
-  float key = key_on_floor(point);
-  vec3 light = frame.key_light.rgb * key * frame.to_key.z / 1.6 + frame.sky_light.rgb * open;
-  // Lines at a power of ten of metres that suits the distance; the next finer ones fade in as the camera comes closer.
+// The tile at two sizes that suit the viewing distance. `scale` = tiles per octave.
+vec4 ground_tile(vec2 point, float scale) {
+#if OCTAVES == 1
+  return texture(sand_tile, point * (scale / frame.octave.x));
+#else
+  return mix(texture(sand_tile, point * (scale / frame.octave.x)), texture(sand_tile, point * (scale / frame.octave.y)),
+             frame.octave.z);
+#endif
+}
+
+// Lines at a power of ten of metres that suits the distance; the next finer ones fade in as the camera comes closer.
+float metre_lines(vec2 point, vec2 pixel) {
   float decade = log(frame.water.w * 0.12) / log(10.0);
   float period = pow(10.0, floor(decade));
   float finer = 1.0 - fract(decade);
   float width = 0.0035 * frame.water.w * 0.3;
-  float line = max(0.45 * finer * lines(point, period, pixel, width * 0.5), 0.55 * lines(point, 10.0 * period, pixel, width));
-  return mix(frame.floor_color.rgb, frame.line_color.rgb, line) * light;
+  return max(0.35 * finer * lines(point, period, pixel, width * 0.5), 0.5 * lines(point, 10.0 * period, pixel, width));
+}
+
+// Dry ground without lines: patches, ripples and grain at three sizes. `open` = share of ambient light that
+// occlusion leaves.
+vec3 soil(vec2 point, float key, float open, out vec3 light) {
+  vec4 fine = ground_tile(point, 1.1), finest = ground_tile(point.yx, 6.7);
+  vec4 broad = ground_tile(mat2(0.8, 0.6, -0.6, 0.8) * point, 0.09);
+  vec2 slope = (fine.xy - 0.5) * 0.75 + (broad.xy - 0.5) * 0.45 + (finest.yx - 0.5) * 0.30;
+  vec3 normal = normalize(vec3(-slope, 1.0));
+  float n_l = max(dot(normal, frame.to_key.xyz), 0.0);
+  light = frame.key_light.rgb * key * n_l / 1.6 + frame.sky_light.rgb * open * (0.7 + 0.3 * normal.z);
+  float dry = smoothstep(0.30, 0.66, broad.a);
+  vec3 color = mix(frame.floor_color.rgb * vec3(0.70, 0.75, 0.74), frame.floor_color.rgb * vec3(1.20, 1.07, 0.92), dry);
+  return color * (0.12 + 0.50 * fine.z + 0.70 * fine.a + 0.30 * finest.z + 0.26 * finest.a);
+}
+
+// `pixel` = size of a pixel on the floor [m].
+vec3 land(vec2 point, vec2 pixel, float open) {
+  vec3 light;
+  vec3 color = soil(point, key_on_floor(point), open, light);
+  return mix(color, frame.line_color.rgb, frame.line_color.w * metre_lines(point, pixel)) * light;
 }
 
 // Robots swim far above the sand, so there is no ambient occlusion.
 vec3 sand(vec2 point) {
   float key = key_on_floor(point);
-#if OCTAVES == 1
-  vec3 tile = texture(sand_tile, point * (1.9 / frame.octave.x)).rgb;
-#else
-  vec3 tile = mix(texture(sand_tile, point * (1.9 / frame.octave.x)).rgb,
-                  texture(sand_tile, point * (1.9 / frame.octave.y)).rgb, frame.octave.z);
-#endif
+  vec3 tile = ground_tile(point, 1.9).xyz;
   vec2 slope = (tile.xy - 0.5) * 1.1;
   vec3 normal = normalize(vec3(-slope, 1.0));
   float n_l = max(dot(normal, frame.to_key.xyz), 0.0);

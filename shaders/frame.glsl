@@ -16,9 +16,9 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sky_light;                // from straight above
   vec4 ground_light;             // from straight below
   vec4 backdrop_high;            // light from far away, looking up and level
-  vec4 backdrop_low;             // the same, looking down
+  vec4 backdrop_low;             // the same, looking down; on land, straight up
   vec4 floor_color;
-  vec4 line_color;               // of the grid on land
+  vec4 line_color;               // of the grid on land; w = 1 if the whole ground has it
   vec4 fog;                      // extinction [1/m]; w = distance where it begins [m]
   vec4 screen;                   // width, height, 1/width, 1/height [pixels]
   vec4 depth;                    // near, far [m]; half width and height of the picture at distance 1
@@ -39,6 +39,7 @@ float distance_of_depth(float d) {
 }
 
 vec3 backdrop(vec3 sight) {
+  if (int(frame.water.x) == AROUND_LAND) return frame.backdrop_high.rgb;  // haze; backdrop_low is the zenith
   return mix(frame.backdrop_low.rgb, frame.backdrop_high.rgb, smoothstep(-0.75, 0.15, sight.z));
 }
 

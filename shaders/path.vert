@@ -3,6 +3,7 @@
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "ribbon.glsl"
+#define NO_BODY 0xffffffffu
 struct PathPoint {
   vec4 position;  // in the body's coordinates; w = bits of the body's index
   vec4 color;  // linear, opacity; opacity < 0 = the path ends here
@@ -18,7 +19,9 @@ void main() {
   int segment = gl_VertexID / 6;
   vec2 corner = ribbon_corner(gl_VertexID % 6);
   PathPoint a = points[segment], b = points[segment + 1];
-  Placement placement = placements[floatBitsToUint(a.position.w)];
+  uint body = floatBitsToUint(a.position.w);
+  Placement placement = Placement(vec3(0.0), 0u, vec4(0.0, 0.0, 0.0, 1.0));  // without a body, points are in the picture's coordinates
+  if (body != NO_BODY) placement = placements[body];
   vec3 point = mix(a.position.xyz, b.position.xyz, corner.x) + placement.offset;
   vec3 side = across_of(normalize(b.position.xyz - a.position.xyz + vec3(1e-12)), frame.eye.xyz - point);
   world = point + side * corner.y * 0.5 * width * pixel_size(point);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tile of sand: the slopes of its ripples, and grain. Drawn once.
+// One tile of sand: the slopes of its ripples, grain, and patches of many sizes. Drawn once.
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 tile;
 
@@ -32,5 +32,10 @@ void main() {
   vec2 slope = vec2(height(uv + vec2(d, 0.0)) - height(uv - vec2(d, 0.0)),
                     height(uv + vec2(0.0, d)) - height(uv - vec2(0.0, d))) / (2.0 * d);
   float grain = 0.5 + 0.30 * (noise(uv, 160) - 0.5) + 0.25 * (noise(uv, 6) - 0.5) + 0.2 * (noise(uv, 40) - 0.5);
-  tile = vec4(0.5 + 0.5 * slope, grain, 1.0);
+  float patches = 0.0, weight = 0.5;
+  for (int period = 3; period < 200; period *= 2) {
+    patches += weight * noise(uv + 0.31 * float(period), period);
+    weight *= 0.5;
+  }
+  tile = vec4(0.5 + 0.5 * slope, grain, patches);
 }

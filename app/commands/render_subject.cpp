@@ -40,12 +40,12 @@ void set_view_of_run(const RenderOptions& options, const RunFilm& film, ViewSett
     if (view.color->has_values()) throw InputError("--color", "not together with --map, where colors show scores");
     if (view.camera.mode != CameraMode::group)
       throw InputError("--camera", "not together with --map; --azimuth and --elevation turn the robots");
-    if (view.grid || view.layout == Layout::race)
+    if (view.grid || view.layout != Layout::grid)
       throw InputError(view.grid ? "--grid" : "--layout", "not together with --map, which has a layout of its own");
     if (!options.view.chooses_what_is_shown()) view.shown.clock = !options.video.single_picture();
     return;
   }
-  if (options.film.row() && !view.grid && view.layout == Layout::grid)
+  if (options.film.row() && !view.grid && view.layout != Layout::race)
     view.grid = Grid{.columns = static_cast<int>(film.clips.front().robots.size()), .rows = 1};
   if (options.view.chooses_what_is_shown()) return;
   view.shown.captions = view.shown.path = view.shown.scale_bar = true;

@@ -57,7 +57,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.speed = options.speed;
   result.interop = !options.no_interop;
   result.paced = !options.unpaced;
-  result.view = options.view.settings();
+  result.view = options.view.settings(Layout::cells);
   return result;
 }
 

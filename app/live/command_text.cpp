@@ -149,7 +149,7 @@ OptionValues options_of(const Configuration& configuration) {
   return options.take();
 }
 
-OptionValues options_of(const ViewSettings& settings) {
+OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual) {
   Options options;
   const ViewSettings defaults;
   const bool race = settings.layout == Layout::race;
@@ -159,7 +159,8 @@ OptionValues options_of(const ViewSettings& settings) {
   options.flag("--log-scale", settings.log_scale);
   Shown shown;
   shown.legend = settings.color->has_values();
-  shown.labels = shown.path = race;
+  shown.labels = race;
+  shown.path = settings.layout != Layout::grid;
   options.text("--show", shown_text(settings.shown), shown_text(shown));
   options.number("--arrow-length", settings.shown.arrows.length, 1.0f);
   options.number("--arrow-density", settings.shown.arrows.density, 1.0f);
@@ -169,13 +170,14 @@ OptionValues options_of(const ViewSettings& settings) {
   options.flag("--plain", settings.plain);
   options.flag("--smooth", settings.smooth);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
-  options.text("--layout", race ? "race" : "grid", "grid");
+  options.text("--layout", std::string(name_of(settings.layout)), usual ? name_of(*usual) : "");
   if (settings.grid && !race)
     options.text("--grid", fmt::format("{}x{}", settings.grid->columns, settings.grid->rows), "");
   options.text("--camera", camera_text(settings.camera), "group");
   if (settings.camera.azimuth) options.number("--azimuth", degrees(*settings.camera.azimuth), NAN);
   if (settings.camera.elevation) options.number("--elevation", degrees(*settings.camera.elevation), NAN);
   options.number("--zoom", settings.camera.zoom, 1.0f);
+  options.text("--bookmarks", bookmarks_text(settings.bookmarks), "");
   return options.take();
 }
 
@@ -217,7 +219,7 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
   const OptionValues options = append_random_robots(document, command);
   append(command.text, options);
   append(command.text, options_of(document.configuration));
-  append(command.text, options_of(settings));
+  append(command.text, options_of(settings, subcommand == "view" ? Layout::cells : Layout::grid));
   if (subcommand == "render") command.text += " -o scene.mp4";
   std::ranges::sort(command.notes);
   command.notes.erase(std::unique(command.notes.begin(), command.notes.end()), command.notes.end());

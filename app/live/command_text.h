@@ -20,7 +20,8 @@ using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt
 
 // The options that differ from the defaults.
 OptionValues options_of(const Configuration& configuration);
-OptionValues options_of(const ViewSettings& settings);
+// `usual`: the layout that is left out; absent = none.
+OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual = {});
 
 // `subcommand`: "view", or "render", which writes scene.mp4.
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand);

@@ -9,10 +9,9 @@
 namespace mercury {
 namespace {
 
-// A spring may have become many times as long as its robot. Then shows the place where the robot was at rest.
-render::Bounds surroundings_of(const CulpritSpring& spring, const Robot& robot, const Eigen::Vector3f& offset) {
+// A spring may have become many times as long as its robot. Then shows the place where the robot was.
+render::Bounds surroundings_of(const CulpritSpring& spring, const render::Bounds& rest) {
   constexpr float most = 12;  // of the robot's size
-  const render::Bounds rest = rest_bounds(robot).moved(offset);
   const float size = std::max(2 * rest.radius(), 1e-3f);
   render::Bounds box;
   for (const Eigen::Vector3f& end : {spring.at_a, spring.at_b})
@@ -24,7 +23,7 @@ render::Bounds surroundings_of(const CulpritSpring& spring, const Robot& robot, 
 }
 
 std::optional<CulpritSpring> culprit_spring_of(const Snapshot& snapshot, std::size_t index,
-                                               const Eigen::Vector3f& offset) {
+                                               const Eigen::Vector3f& offset, const render::Bounds& box) {
   const Robot& robot = *snapshot.robots->robots[index].robot;
   const std::uint32_t spring_index = snapshot.telemetry[index].culprit_spring;
   if (spring_index >= robot.springs.size()) return std::nullopt;
@@ -38,19 +37,22 @@ std::optional<CulpritSpring> culprit_spring_of(const Snapshot& snapshot, std::si
                       .figures = spring_details(snapshot, index, spring_index),
                       .surroundings = {}};
   if (!found.at_a.allFinite() || !found.at_b.allFinite()) return std::nullopt;
-  found.surroundings = surroundings_of(found, robot, offset);
+  found.surroundings = surroundings_of(found, box);
   return found;
 }
 
 }  // namespace
 
-std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets) {
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets,
+                                           std::span<const render::Bounds> boxes) {
   std::vector<ExplodedRobot> exploded;
   for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
     const Telemetry& telemetry = snapshot.telemetry[i];
     if (!telemetry.exploded) continue;
     const LiveRobot& robot = snapshot.robots->robots[i];
-    exploded.push_back({robot.id, i, robot.name, telemetry.exploded_at, culprit_spring_of(snapshot, i, offsets[i])});
+    const render::Bounds box = i < boxes.size() ? boxes[i] : rest_bounds(*robot.robot).moved(offsets[i]);
+    exploded.push_back(
+        {robot.id, i, robot.name, telemetry.exploded_at, culprit_spring_of(snapshot, i, offsets[i], box)});
   }
   std::ranges::stable_sort(exploded, {}, &ExplodedRobot::time);
   return exploded;

@@ -33,7 +33,8 @@ struct ExplodedRobot {
 };
 
 // The exploded robots of a snapshot in the order of their explosions. `offsets`: per robot, added to its coordinates in
-// the picture [m].
-std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets);
+// the picture [m]. `boxes`: where each robot was last in the picture; empty = where it was at rest.
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets,
+                                           std::span<const render::Bounds> boxes = {});
 
 }  // namespace mercury

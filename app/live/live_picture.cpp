@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "app/live/slow_motion.h"
-#include "app/scene/camera_controller.h"
 
 namespace mercury {
 namespace {
@@ -18,7 +17,8 @@ bool same_layout(const ViewSettings& a, const ViewSettings& b) {
   const auto grid = [](const ViewSettings& s) {
     return s.grid ? std::pair{s.grid->columns, s.grid->rows} : std::pair{0, 0};
   };
-  return a.layout == b.layout && grid(a) == grid(b) &&
+  return a.layout == b.layout && grid(a) == grid(b) && a.camera.azimuth == b.camera.azimuth &&
+         a.camera.elevation == b.camera.elevation &&
          (a.camera.mode == CameraMode::top) == (b.camera.mode == CameraMode::top);
 }
 
@@ -49,17 +49,16 @@ std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSett
   for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
     bounds.push_back(i < snapshot.robots->shapes.size() ? snapshot.robots->shapes[i]->box
                                                         : rest_bounds(*snapshot.robots->robots[i].robot));
-  const bool land = std::holds_alternative<Land>(snapshot.configuration.environment);
-  LayoutOptions options{.layout = settings.layout,
-                        .grid = settings.grid,
-                        .aspect = aspect,
-                        .view = direction_of(settings.camera, land),
-                        .on_ground = land || settings.camera.mode == CameraMode::top};
+  std::vector<Room> rooms;
+  for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
+    rooms.push_back(i < snapshot.robots->shapes.size() ? snapshot.robots->shapes[i]->room
+                                                       : room_of(*snapshot.robots->robots[i].robot));
+  ViewSettings fitting = settings;
   // Ignore a grid that has become too small.
-  if (options.grid &&
-      static_cast<std::size_t>(options.grid->columns) * static_cast<std::size_t>(options.grid->rows) < bounds.size())
-    options.grid.reset();
-  return bounds.empty() ? std::vector<Eigen::Vector3f>{} : grid_layout(bounds, options);
+  if (fitting.grid &&
+      static_cast<std::size_t>(fitting.grid->columns) * static_cast<std::size_t>(fitting.grid->rows) < bounds.size())
+    fitting.grid.reset();
+  return group_offsets(bounds, rooms, fitting, snapshot.configuration.environment, aspect);
 }
 
 }  // namespace
@@ -68,7 +67,7 @@ struct LivePicture::Parts {
   std::shared_ptr<const Snapshot> snapshot;
   ViewSettings settings;  // of the last update()
   std::optional<GroupScene> scene;
-  std::vector<Eigen::Vector3f> offsets;
+  double wall = 0;  // of the last update() [s]
   std::uint64_t revision = 0;
   SlowMotion slow_motion;
   SlowMotion::Shown shown;
@@ -85,23 +84,23 @@ LivePicture::LivePicture() : parts_(std::make_unique<Parts>()) {}
 LivePicture::~LivePicture() = default;
 
 void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
-                         const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall) {
+                         const std::set<RobotId>& selected, const std::set<RobotId>& hidden,
+                         std::optional<RobotId> held, double wall) {
   Parts& parts = *parts_;
   const std::shared_ptr<const Snapshot> before = std::exchange(parts.snapshot, snapshot);
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
   const bool others = !before || before->robots->revision != snapshot->robots->revision;
   const bool moved = before && before->configuration.environment.index() != snapshot->configuration.environment.index();
   if (others) {
-    parts.offsets = offsets_of(*snapshot, settings, aspect);
     const std::optional<GroupScene> old = std::exchange(parts.scene, std::nullopt);
-    parts.scene.emplace(group_of(*snapshot), parts.offsets, fitting(settings, *snapshot));
+    parts.scene.emplace(group_of(*snapshot), offsets_of(*snapshot, settings, aspect), fitting(settings, *snapshot));
     if (old && before->resets == snapshot->resets) parts.keep_trails(*old, *before);
     ++parts.revision;
   } else {
-    if (moved || !same_layout(old_settings, settings)) lay_out(aspect);
     parts.scene->set_settings(fitting(settings, *snapshot));
     if (before->configuration.environment != snapshot->configuration.environment)
       parts.scene->set_environment(snapshot->configuration.environment);
+    if (moved || !same_layout(old_settings, settings)) lay_out(aspect);
     if (before->resets != snapshot->resets) parts.scene->restart(snapshot->telemetry);
     for (std::size_t i = 0; i < snapshot->robots->size() && before->robots != snapshot->robots; ++i) {
       const LiveRobot &now = snapshot->robots->robots[i], &then = before->robots->robots[i];
@@ -115,6 +114,7 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   }
   if (before != snapshot) parts.slow_motion.take(snapshot);
   parts.shown = parts.slow_motion.at(wall);
+  parts.scene->hold(held ? snapshot->robots->index_of(*held) : std::nullopt, wall - std::exchange(parts.wall, wall));
   parts.scene->update(parts.shown.time, parts.shown.telemetry, snapshot->details);
   const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};
@@ -123,8 +123,7 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
 void LivePicture::lay_out(float aspect) {
   Parts& parts = *parts_;
   if (!parts.snapshot || !parts.scene) return;
-  parts.offsets = offsets_of(*parts.snapshot, parts.settings, aspect);
-  parts.scene->set_offsets(parts.offsets);
+  parts.scene->set_offsets(offsets_of(*parts.snapshot, parts.settings, aspect));
 }
 
 std::uint64_t LivePicture::bodies_revision() const { return parts_->revision; }
@@ -143,6 +142,14 @@ std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
   const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }
-std::span<const Eigen::Vector3f> LivePicture::offsets() const { return parts_->offsets; }
+std::span<const Eigen::Vector3f> LivePicture::offsets() const {
+  return parts_->scene ? parts_->scene->offsets() : std::span<const Eigen::Vector3f>{};
+}
+std::span<const render::Bounds> LivePicture::last_boxes() const {
+  return parts_->scene ? parts_->scene->last_boxes() : std::span<const render::Bounds>{};
+}
+std::span<const render::Bounds> LivePicture::camera_boxes() const {
+  return parts_->scene ? parts_->scene->camera_boxes() : std::span<const render::Bounds>{};
+}
 
 }  // namespace mercury

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
@@ -21,9 +22,11 @@ class LivePicture {
   ~LivePicture();
 
   // Updates the scene from a snapshot and keeps the snapshot until the next call. In slow motion the scene shows the
-  // robots between two snapshots (slow_motion.h); `wall` is the present wall time [s].
+  // robots between two snapshots (slow_motion.h); `wall` is the present wall time [s]. `held`: the robot at which the
+  // mouse pulls.
   void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
-              const std::set<RobotId>& selected, const std::set<RobotId>& hidden, double wall);
+              const std::set<RobotId>& selected, const std::set<RobotId>& hidden, std::optional<RobotId> held,
+              double wall);
   // Arranges the robots again in rows that suit the picture's aspect ratio and the camera angles of the settings.
   void lay_out(float aspect);
 
@@ -40,6 +43,10 @@ class LivePicture {
   render::Scene& scene();
   // Bounds per robot of the snapshot, with offsets. Those of exploded robots are empty unless all robots have exploded.
   std::span<const render::Bounds> bounds() const;
+  // The same for cameras (GroupScene::camera_boxes).
+  std::span<const render::Bounds> camera_boxes() const;
+  // The same for each robot, also those that have exploded: where they were last.
+  std::span<const render::Bounds> last_boxes() const;
   // The positions of a robot's masses as drawn, without its offset [m].
   std::span<const Vec3> positions_of(std::size_t robot) const;
   // What is added to each robot's own coordinates in the picture [m].

@@ -45,10 +45,23 @@ void LiveScene::frame(float aspect) {
     std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
   }
   if (parts.perturbation && !parts.document.find(parts.perturbation->robot)) end_perturbation();
-  parts.picture.update(parts.snapshot, parts.view, parts.aspect, {parts.selected.begin(), parts.selected.end()},
-                       parts.hidden, wall_now());
+  ViewSettings shown = parts.view;
+  if (parts.from_above) shown.camera.mode = *parts.from_above ? CameraMode::top : CameraMode::group;
+  if (parts.facing) {
+    constexpr float flattest = 0.35f;  // a view of the ground in which rows are apart [rad]
+    const bool land = std::holds_alternative<Land>(parts.document.configuration.environment);
+    shown.camera.azimuth = parts.facing->azimuth;
+    shown.camera.elevation = land ? std::max(flattest, parts.facing->elevation) : parts.facing->elevation;
+  }
+  parts.picture.update(parts.snapshot, shown, parts.aspect, {parts.selected.begin(), parts.selected.end()},
+                       parts.hidden, parts.perturbation ? std::optional(parts.perturbation->robot) : std::nullopt,
+                       wall_now());
 }
 
+void LiveScene::face(bool from_above, const std::optional<render::Orbit>& direction) {
+  parts_->from_above = from_above;
+  parts_->facing = direction;
+}
 const Snapshot& LiveScene::snapshot() const { return *parts_->snapshot; }
 std::shared_ptr<const Snapshot> LiveScene::hold_snapshot() const { return parts_->snapshot; }
 LivePicture& LiveScene::picture() { return parts_->picture; }
@@ -182,7 +195,8 @@ Series LiveScene::series(RobotId robot) const { return parts_->physics.measureme
 std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
 
 std::vector<ExplodedRobot> LiveScene::exploded() const {
-  std::vector<ExplodedRobot> robots = exploded_robots(*parts_->snapshot, parts_->picture.offsets());
+  std::vector<ExplodedRobot> robots =
+      exploded_robots(*parts_->snapshot, parts_->picture.offsets(), parts_->picture.last_boxes());
   std::erase_if(robots, [&](const ExplodedRobot& robot) { return parts_->hidden.contains(robot.robot); });
   return robots;
 }

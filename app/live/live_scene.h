@@ -66,6 +66,9 @@ class LiveScene {
   // Call it first in every frame: fetches the newest snapshot and the results of background tasks, and updates
   // picture(). `aspect` is the picture's width divided by its height; the layout of the robots depends on it.
   void frame(float aspect = 16.0f / 9);
+  // What a grid faces from the next frame() on; before the first call, the camera of view() decides. From above, the
+  // robots lie beside each other, as on the ground. `direction`: else the angles of the eye; absent = those of view().
+  void face(bool from_above, const std::optional<render::Orbit>& direction = {});
   const Snapshot& snapshot() const;  // of the last frame(); valid until the next one
   std::shared_ptr<const Snapshot> hold_snapshot() const;
   LivePicture& picture();

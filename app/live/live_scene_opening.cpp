@@ -181,7 +181,7 @@ void LiveScene::Parts::open_scene(const SceneFile& scene, const std::vector<std:
   const Device device = document.configuration.device;
   document.configuration = scene.configuration(environments, notes);
   document.configuration.device = device;
-  view = scene.view();
+  view = scene.view(Layout::cells);
   camera = view.camera;
   physics.set_view(view);
   for (std::string& note : notes) report(Severity::note, std::move(note));

@@ -34,6 +34,8 @@ struct LiveScene::Parts {
   std::shared_ptr<const Snapshot> snapshot;
   LivePicture picture;
   float aspect = 16.0f / 9;
+  std::optional<bool> from_above;  // see LiveScene::face
+  std::optional<render::Orbit> facing;
   std::vector<RobotId> selected;  // in the order of selection
   std::set<RobotId> hidden;
   bool playing = false;

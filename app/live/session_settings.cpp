@@ -40,7 +40,7 @@ class SettingsParser {
     std::vector<std::string> arguments{"scene"};
     arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
     program_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    SessionSettings settings{.view = view_.settings(), .pause_on_explosion = pause_, .folder = folder_};
+    SessionSettings settings{.view = view_.settings(Layout::cells), .pause_on_explosion = pause_, .folder = folder_};
     generation_.count = std::clamp<std::size_t>(generation_.count, 1, 100'000);
     generation_.values = generators_.values();
     generator_named(generation_.kind);
@@ -69,7 +69,9 @@ fs::path session_settings_path() {
 
 SessionSettings load_session_settings(const fs::path& path, Messages& messages) {
   std::error_code error;
-  if (path.empty() || !fs::exists(path, error)) return {};
+  SessionSettings usual;
+  set_layout(usual.view, Layout::cells);
+  if (path.empty() || !fs::exists(path, error)) return usual;
   try {
     return SettingsParser().read(path);
   } catch (const std::exception& problem) {
@@ -77,7 +79,7 @@ SessionSettings load_session_settings(const fs::path& path, Messages& messages) 
     fs::rename(path, aside, error);
     messages.add(Severity::warning, fmt::format("the settings have an error and were renamed to {}: {}",
                                                 error ? path.string() : aside.string(), problem.what()));
-    return {};
+    return usual;
   }
 }
 

@@ -96,7 +96,7 @@ SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 const std::filesystem::path& SceneFile::path() const { return parts_->path; }
 const std::vector<std::string>& SceneFile::robots() const { return parts_->file->robots(); }
 std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.random(); }
-ViewSettings SceneFile::view() const { return parts_->view.settings(); }
+ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 
 Configuration SceneFile::configuration(std::span<const std::string> environments,
                                        std::vector<std::string>& notes) const {

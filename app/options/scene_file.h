@@ -35,7 +35,8 @@ class SceneFile {
   // Without `environment` in the file, the robots choose: `environments` are those that they are made for. Appends to
   // `notes` what the user should know about that. The device is the default one.
   Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
-  ViewSettings view() const;
+  // `usual`: the layout if the file names none.
+  ViewSettings view(Layout usual = Layout::grid) const;
 
   // What the file says as options of a command ("--dt=0.002"): those that the command has, and that are not on its
   // command line `given`. If that names another environment, the file's parameters of its own are left out.

@@ -52,12 +52,18 @@ void ViewOptions::add_to(CLI::App& command) {
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
                 text_from));
-  add(add_choice(command, "--layout", words_.layout, {"grid", "race"}, "Robots in a grid, or in lanes side by side"));
+  add(offer(add_value(command, "--layout", words_.layout,
+                      "Robots in a grid; in a grid in which each stays in its cell; or in lanes side by side (default "
+                      "grid, in the window cells)",
+                      "grid|cells|race", text_from),
+            {"grid", "cells", "race"}));
   add(add_value(command, "--grid", words_.grid, "Columns and rows (default: what fills the picture)", "CxR",
                 grid_from));
   add(add_text(command, "--camera", words_.camera,
                "group keeps all in view, follow goes along, or the path of a camera file (default group)",
                "group|follow[:ROBOT]|turntable|top|still|FILE.json"));
+  add(add_value(command, "--bookmarks", words_.bookmarks,
+                "Cameras of the window's keys F5 to F8, as a JSON list of camera files' members", "JSON", text_from));
   add(command.add_flag("--follow", follow_, "The same as --camera follow"));
   add(add_number(command, "--azimuth", words_.azimuth, "Where the eye is, around the robots from +x (default -75)",
                  "DEGREES"));
@@ -66,11 +72,11 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_number(command, "--zoom", words_.zoom, "Above 1: closer (default 1)", "X"));
 }
 
-ViewSettings ViewOptions::settings() const {
+ViewSettings ViewOptions::settings(Layout usual) const {
   ViewWords words = words_;
   if (follow_ && !words.camera.empty()) throw InputError("--follow", "not together with --camera; give one of them");
   if (follow_) words.camera = "follow";
-  return view_settings(words);
+  return view_settings(words, usual);
 }
 
 }  // namespace mercury

@@ -14,7 +14,8 @@ class ViewOptions {
   void add_to(CLI::App& command);
 
   // The settings that the options describe. Throws InputError or ParameterError for an option that cannot be used.
-  ViewSettings settings() const;
+  // `usual`: the layout without --layout.
+  ViewSettings settings(Layout usual = Layout::grid) const;
   // The camera file that is read; empty = none.
   std::string camera_file() const { return words_.camera.ends_with(".json") ? words_.camera : std::string(); }
   bool chooses_what_is_shown() const { return words_.show.has_value(); }

@@ -136,8 +136,10 @@ CameraPlan load_camera(const std::filesystem::path& path) {
   return plan_from(read);
 }
 
-void save_camera(const std::filesystem::path& path, const CameraPlan& plan) {
-  Json json{{"format", "mercury-camera"}, {"version", 1}, {"mode", name_of(plan.mode)}};
+namespace {
+
+void add_members(const CameraPlan& plan, Json& json) {
+  json["mode"] = name_of(plan.mode);
   if (!plan.robot.empty()) json["robot"] = plan.robot;
   if (plan.azimuth) json["azimuth"] = *plan.azimuth;
   if (plan.elevation) json["elevation"] = *plan.elevation;
@@ -146,6 +148,42 @@ void save_camera(const std::filesystem::path& path, const CameraPlan& plan) {
   json["period"] = plan.period;
   if (plan.target) json["target"] = {plan.target->x(), plan.target->y(), plan.target->z()};
   if (plan.distance) json["distance"] = *plan.distance;
+}
+
+}  // namespace
+
+std::string bookmarks_text(const CameraBookmarks& bookmarks) {
+  Json list = Json::array();
+  bool any = false;
+  for (const auto& plan : bookmarks) {
+    Json& place = list.emplace_back();
+    if (!plan) continue;
+    add_members(*plan, place);
+    any = true;
+  }
+  return any ? list.dump() : "";
+}
+
+CameraBookmarks bookmarks_from(const std::string& text) {
+  const Json list = Json::parse(text, nullptr, false);
+  if (!list.is_array() || list.size() > most_bookmarks)
+    throw ParameterError("bookmarks", fmt::format("must be a JSON list of at most {} cameras", most_bookmarks));
+  CameraBookmarks bookmarks;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].is_null()) continue;
+    if (!list[i].is_object()) throw ParameterError("bookmarks", fmt::format("/{} is not a camera", i));
+    try {
+      bookmarks[i] = plan_from(Reader("", list[i]));
+    } catch (const ParameterError& error) {
+      throw ParameterError("bookmarks", fmt::format("/{}{}", i, error.problem()));
+    }
+  }
+  return bookmarks;
+}
+
+void save_camera(const std::filesystem::path& path, const CameraPlan& plan) {
+  Json json{{"format", "mercury-camera"}, {"version", 1}};
+  add_members(plan, json);
   write_whole_file(path, json.dump(2) + "\n");
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,6 +41,14 @@ std::string_view name_of(CameraMode mode);
 // "turntable", "follow:eel", the name of a camera file (*.json), or its members as text, {"mode": "still", ...}. Throws
 // ParameterError("camera", ...).
 CameraPlan camera_named(const std::string& text);
+
+// Cameras to go back to.
+constexpr std::size_t most_bookmarks = 4;
+using CameraBookmarks = std::array<std::optional<CameraPlan>, most_bookmarks>;
+// A JSON list of cameras, null where there is none. Empty text if there is none at all. The other way throws
+// ParameterError("bookmarks", ...).
+std::string bookmarks_text(const CameraBookmarks& bookmarks);
+CameraBookmarks bookmarks_from(const std::string& text);
 
 // A camera file: {"format": "mercury-camera", "version": 1, "mode": "still", "azimuth": -1.3, "target": [0, 0, 1],
 // ...}, members as in CameraPlan, angles in radians; only the format and version are required. Throws InputError in one

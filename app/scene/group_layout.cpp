@@ -18,6 +18,18 @@ render::Bounds rest_bounds(const Robot& robot) {
   return bounds;
 }
 
+Room room_of(const Robot& robot) {
+  // Muscles change lengths by up to 14 %, and bodies bend.
+  constexpr float room_to_deform = 1.15f;
+  Room room;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
+  if (!robot.masses.empty()) room.center = (sum / static_cast<double>(robot.masses.size())).cast<float>();
+  for (const Vec3 mass : robot.masses) room.radius = std::max(room.radius, (eigen(mass) - room.center).norm());
+  room.radius *= room_to_deform;
+  return room;
+}
+
 Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
   const int cells = static_cast<int>(std::max<std::size_t>(1, count));
   Grid best{.columns = cells, .rows = 1};
@@ -33,6 +45,11 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect) {
     best = {columns, rows};
   }
   return best;
+}
+
+std::string_view name_of(Layout layout) {
+  constexpr std::string_view names[] = {"grid", "race", "cells"};
+  return names[static_cast<std::size_t>(layout)];
 }
 
 PictureAxes picture_axes(const render::Orbit& view) {
@@ -58,14 +75,28 @@ std::vector<float> middles_of(const std::vector<float>& widths) {
   return middles;
 }
 
+// The size of a robot's cell along a direction.
+float cell_along(std::span<const render::Bounds> robots, std::size_t robot, const LayoutOptions& options,
+                 const Eigen::Vector3f& direction) {
+  constexpr float spacing = 1.08f;  // of rooms
+  if (!options.rooms.empty()) return 2 * spacing * options.rooms[robot].radius;
+  return options.spacing * extent_along(robots[robot], direction);
+}
+
+// What the layout puts into the middle of a cell.
+Eigen::Vector3f middle_of(std::span<const render::Bounds> robots, std::size_t robot, const LayoutOptions& options) {
+  if (!options.rooms.empty()) return options.rooms[robot].center;
+  return robots[robot].empty() ? Eigen::Vector3f::Zero() : robots[robot].center();
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options) {
   const PictureAxes axes = picture_axes(options.view);
   float width = 1e-3f, height = 1e-3f;
-  for (const render::Bounds& robot : robots) {
-    width = std::max(width, options.spacing * extent_along(robot, axes.right));
-    height = std::max(height, options.spacing * extent_along(robot, axes.up));
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    width = std::max(width, cell_along(robots, i, options, axes.right));
+    height = std::max(height, cell_along(robots, i, options, axes.up));
   }
   Grid grid = options.grid.value_or(grid_for(robots.size(), options.aspect, width / height));
   if (options.layout == Layout::race) grid = {1, static_cast<int>(robots.size())};
@@ -76,8 +107,8 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   // The largest robot of each column and row decides its size.
   std::vector<float> widths(columns, 0.4f * width), heights(rows, 0.4f * height);
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    widths[i % columns] = std::max(widths[i % columns], options.spacing * extent_along(robots[i], axes.right));
-    heights[i / columns] = std::max(heights[i / columns], options.spacing * extent_along(robots[i], axes.up));
+    widths[i % columns] = std::max(widths[i % columns], cell_along(robots, i, options, axes.right));
+    heights[i / columns] = std::max(heights[i / columns], cell_along(robots, i, options, axes.up));
   }
   const std::vector<float> across = middles_of(widths), down = middles_of(heights);
   Eigen::Vector3f up = axes.up;
@@ -88,7 +119,7 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
   }
   std::vector<Eigen::Vector3f> offsets;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    Eigen::Vector3f middle = robots[i].empty() ? Eigen::Vector3f::Zero() : robots[i].center();
+    Eigen::Vector3f middle = middle_of(robots, i, options);
     if (options.on_ground) middle.z() = 0;
     offsets.push_back(across[i % columns] * axes.right - down[i / columns] * up - middle);
   }

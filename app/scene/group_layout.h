@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mercury/robot.h"
@@ -15,6 +16,13 @@ namespace mercury {
 
 // The box around a robot at rest.
 render::Bounds rest_bounds(const Robot& robot);
+
+// The ball that a robot does not leave while it turns and bends about its centre of mass, at rest.
+struct Room {
+  Eigen::Vector3f center{0, 0, 0};  // [m]
+  float radius = 0;                 // [m]
+};
+Room room_of(const Robot& robot);
 
 // The directions to the right and up in the picture.
 struct PictureAxes {
@@ -34,21 +42,26 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect);
 
 enum class Layout {
   grid,
-  race,  // one lane per robot, side by side across the picture
+  race,   // one lane per robot, side by side across the picture
+  cells,  // a grid in which each robot stays in its cell: its drift is subtracted
 };
+
+// "grid", "race", "cells".
+std::string_view name_of(Layout layout);
 
 struct LayoutOptions {
   Layout layout = Layout::grid;
-  std::optional<Grid> grid;  // absent = grid_for
-  float spacing = 1.45f;     // size of a cell / size of the largest robot in its row or column
-  float aspect = 16.0f / 9;  // of the picture
-  render::Orbit view;        // its angles are the direction of view
-  bool on_ground = false;    // the grid lies on the ground and does not face the eye; heights do not change
+  std::optional<Grid> grid;     // absent = grid_for
+  float spacing = 1.45f;        // size of a cell / size of the largest robot in its row or column
+  float aspect = 16.0f / 9;     // of the picture
+  render::Orbit view;           // its angles are the direction of view
+  std::span<const Room> rooms;  // one per robot, for cells and lanes; empty = the boxes decide
+  bool on_ground = false;       // the grid lies on the ground and does not face the eye; heights do not change
 };
 
 // The offset of each robot. Seen from the view's direction, the robots then form a grid, the first one at the upper
-// left, and none hides another while it stays in its cell. The middle of the grid is at the origin. Throws
-// ParameterError("grid", ...) if the robots do not fit into the grid.
+// left, and none hides another while it stays in its cell. With rooms, no two of them overlap. The middle of the grid
+// is at the origin. Throws ParameterError("grid", ...) if the robots do not fit into the grid.
 std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
 
 }  // namespace mercury

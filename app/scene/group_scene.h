@@ -11,9 +11,11 @@
 
 #include "app/scene/appearance.h"
 #include "app/scene/color_scale.h"
-#include "app/scene/group_layout.h"
+#include "app/scene/group_motion.h"
+#include "app/scene/race.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"
+#include "app/scene/trail.h"
 #include "app/scene/view_settings.h"
 #include "mercury/simulation.h"
 #include "render/renderer.h"
@@ -32,16 +34,10 @@ struct Group {
 };
 Group group_of(const Simulation& simulation);
 
-// The path of a robot's centre of mass.
-struct Trail {
-  Vec3 start;                 // center of mass [m]
-  std::vector<float> points;  // 3 each
-};
-
 // Owns the data of a render::Scene and updates it. Uses no OpenGL.
 class GroupScene {
  public:
-  // `offsets`: one per robot, added to its coordinates.
+  // `offsets`: one per robot, added to its coordinates at the start (group_offsets()).
   GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
   GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
       : GroupScene(group_of(simulation), std::move(offsets), settings) {}
@@ -59,6 +55,8 @@ class GroupScene {
   void restart(std::span<const Telemetry> telemetry);
   const std::vector<Trail>& trails() const { return trails_; }
   void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
+  // The mouse pulls at this robot; `elapsed` since the last call [s]. See HeldRobot.
+  void hold(std::optional<std::size_t> robot, double elapsed) { held_.hold(robot, elapsed); }
 
   // Gives the robots to a renderer. Call it once, and again when the robots change.
   void set_bodies(render::Renderer& renderer) const;
@@ -69,8 +67,15 @@ class GroupScene {
   render::Scene& scene() { return scene_; }
 
   // The box around each robot in the picture at the last update(), estimated from its centre of mass and its size at
-  // rest. Boxes of exploded robots are empty, unless all robots have exploded.
+  // rest. Boxes of exploded robots are empty, unless all robots have exploded; then they are where the robots were
+  // last.
   std::span<const render::Bounds> bounds() const { return bounds_; }
+  // The same for cameras, which show more than the robots: whole cells, and lanes from the start line on.
+  std::span<const render::Bounds> camera_boxes() const { return camera_boxes_; }
+  // The same for each robot, at the place where it was last if it has exploded.
+  std::span<const render::Bounds> last_boxes() const { return last_boxes_; }
+  // What is added to each robot's own coordinates in the picture at the last update() [m].
+  std::span<const Eigen::Vector3f> offsets() const { return shown_offsets_; }
 
  private:
   // The render materials of robots with the same materials. `own` are those of the robot's file, which give the
@@ -88,7 +93,11 @@ class GroupScene {
   void show_surroundings();
   void place_floor();
   void place(std::span<const Telemetry> telemetry);
-  void lengthen_paths(std::span<const Telemetry> telemetry);
+  void place_boxes();
+  void place_patches();
+  void hide_wrecks(std::span<const Telemetry> telemetry);
+  void lengthen_paths();
+  void race(double time);
   void write_labels(std::span<const Telemetry> telemetry);
   void fit_scale(double time);
   void color(double time, SceneDetails details);
@@ -105,15 +114,26 @@ class GroupScene {
   std::vector<render::RenderMaterial> materials_;
   std::vector<render::Placement> placements_;
   std::vector<render::Bounds> rest_;  // around the centre of mass, at rest
-  std::vector<render::Bounds> bounds_;
+  std::vector<Room> rooms_;
+  std::vector<Eigen::Vector3f> offsets_, shown_offsets_;  // at the start, and now
+  GroupMotion motion_;
+  float mark_distance_ = 1;  // [m]
+  HeldRobot held_;
+  MarkTimes mark_times_;
+  Course course_;
+  std::string order_;  // of passing in a race
+  std::vector<render::Bounds> bounds_, last_boxes_, camera_boxes_;
+  std::vector<bool> hidden_, exploded_, torn_;
   std::vector<std::size_t> table_of_;  // one per robot
   std::vector<bool> smooth_;           // robots that are drawn smooth whatever the settings
   Environment environment_;
   std::vector<Trail> trails_;
   std::vector<render::Path> paths_;
+  std::vector<std::vector<float>> marks_;  // of the paths
   std::vector<render::Label> labels_;
+  std::vector<render::Patch> patches_;
   std::vector<render::Tile> tiles_;
-  std::vector<render::Text> texts_;
+  std::vector<render::Text> texts_, shown_texts_;
   std::vector<std::pair<render::Color, std::string>> swatches_;  // the legend of materials
   SceneDetails details_;
   render::Scene scene_;

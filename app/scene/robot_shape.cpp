@@ -2,8 +2,6 @@
 #include "app/scene/robot_shape.h"
 
 #include "app/scene/appearance.h"
-#include "app/scene/eigen_vec3.h"
-#include "app/scene/group_layout.h"
 #include "mercury/generator.h"
 
 namespace mercury {
@@ -12,9 +10,7 @@ std::shared_ptr<const RobotShape> shape_of(const Robot& robot) {
   auto shape = std::make_shared<RobotShape>();
   shape->body = render::prepare_body(BodyShape(robot, 0).body());
   shape->box = rest_bounds(robot);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
-  shape->center = (sum / static_cast<double>(robot.masses.size())).cast<float>();
+  shape->room = room_of(robot);
   const Generator* generator = generator_of(robot);
   shape->smooth = generator && generator->smooth;
   for (const Spring& spring : robot.springs) shape->materials[spring.material] = true;

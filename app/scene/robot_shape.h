@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "app/scene/group_layout.h"
 #include "mercury/robot.h"
 #include "render/body_data.h"
 #include "render/camera.h"
@@ -18,7 +19,7 @@ namespace mercury {
 struct RobotShape {
   std::shared_ptr<const render::PreparedBody> body;  // its material indices are material ids
   render::Bounds box;                                // at rest [m]
-  Eigen::Vector3f center{0, 0, 0};                   // mean of its masses at rest [m]
+  Room room;                                         // around the mean of its masses at rest
   bool smooth = false;                               // grown by a network: drawn with a smooth skin
   std::array<bool, max_materials> materials{};       // ids of its springs' materials
 };

@@ -40,10 +40,15 @@ struct ViewSettings {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;
+  CameraBookmarks bookmarks;           // of the window
   std::string caption;                 // text in the upper left corner; further lines are smaller
   std::shared_ptr<const Board> board;  // the robots are drawn in its cells; nullptr = no board
   bool interop = true;                 // let CUDA write into OpenGL's memory if possible
   double speed = 1;                    // simulated seconds per second of the video, for the clock
 };
+
+// Changes the layout and shows what it needs: trails, without which nobody sees that a robot in its cell moves, and the
+// distances of a race.
+void set_layout(ViewSettings& view, Layout layout);
 
 }  // namespace mercury

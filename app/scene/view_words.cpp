@@ -29,9 +29,9 @@ render::Theme theme_named(const std::string& name) {
 }
 
 Layout layout_named(const std::string& name) {
-  if (name == "grid") return Layout::grid;
-  if (name == "race") return Layout::race;
-  throw ParameterError("layout", fmt::format("\"{}\" is not accepted; give grid, race", name));
+  for (const Layout layout : {Layout::grid, Layout::cells, Layout::race})
+    if (name == name_of(layout)) return layout;
+  throw ParameterError("layout", fmt::format("\"{}\" is not accepted; give grid, cells, race", name));
 }
 
 render::Colormap colormap_named(const std::string& name) {
@@ -99,7 +99,7 @@ void validate(const ViewWords& words) {
 
 void set_race(ViewSettings& settings) {
   if (settings.grid) throw ParameterError("grid", "not together with layout race, which has one lane a robot");
-  settings.shown.labels = settings.shown.path = true;
+  set_layout(settings, Layout::race);
   // Lanes run along x, to the right, seen from high and far so that they look alike.
   if (!settings.camera.azimuth) settings.camera.azimuth = radians(-90);
   if (!settings.camera.elevation) settings.camera.elevation = radians(50);
@@ -107,6 +107,12 @@ void set_race(ViewSettings& settings) {
 }
 
 }  // namespace
+
+void set_layout(ViewSettings& view, Layout layout) {
+  view.layout = layout;
+  if (layout != Layout::grid) view.shown.path = true;
+  if (layout == Layout::race) view.shown.labels = true;
+}
 
 Shown shown_from(const std::string& text) {
   Shown shown{.skin = false, .clock = false};
@@ -139,7 +145,7 @@ Shown shown_from(const std::string& text) {
   return shown;
 }
 
-ViewSettings view_settings(const ViewWords& words) {
+ViewSettings view_settings(const ViewWords& words, Layout usual) {
   validate(words);
   ViewSettings settings{
       .color = &color_quantity(words.color), .scale = words.scale, .smooth = words.smooth, .grid = words.grid};
@@ -148,10 +154,12 @@ ViewSettings view_settings(const ViewWords& words) {
   settings.caption = words.caption;
   settings.theme = theme_named(words.theme);
   settings.plain = words.plain;
-  settings.layout = layout_named(words.layout);
+  settings.layout = words.layout ? layout_named(*words.layout) : usual;
   if (words.cut) settings.cut = cut_from(*words.cut);
   if (!words.camera.empty()) settings.camera = camera_named(words.camera);
   if (settings.layout == Layout::race) set_race(settings);
+  if (settings.layout == Layout::cells) set_layout(settings, Layout::cells);
+  if (words.bookmarks) settings.bookmarks = bookmarks_from(*words.bookmarks);
   if (words.azimuth) settings.camera.azimuth = radians(*words.azimuth);
   if (words.elevation) settings.camera.elevation = radians(*words.elevation);
   if (words.zoom) settings.camera.zoom = *words.zoom;

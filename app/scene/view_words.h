@@ -24,15 +24,16 @@ struct ViewWords {
   bool plain = false;                            // a plain backdrop rather than water or land
   bool smooth = false;                           // round skins rather than edged ones
   std::optional<std::string> cut;                // opens each robot beyond a plane: "y:30%"
-  std::string layout = "grid";                   // "grid" or "race"
+  std::optional<std::string> layout;             // "grid", "cells" or "race"; absent = the usual
   std::optional<Grid> grid;                      // absent = what fills the picture
   std::string camera;                            // see camera_named(); empty = the whole group
   std::optional<float> azimuth, elevation;       // where the eye is [degrees]
   std::optional<float> zoom;                     // above 1 = closer
+  std::optional<std::string> bookmarks;          // of the window: see bookmarks_from()
 };
 
-// Throws ParameterError that names the member that cannot be used.
-ViewSettings view_settings(const ViewWords& words);
+// `usual`: the layout without another word. Throws ParameterError that names the member that cannot be used.
+ViewSettings view_settings(const ViewWords& words, Layout usual = Layout::grid);
 
 // "skin,labels,clock": shows exactly these. Throws ParameterError("show", ...) that lists the possible words.
 Shown shown_from(const std::string& text);

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "app/scene/group_layout.h"
+#include "app/scene/group_motion.h"
 
 namespace mercury {
 namespace {
@@ -29,13 +30,9 @@ GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& se
       if (land && !robot.empty()) robot = robot.moved({0, 0, -robot.low.z()});
     return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
   }
-  // From straight above, robots that swim are laid out as if on the ground.
-  const bool flat = land || settings.camera.mode == CameraMode::top;
-  return {.offsets = grid_layout(bounds, {.layout = settings.layout,
-                                          .grid = settings.grid,
-                                          .aspect = aspect,
-                                          .view = direction_of(settings.camera, land),
-                                          .on_ground = flat}),
+  std::vector<Room> rooms;
+  for (std::size_t i = 0; i < simulation.size(); ++i) rooms.push_back(room_of(simulation.robot(i)));
+  return {.offsets = group_offsets(bounds, rooms, settings, simulation.configuration().environment, aspect),
           .camera = settings.camera};
 }
 
@@ -71,7 +68,7 @@ FrameSnapshot GroupDrawing::take(PositionBridge& bridge) {
 void GroupDrawing::draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed) {
   scene_.update(snapshot.time, snapshot.telemetry, std::move(snapshot.details));
   bridge.show(*snapshot.positions, renderer, scene_.scene());
-  renderer.draw(scene_.scene(), camera_.at(scene_.bounds(), elapsed));
+  renderer.draw(scene_.scene(), camera_.at(scene_.camera_boxes(), elapsed));
 }
 
 }  // namespace mercury

@@ -64,6 +64,8 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"where", places(scene, picture)},
                       {"distance", context.camera.orbit().distance},
                       {"azimuth", context.camera.orbit().azimuth},
+                      {"elevation", context.camera.orbit().elevation},
+                      {"layout", name_of(scene.view().layout)},
                       {"input", input_},
                       {"steps", scene.snapshot().steps},
                       {"time", scene.snapshot().time},

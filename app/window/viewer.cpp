@@ -152,6 +152,7 @@ void Viewer::save_settings() {
   Messages ignored;  // no window is left to show them
   ViewSettings view = scene_.view();
   view.camera = {.mode = camera_.mode()};  // the rest of the camera belongs to this scene
+  view.bookmarks = {};
   save_session_settings(session_settings_path(),
                         {.view = view,
                          .generation = context_.creation.generation,
@@ -168,7 +169,7 @@ void Viewer::load_settings() {
   Messages messages;
   const SessionSettings last = load_session_settings(session_settings_path(), messages);
   for (const Message& message : messages.take()) toasts_.show(tone_of(message.severity), message.text);
-  if (options_of(options_.view).empty()) scene_.set_view(last.view);
+  if (options_of(options_.view, Layout::cells).empty()) scene_.set_view(last.view);
   std::error_code unknown;
   if (std::filesystem::exists(session_settings_path(), unknown)) context_.creation.generation = last.generation;
   preferences_.pause_on_explosion = last.pause_on_explosion;
@@ -236,6 +237,7 @@ void Viewer::frame(double dt) {
   const std::vector<InputEvent> events = window_.input().take();
   handle_input(events);
   const auto scene_begin = Clock::now();
+  if (camera_placed_) scene_.face(camera_.from_above(), camera_.facing());
   scene_.frame(area_.aspect());
   run_.frame();
   if (scene_.take_camera()) camera_placed_ = false;
@@ -259,7 +261,8 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   mouse_.update(area_, shown_camera_);
   panels_.draw_over(area_, shown_camera_, dt);
   const bool clock = !preferences_.panels;  // the play bar has its own clock
-  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, clock);
+  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_,
+                     {.clock = clock, .hovered = mouse_.hovered()}, log_);
   draw_handles();
   mouse_.draw(area_, shown_camera_);
   panels_.draw_dialogs();
@@ -314,7 +317,7 @@ void Viewer::update_renderer() {
   if (!camera_placed_ && !live.bounds().empty()) {
     const CameraPlan& plan = scene_.view().camera;
     camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
-    camera_.start(live.bounds(), area_.aspect());
+    camera_.start(live.camera_boxes(), area_.aspect());
     camera_.begin(plan, followed(plan));
     camera_placed_ = true;
   }
@@ -332,7 +335,7 @@ bool Viewer::leaves_card_to_steps() const {
 void Viewer::draw_picture(double dt) {
   update_renderer();
   LivePicture& live = scene_.picture();
-  const render::Camera camera = camera_.at(live.bounds(), area_.aspect(), dt);
+  const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
   // A glide ends with moves too small to see, which must not keep the picture coarse.
   const float least = 2e-4f * (camera.eye - camera.target).norm();
   camera_moved_ = (camera.eye - shown_camera_.eye).norm() > least ||

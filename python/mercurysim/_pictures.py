@@ -39,7 +39,7 @@ class Look(TypedDict, total=False):
     azimuth: float  # where the eye is, around the robots from +x [degrees]
     elevation: float  # height of the eye above the horizon [degrees]
     zoom: float  # above 1: closer
-    layout: str  # "grid", or "race": lanes side by side
+    layout: str  # "grid"; "cells": each robot stays in its cell; or "race": lanes side by side
     grid: tuple[int, int]  # columns and rows
     theme: str  # "dark" or "light"
     caption: str  # text in the upper left corner; further lines are smaller

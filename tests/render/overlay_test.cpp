@@ -85,14 +85,18 @@ TEST(Overlay, TextIsAlignedToItsPoint) {
   EXPECT_NEAR(middle_of(1), point.x() - width / 2, 1.5f);
 }
 
-TEST(Overlay, OfTwoOverlappingLabelsTheNearerStays) {
+TEST(Overlay, OfTwoOverlappingLabelsTheNearerStaysAboveItsBody) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.02f, .distance = 5};
   Overlay overlay = make_overlay();
   const std::vector<Bounds> bodies{box_at(0, 0.5f), box_at(0, 0)};
   const std::vector<Label> labels{{0, "behind"}, {1, "before"}};
   overlay.labels(labels, bodies, orbit.camera());
-  EXPECT_EQ(boxes_of(overlay).size(), 1u);
-  EXPECT_EQ(overlay.quads().size(), 1 + std::string("before").size());
+  const std::vector<Rectangle> boxes = boxes_of(overlay);
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_LT(boxes[1].y + boxes[1].height, 180) << "above the nearer body";
+  const bool apart = boxes[0].x + boxes[0].width <= boxes[1].x || boxes[1].x + boxes[1].width <= boxes[0].x ||
+                     boxes[0].y + boxes[0].height <= boxes[1].y || boxes[1].y + boxes[1].height <= boxes[0].y;
+  EXPECT_TRUE(apart);
 }
 
 TEST(Overlay, BodiesBehindTheCameraOrHiddenHaveNoLabel) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "tests/render/offscreen.h"
 #include "tests/render/triangle.h"
 #include "tests/render/wobbling_bodies.h"
@@ -32,6 +34,50 @@ TEST_F(SurroundingsTest, ParticlesDriftWithTheFlow) {
   const Image still = drawn(renderer, scene);
   scene.flow = {2, 0, 0};
   EXPECT_GT(count_differing(still, drawn(renderer, scene), 3), 10);
+}
+
+TEST_F(SurroundingsTest, OnlyTheGroundOfAPatchSlides) {
+  Renderer renderer = make_renderer();
+  Scene scene;
+  scene.surroundings = Surroundings::land;
+  const Camera camera = Orbit{.elevation = 1.5f, .distance = 6}.camera();
+  Patch patch{.center = {0, 0}, .radius = 0.8f};
+  scene.patches = {&patch, 1};
+  const Image before = drawn(renderer, scene, camera);
+  patch.slide = {0.37f, 0.21f};
+  const Image after = drawn(renderer, scene, camera);
+  int inside = 0, outside = 0;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) {
+      // The eye looks down from 6 m at 0.6 rad for 120 pixels.
+      const double metres = std::hypot(x - 79.5, y - 59.5) * 2 * 6 * std::tan(0.3) / 120;
+      const bool differs = largest_difference(pixel(before, x, y), pixel(after, x, y)) > 3;
+      inside += metres < 0.7 && differs;
+      outside += metres > 0.9 && differs;
+    }
+  EXPECT_GT(inside, 300);
+  EXPECT_EQ(outside, 0);
+}
+
+TEST_F(SurroundingsTest, HazeJoinsGroundAndSkyAtTheHorizon) {
+  Renderer renderer = make_renderer();
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    Scene scene;
+    scene.surroundings = Surroundings::land;
+    scene.theme = theme;
+    const Image image = drawn(renderer, scene, Orbit{.target = {0, 0, 1}, .elevation = 0.02f, .distance = 6}.camera());
+    // Neighbouring rows differ little anywhere: there is no edge of the world.
+    for (int y = 1; y < 120; ++y) {
+      Eigen::Vector3i above(0, 0, 0), below(0, 0, 0);
+      for (int x = 0; x < 160; ++x) {
+        above += pixel(image, x, y - 1);
+        below += pixel(image, x, y);
+      }
+      EXPECT_LT((above - below).cwiseAbs().maxCoeff() / 160, 24) << "row " << y;
+    }
+    const Eigen::Vector3i sky = pixel(image, 80, 2), haze = pixel(image, 80, 52);
+    EXPECT_GT(largest_difference(sky, haze), 8) << "the sky is darker or bluer high up";
+  }
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 
+#include "app/window/panels/camera_commands.h"
 #include "app/window/panels/color_section.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
@@ -44,10 +47,21 @@ void Panels::execute(const Command& command) {
     case Action::follow:
     case Action::turntable:
     case Action::top_view:
+    case Action::look_along_x:
+    case Action::look_along_y:
+    case Action::bookmark_1:
+    case Action::bookmark_2:
+    case Action::bookmark_3:
+    case Action::bookmark_4:
+    case Action::set_bookmark_1:
+    case Action::set_bookmark_2:
+    case Action::set_bookmark_3:
+    case Action::set_bookmark_4:
       change_camera(command.action);
       break;
     case Action::drag_arrows:
     case Action::color:
+    case Action::cells:
     case Action::springs:
     case Action::labels:
     case Action::legend:
@@ -142,6 +156,11 @@ void Panels::change_view(Action action, int number) {
       if (!color_by_number(view, number, environment)) return;
       context_.toasts.show(Tone::info, fmt::format("coloured by {}", view.color->key));
       break;
+    case Action::cells:
+      set_layout(view, view.layout == Layout::cells ? Layout::grid : Layout::cells);
+      context_.toasts.show(Tone::info, view.layout == Layout::cells ? "robots stay in their cells" : "robots travel");
+      context_.log.write("layout", {{"layout", name_of(view.layout)}});
+      break;
     case Action::springs:
       view.shown.springs = !view.shown.springs;
       view.shown.skin = !view.shown.springs;
@@ -167,6 +186,12 @@ void Panels::change_camera(Action action) {
   if (action == Action::frame) frame_robots(context_, context_.scene.selection());
   if (action == Action::turntable) toggle_mode(CameraMode::turntable);
   if (action == Action::top_view) toggle_mode(CameraMode::top);
+  if (action == Action::look_along_x) look_along(context_, 0);
+  if (action == Action::look_along_y) look_along(context_, 1);
+  const auto place = [&](Action first) { return static_cast<std::size_t>(action) - static_cast<std::size_t>(first); };
+  if (action >= Action::bookmark_1 && action <= Action::bookmark_4) go_to_bookmark(context_, place(Action::bookmark_1));
+  if (action >= Action::set_bookmark_1 && action <= Action::set_bookmark_4)
+    set_bookmark(context_, place(Action::set_bookmark_1));
   if (action != Action::follow) return;
   if (camera.mode() == CameraMode::follow) {
     camera.set_mode(CameraMode::still);

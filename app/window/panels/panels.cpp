@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/window/panels/camera_commands.h"
 #include "app/window/panels/help_window.h"
 #include "app/window/panels/play_bar.h"
 
@@ -60,6 +61,7 @@ float Panels::draw_column(PanelColumn& column, Side side, float top, float botto
 }
 
 void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, double dt) {
+  draw_axes(context_, area, camera, context_.scene.view().shown.scale_bar ? 2.6f * ImGui::GetFontSize() : 0);
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/window/panels/camera_commands.h"
 #include "app/window/panels/color_section.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -113,6 +114,21 @@ bool draw_cut_section(ViewSettings& view, EventLog& log) {
   return changed;
 }
 
+// Each bookmark: a click goes to it, or sets it if it is not set; with Shift it is set again.
+void draw_bookmarks(PanelContext& context) {
+  row("bookmarks", "of the camera, kept in the scene's file (keys F5 to F8)");
+  for (std::size_t i = 0; i < most_bookmarks; ++i) {
+    if (i > 0) ImGui::SameLine(0, 0.3f * ImGui::GetFontSize());
+    const bool is_set = context.scene.view().bookmarks[i].has_value();
+    ImGui::PushID(static_cast<int>(i));
+    if (toggle_button(std::to_string(i + 1).c_str(), is_set))
+      is_set && !ImGui::GetIO().KeyShift ? go_to_bookmark(context, i) : set_bookmark(context, i);
+    ImGui::PopID();
+    context.log.item("camera.bookmark." + std::to_string(i + 1));
+    tooltip(is_set ? "go there; with Shift: set it to the present camera" : "set it to the present camera");
+  }
+}
+
 void draw_camera_section(OrbitController& camera, EventLog& log) {
   heading("Camera");
   struct Mode {
@@ -139,12 +155,15 @@ void draw_camera_section(OrbitController& camera, EventLog& log) {
 
 bool draw_layout(ViewSettings& view, int robots, EventLog& log) {
   bool changed = false;
-  int layout = static_cast<int>(view.layout);
-  if (combo("layout", "how the robots are arranged", layout, {"grid", "race: one lane per robot"})) {
-    view.layout = static_cast<Layout>(layout);
+  static constexpr Layout layouts[] = {Layout::cells, Layout::grid, Layout::race};
+  int layout = static_cast<int>(std::ranges::find(layouts, view.layout) - layouts);
+  if (combo("layout", "how the robots are arranged", layout,
+            {"cells: each stays in its cell", "grid: they travel", "race: one lane per robot"})) {
+    set_layout(view, layouts[layout]);
     changed = true;
   }
-  if (view.layout == Layout::grid) {
+  log.item("layout");
+  if (view.layout != Layout::race) {
     int columns = view.grid ? static_cast<int>(view.grid->columns) : 0;
     row("columns", "of the grid; 0 = automatic");
     if (ImGui::InputInt("##columns", &columns)) {
@@ -194,6 +213,7 @@ void ViewPanel::draw(PanelContext& context) {
   changed |= draw_show_section(view, context.log);
   changed |= draw_arrow_section(view, environment, context.log);
   draw_camera_section(context.camera, context.log);
+  draw_bookmarks(context);
   changed |= draw_appearance_section(context, view);
   changed |= draw_cut_section(view, context.log);
   if (changed) context.scene.set_view(view);

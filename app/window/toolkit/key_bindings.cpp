@@ -22,6 +22,16 @@ constexpr KeyBinding table[] = {
     {Action::follow, "follow", "G", "follow the selected robot, or stop", "Camera"},
     {Action::turntable, "turntable", "T", "circle the group, or stop", "Camera"},
     {Action::top_view, "top_view", "Z", "look straight down, or stop", "Camera"},
+    {Action::look_along_x, "look_along_x", "", "look along x", "Camera"},
+    {Action::look_along_y, "look_along_y", "", "look along y", "Camera"},
+    {Action::bookmark_1, "bookmark_1", "F5", "go to camera bookmark 1", "Camera"},
+    {Action::bookmark_2, "bookmark_2", "F6", "go to camera bookmark 2", "Camera"},
+    {Action::bookmark_3, "bookmark_3", "F7", "go to camera bookmark 3", "Camera"},
+    {Action::bookmark_4, "bookmark_4", "F8", "go to camera bookmark 4", "Camera"},
+    {Action::set_bookmark_1, "set_bookmark_1", "Shift F5", "set camera bookmark 1", "Camera"},
+    {Action::set_bookmark_2, "set_bookmark_2", "Shift F6", "set camera bookmark 2", "Camera"},
+    {Action::set_bookmark_3, "set_bookmark_3", "Shift F7", "set camera bookmark 3", "Camera"},
+    {Action::set_bookmark_4, "set_bookmark_4", "Shift F8", "set camera bookmark 4", "Camera"},
 
     {Action::new_random, "new_random", "N", "new random robots", "Robots"},
     {Action::mutate, "mutate", "M", "mutate: a changed copy of each selected robot", "Robots"},
@@ -38,6 +48,7 @@ constexpr KeyBinding table[] = {
 
     {Action::drag_arrows, "drag_arrows", "D", "drag arrows", "Picture"},
     {Action::color, "color", "1 - 9", "colour by a quantity, numbered as in the View panel", "Picture"},
+    {Action::cells, "cells", "C", "robots stay in their cells, or travel", "Picture"},
     {Action::springs, "springs", "S", "springs instead of the skin", "Picture"},
     {Action::labels, "labels", "L", "names and distances", "Picture"},
     {Action::legend, "legend", "K", "legend", "Picture"},
@@ -63,7 +74,7 @@ constexpr MouseGesture mouse_table[] = {
     {"Click", "select a robot; with Shift: add or remove it"},
     {"Double click", "follow a robot"},
     {"Ctrl drag", "pull a mass; its force is shown"},
-    {"Rest on a robot", "details of the mass and spring there"},
+    {"Rest on a robot", "its name, and details of the mass and spring there; a click keeps them"},
     {"Drop files", "open their robots, or a run"},
 };
 

@@ -8,11 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/window/toolkit/theme.h"
+#include "app/window/viewport/hit_marks.h"
 
 namespace mercury::window {
 namespace {
 
 constexpr double details_delay = 0.25;  // the pointer rests this long before details appear [s]
+constexpr double mark_delay = 0.05;     // the same for its name and for marks [s]
 constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
 
 bool inside(const ViewportArea& area, ImVec2 p) {
@@ -110,6 +112,8 @@ void MouseController::release(const ViewportArea& area, const render::Camera& ca
     const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
     const bool add = ImGui::GetIO().KeyShift;
     if (!hit && !add) scene_.clear_selection();
+    pinned_ = hit;
+    if (hit) log_.write("pinned", {{"robot", hit->robot}, {"mass", hit->mass}});
     if (hit && add) scene_.toggle_selected(hit->robot);
     if (hit && !add) scene_.select(hit->robot);
     if (hit && follows_) {
@@ -130,12 +134,20 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
     return;
   }
   rest_time_ += static_cast<double>(io.DeltaTime);
-  if (rest_time_ >= details_delay) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+  if (rest_time_ >= mark_delay) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
   draw_pull(area, camera);
-  draw_details(area);
+  if (pinned_ && !scene_.is_selected(pinned_->robot)) pinned_.reset();
+  if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera)) pinned_.reset();
+  if (!hovered_) return;
+  draw_hit_mark(scene_, *hovered_, area, camera);
+  if (rest_time_ >= details_delay) draw_details(area);
+}
+
+std::optional<std::size_t> MouseController::hovered() const {
+  return hovered_ ? scene_.snapshot().robots->index_of(hovered_->robot) : std::nullopt;
 }
 
 void MouseController::draw_pull(const ViewportArea& area, const render::Camera& camera) const {
@@ -151,8 +163,6 @@ void MouseController::draw_pull(const ViewportArea& area, const render::Camera& 
 }
 
 void MouseController::draw_details(const ViewportArea& area) const {
-  if (!hovered_) return;
-  const HitDetails figures = scene_.describe(*hovered_);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float text_height = ImGui::GetFontSize();
   const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;
@@ -162,20 +172,7 @@ void MouseController::draw_details(const ViewportArea& area) const {
   // Dear ImGui widens a tooltip a frame late, and these numbers change in every frame.
   ImGui::SetNextWindowSizeConstraints({18 * text_height, 0}, {FLT_MAX, FLT_MAX});
   ImGui::BeginTooltip();
-  ImGui::TextUnformatted(figures.robot.c_str());
-  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
-  ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hovered_->mass), speed.c_str(), figures.mass.springs);
-  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
-              static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
-  if (figures.spring) {
-    ImGui::Text("spring: %s", figures.spring->material_name.c_str());
-    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
-                static_cast<double>(figures.spring->force));
-    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
-                static_cast<double>(figures.spring->rest_length));
-  }
-  ImGui::PopStyleColor();
+  write_figures(scene_, *hovered_);
   ImGui::EndTooltip();
 }
 

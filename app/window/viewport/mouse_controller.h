@@ -23,6 +23,8 @@ class MouseController {
   void update(const ViewportArea& area, const render::Camera& camera);
   // Draws the force of a pull and the details under the pointer.
   void draw(const ViewportArea& area, const render::Camera& camera);
+  // The robot under the pointer, by its index in the snapshot.
+  std::optional<std::size_t> hovered() const;
   // True while a button is held.
   bool busy() const { return drag_ != Drag::none; }
 
@@ -47,6 +49,7 @@ class MouseController {
   float pull_depth_ = 0;  // of the pulled point along the line of sight [m]
   bool follows_ = false;  // the press was a double click
   std::optional<Hit> hovered_;
+  std::optional<Hit> pinned_;  // its figures stay
   ImVec2 last_position_{-1, -1};
   double rest_time_ = 0;  // since the mouse last moved [s]
 };

@@ -12,6 +12,7 @@ namespace {
 constexpr double glide_time = 0.45;  // [s]
 constexpr float turn_speed = 3.6f;   // angle of a drag over the picture's height [rad]
 constexpr float margin = 1.1f;       // around framed robots
+constexpr float steepest = 1.3f;     // elevation to which the camera returns after it looked down [rad]
 
 render::Bounds all_of(std::span<const render::Bounds> boxes) {
   render::Bounds all;
@@ -23,8 +24,23 @@ render::Bounds all_of(std::span<const render::Bounds> boxes) {
 }  // namespace
 
 void OrbitController::set_mode(CameraMode mode) {
-  if (mode == CameraMode::still && mode_ == CameraMode::top) orbit_.elevation = 1.2f;
+  if (mode == CameraMode::top && !from_above_) {
+    before_ = orbit_;
+    if (before_.elevation > steepest) before_ = {.azimuth = -1.3f, .elevation = 0.5f};
+  }
+  if (mode != CameraMode::top && from_above_) {
+    orbit_.azimuth = before_.azimuth;
+    orbit_.elevation = before_.elevation;
+  }
+  from_above_ = mode == CameraMode::top;
+  if (mode == CameraMode::top || mode == CameraMode::turntable) facing_.reset();
   mode_ = mode;
+  glide_ = 0;
+}
+
+// Lets go of the camera where it is.
+void OrbitController::release() {
+  mode_ = CameraMode::still;
   glide_ = 0;
 }
 
@@ -39,21 +55,19 @@ void OrbitController::set_orbit(const render::Orbit& orbit) {
 }
 
 void OrbitController::turn(float right, float up) {
-  if (mode_ == CameraMode::top || mode_ == CameraMode::turntable) set_mode(CameraMode::still);
+  if (mode_ == CameraMode::top || mode_ == CameraMode::turntable) release();
   orbit_.turn(-turn_speed * right, -turn_speed * up);
   aim_.azimuth = orbit_.azimuth;
   aim_.elevation = orbit_.elevation;
 }
 
 void OrbitController::pan(float right, float up) {
-  if (mode_ != CameraMode::still) set_mode(CameraMode::still);
-  glide_ = 0;
+  release();
   orbit_.pan(-right, -up);
 }
 
 void OrbitController::zoom(float factor) {
-  if (mode_ == CameraMode::group || mode_ == CameraMode::turntable || mode_ == CameraMode::top)
-    set_mode(CameraMode::still);
+  if (mode_ == CameraMode::group || mode_ == CameraMode::turntable || mode_ == CameraMode::top) release();
   glide_ = 0;
   orbit_.zoom(factor);
   orbit_.distance = std::clamp(orbit_.distance, 0.02f, 5000.0f);
@@ -63,8 +77,8 @@ void OrbitController::frame(std::span<const render::Bounds> robots, float aspect
   if (all_of(robots).empty()) return;
   aim_ = orbit_;
   aim_.frame(robots, aspect, margin);
+  if (mode_ != CameraMode::still && mode_ != CameraMode::follow) release();
   glide_ = glide_time;
-  if (mode_ != CameraMode::still && mode_ != CameraMode::follow) set_mode(CameraMode::still), glide_ = glide_time;
 }
 
 void OrbitController::start(std::span<const render::Bounds> robots, float aspect) {
@@ -79,6 +93,29 @@ void OrbitController::begin(const CameraPlan& plan, std::optional<std::size_t> r
   if (plan.distance) orbit_.distance = *plan.distance;
   robot_ = robot;
   set_mode(plan.mode);
+  facing_.reset();
+}
+
+void OrbitController::look_from(float azimuth, float elevation) {
+  if (mode_ == CameraMode::turntable || mode_ == CameraMode::top) set_mode(CameraMode::group);
+  if (mode_ == CameraMode::group) facing_ = render::Orbit{.azimuth = azimuth, .elevation = elevation};
+  aim_ = orbit_;
+  aim_.azimuth = azimuth;
+  aim_.elevation = elevation;
+  glide_ = glide_time;
+}
+
+void OrbitController::go_to(const CameraPlan& plan, std::optional<std::size_t> robot) {
+  robot_ = robot;
+  set_mode(plan.mode);
+  turn_period = static_cast<float>(plan.period);
+  field_of_view = plan.field_of_view;
+  aim_ = orbit_;
+  aim_.azimuth = plan.azimuth.value_or(orbit_.azimuth);
+  aim_.elevation = plan.elevation.value_or(orbit_.elevation);
+  aim_.target = plan.target.value_or(orbit_.target);
+  aim_.distance = plan.distance.value_or(orbit_.distance);
+  if (plan.mode != CameraMode::top) glide_ = glide_time;
 }
 
 CameraPlan OrbitController::plan() const {
@@ -95,6 +132,8 @@ CameraPlan OrbitController::plan() const {
 
 void OrbitController::glide_to(const render::Orbit& wanted, double dt, double lag) {
   const auto share = static_cast<float>(1 - std::exp(-dt / lag));
+  orbit_.azimuth += share * std::remainder(wanted.azimuth - orbit_.azimuth, 2 * std::numbers::pi_v<float>);
+  orbit_.elevation += share * (wanted.elevation - orbit_.elevation);
   orbit_.target += share * (wanted.target - orbit_.target);
   orbit_.distance += share * (wanted.distance - orbit_.distance);
 }
@@ -131,6 +170,12 @@ render::Camera OrbitController::at(std::span<const render::Bounds> robots, float
   }
   if (glide_ > 0) {
     glide_ -= dt;
+    // In modes that keep the group in view, the glide changes only the direction.
+    if (mode_ != CameraMode::still && mode_ != CameraMode::follow) {
+      aim_.target = orbit_.target;
+      aim_.distance = orbit_.distance;
+      if (mode_ == CameraMode::turntable) aim_.azimuth = orbit_.azimuth;
+    }
     glide_to(aim_, glide_ > 0 ? dt : 1e9, glide_time / 5);
   }
   return orbit_.camera();

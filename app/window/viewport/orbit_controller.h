@@ -18,6 +18,8 @@ class OrbitController {
   // Takes effect in the next at().
   void set_mode(CameraMode mode);
   CameraMode mode() const { return mode_; }
+  // Whether a grid should lie flat: since the camera looks down, until it is set to another mode.
+  bool from_above() const { return from_above_; }
   // Follows a robot, by its index; without a value, the centre of the group.
   void follow(std::optional<std::size_t> robot);
   std::optional<std::size_t> followed() const { return robot_; }
@@ -32,6 +34,14 @@ class OrbitController {
   void frame(std::span<const render::Bounds> robots, float aspect);
   // The same without a glide.
   void start(std::span<const render::Bounds> robots, float aspect);
+
+  // Glides to where the eye is in this direction from the target. A camera that moves by itself then keeps the group in
+  // view, and a grid should face it (facing()).
+  void look_from(float azimuth, float elevation);
+  // Glides to where a plan says, `robot` being the one that it follows.
+  void go_to(const CameraPlan& plan, std::optional<std::size_t> robot);
+  // The direction that a grid should face; none = that of the scene.
+  const std::optional<render::Orbit>& facing() const { return facing_; }
 
   // Begins as a plan says, `robot` being the one that it follows. Call start() before.
   void begin(const CameraPlan& plan, std::optional<std::size_t> robot);
@@ -52,12 +62,16 @@ class OrbitController {
 
  private:
   void glide_to(const render::Orbit& wanted, double dt, double lag);
+  void release();
 
   CameraMode mode_ = CameraMode::still;
   std::optional<std::size_t> robot_;
+  bool from_above_ = false;
+  std::optional<render::Orbit> facing_;  // its angles
   render::Orbit orbit_;
-  render::Orbit aim_;  // the end of the glide
-  double glide_ = 0;   // remaining time of the glide [s]
+  render::Orbit before_;  // its angles were those of the camera before it looked down
+  render::Orbit aim_;     // the end of the glide
+  double glide_ = 0;      // remaining time of the glide [s]
 };
 
 }  // namespace mercury::window

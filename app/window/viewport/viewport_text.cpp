@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/window/toolkit/theme.h"
+#include "render/label_layout.h"
 #include "render/overlay.h"
 
 namespace mercury::window {
@@ -28,69 +30,34 @@ void line(ImVec2 at, const std::string& text) {
   ImGui::GetBackgroundDrawList()->AddText(at, text_color(), text.c_str());
 }
 
-struct TextBox {
-  ImVec2 low, high;
-  const std::string* text;
-};
-
-struct LabelAnchor {
-  ImVec2 at;    // top centre of the robot, in the window
-  float depth;  // distance from the camera
-  const std::string* text;
-};
-
-// The labels of visible robots, near ones first.
-std::vector<LabelAnchor> anchors_of(const render::Scene& scene, std::span<const render::Bounds> bounds,
-                                    const ViewportArea& area, const render::Camera& camera) {
-  std::vector<LabelAnchor> anchors;
-  for (const render::Label& label : scene.labels) {
-    if (label.body >= bounds.size() || bounds[label.body].empty()) continue;
-    Eigen::Vector3f top = bounds[label.body].center();
-    top.z() = bounds[label.body].high.z();
-    const Eigen::Vector3f p = camera.project(top, static_cast<int>(area.width()), static_cast<int>(area.height()));
-    if (p.z() > camera.near) anchors.push_back({{area.low.x + p.x(), area.low.y + p.y()}, p.z(), &label.text});
-  }
-  std::sort(anchors.begin(), anchors.end(),
-            [](const LabelAnchor& a, const LabelAnchor& b) { return a.depth < b.depth; });
-  return anchors;
-}
-
-// Above the robot, and inside the picture if the robot is.
-TextBox box_above(const LabelAnchor& label, const ViewportArea& area, float margin) {
-  const ImVec2 size = ImGui::CalcTextSize(label.text->c_str());
-  TextBox box{{label.at.x - size.x / 2, label.at.y - size.y - margin},
-              {label.at.x + size.x / 2, label.at.y - margin},
-              label.text};
-  if (label.at.y > area.low.y) box.low.y = std::max(box.low.y, area.low.y + margin);
-  if (label.at.x > area.low.x && label.at.x < area.high.x)
-    box.low.x =
-        std::clamp(box.low.x, area.low.x + margin, std::max(area.low.x + margin, area.high.x - size.x - margin));
-  box.high = {box.low.x + size.x, box.low.y + size.y};
-  return box;
-}
-
-// A label that would cover a nearer one moves above it if there is room. Otherwise it stays, and is drawn behind it.
+// The labels that there is room for (render/label_layout.h). `hovered`: the body under the mouse.
 void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                 const render::Camera& camera) {
-  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
-  std::vector<TextBox> boxes;
-  for (const LabelAnchor& label : anchors_of(scene, bounds, area, camera)) {
-    TextBox box = box_above(label, area, margin);
-    const float height = box.high.y - box.low.y, wanted = box.low.y;
-    for (int attempts = 0; attempts < 4; ++attempts) {
-      const auto covered = std::find_if(boxes.begin(), boxes.end(), [&](const TextBox& other) {
-        return box.low.x < other.high.x + margin && other.low.x < box.high.x + margin &&
-               box.low.y < other.high.y + margin && other.low.y < box.high.y + margin;
-      });
-      if (covered == boxes.end()) break;
-      box.low.y = covered->low.y - height - margin;
-      box.high.y = covered->low.y - margin;
-    }
-    if (box.low.y < area.low.y || wanted - box.low.y > 5 * text) box.low.y = wanted;
-    box.high.y = box.low.y + height;
-    boxes.push_back(box);
+                 const render::Camera& camera, std::optional<std::size_t> hovered, EventLog& log) {
+  const float margin = 0.4f * ImGui::GetFontSize();
+  const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
+  std::vector<const render::Label*> labels;
+  std::vector<render::LabelRequest> requests;
+  for (const render::Label& label : scene.labels) {
+    if (label.body >= bounds.size() || scene.placements[label.body].hidden) continue;
+    const auto body = render::covered_by(bounds[label.body], camera, width, height);
+    if (!body) continue;
+    const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+    labels.push_back(&label);
+    requests.push_back({.body = *body,
+                        .width = size.x + 2 * margin,
+                        .height = size.y + 1.2f * margin,
+                        .depth = camera.project(bounds[label.body].center(), width, height).z(),
+                        .priority = label.priority,
+                        .forced = label.forced || label.body == hovered});
   }
-  for (auto box = boxes.rbegin(); box != boxes.rend(); ++box) line(box->low, *box->text);
+  const auto placed = render::place_labels(requests, {0, 0, area.width(), area.height()});
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (!placed[i]) continue;
+    const ImVec2 at{area.low.x + placed[i]->x + margin, area.low.y + placed[i]->y + 0.6f * margin};
+    line(at, labels[i]->text);
+    log.item(fmt::format("label.{}", labels[i]->body), {at.x - margin, at.y - 0.6f * margin},
+             {at.x - margin + placed[i]->width, at.y - 0.6f * margin + placed[i]->height});
+  }
 }
 
 // The scale bar: a round length, to scale at the distance of the camera's target.
@@ -124,13 +91,13 @@ render::Scene without_text(const render::Scene& scene) {
 }
 
 void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                        const render::Camera& camera, bool clock) {
+                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
-  draw_labels(scene, bounds, area, camera);
+  draw_labels(scene, bounds, area, camera, options.hovered, log);
   if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
-  if (clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
+  if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();
 }

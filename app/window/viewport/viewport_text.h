@@ -3,8 +3,11 @@
 // sharp even if the picture is coarse.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 
+#include "app/window/toolkit/event_log.h"
 #include "app/window/viewport/viewport_area.h"
 #include "render/camera.h"
 #include "render/scene.h"
@@ -14,9 +17,14 @@ namespace mercury::window {
 // A copy of the scene without its text.
 render::Scene without_text(const render::Scene& scene);
 
-// Draws the text of the scene over the picture; the clock only if `clock`. `bounds`: one box per body, in the
-// coordinates of the picture.
+struct ViewportTextOptions {
+  bool clock = false;                  // draw the clock
+  std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
+};
+
+// Draws the text of the scene over the picture, and logs where each name is as the item "label.BODY". `bounds`: one box
+// per body, in the coordinates of the picture.
 void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                        const render::Camera& camera, bool clock);
+                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);
 
 }  // namespace mercury::window

@@ -71,5 +71,31 @@ TEST(CameraNamed, AcceptsModesAndARobotToFollow) {
   EXPECT_THROW(camera_named("missing.json"), InputError);
 }
 
+TEST(CameraBookmarks, AreReadAsTheyWereWritten) {
+  CameraBookmarks bookmarks;
+  bookmarks[1] = CameraPlan{.mode = CameraMode::still,
+                            .azimuth = 0.25f,
+                            .elevation = -0.5f,
+                            .target = Eigen::Vector3f(1, 2, 3),
+                            .distance = 4.5f};
+  bookmarks[3] = CameraPlan{.mode = CameraMode::follow, .robot = "eel \"2\""};
+  const CameraBookmarks read = bookmarks_from(bookmarks_text(bookmarks));
+  EXPECT_FALSE(read[0]);
+  EXPECT_FALSE(read[2]);
+  ASSERT_TRUE(read[1] && read[3]);
+  EXPECT_EQ(read[1]->mode, CameraMode::still);
+  EXPECT_EQ(read[1]->azimuth, 0.25f);
+  EXPECT_EQ(read[1]->distance, 4.5f);
+  EXPECT_EQ(*read[1]->target, Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(read[3]->robot, "eel \"2\"");
+  EXPECT_EQ(bookmarks_text({}), "");
+}
+
+TEST(CameraBookmarks, WhatIsNoListOfCamerasIsRefused) {
+  for (const char* text : {"", "{}", "[1]", "[[]]", "[null,null,null,null,null]", R"([{"mode":"fly"}])",
+                           R"([{"zoom":0}])", R"([{"target":[1,2]}])", "[{", R"([{"distance":1e99}])"})
+    EXPECT_THROW(bookmarks_from(text), ParameterError) << text;
+}
+
 }  // namespace
 }  // namespace mercury::test

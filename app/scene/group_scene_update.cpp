@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of GroupScene that changes with every picture.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "app/scene/eigen_vec3.h"
+#include "app/scene/group_scene.h"
+#include "mercury/distance.h"
+
+namespace mercury {
+namespace {
+
+std::string distance_text(float metres) {
+  if (metres < 0.01f) return fmt::format("{:.1f} mm", 1000 * metres);
+  if (metres < 1) return fmt::format("{:.1f} cm", 100 * metres);
+  return fmt::format("{:.2f} m", metres);
+}
+
+// In slow motion with enough digits that the last one changes visibly.
+std::string clock_of(double time, double speed) {
+  const int digits = speed >= 1 ? 1 : std::clamp(1 + static_cast<int>(std::ceil(-std::log10(speed) - 1e-9)), 1, 5);
+  return speed == 1 ? fmt::format("{:.1f} s", time) : fmt::format("{:.{}f} s   x{:g}", time, digits, speed);
+}
+
+}  // namespace
+
+void GroupScene::update(double time, std::span<const Telemetry> telemetry, SceneDetails details) {
+  for (const Table& table : tables_)
+    set_activations(table.materials, time, std::span(materials_).subspan(table.first_material, table.materials.size()));
+  scene_.materials = materials_;
+  scene_.time = time;
+  if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
+  place(telemetry);
+  order_.clear();
+  if (motion_.layout() == Layout::race)
+    race(time);
+  else if (settings_.shown.path)
+    lengthen_paths();
+  if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
+  color(time, std::move(details));
+}
+
+void GroupScene::place(std::span<const Telemetry> telemetry) {
+  exploded_.assign(placements_.size(), false);
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    placements_[i].faulty = exploded_[i] = telemetry[i].exploded;
+    if (!telemetry[i].exploded) trails_[i].pass(telemetry[i].center_of_mass);
+  }
+  place_boxes();
+  hide_wrecks(telemetry);
+  place_patches();
+  scene_.placements = placements_;
+}
+
+// Offsets and boxes of the robots' last places.
+void GroupScene::place_boxes() {
+  bounds_.assign(placements_.size(), {});
+  last_boxes_ = camera_boxes_ = bounds_;
+  shown_offsets_.resize(placements_.size());
+  const bool all_exploded = std::ranges::all_of(exploded_, std::identity());
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    const Eigen::Vector3f wanted = motion_.offset_of(offsets_[i], rooms_[i], trails_[i]);
+    shown_offsets_[i] = placements_[i].offset = wanted + held_.correction(i, wanted);
+    last_boxes_[i] = rest_[i].moved(eigen(trails_[i].last()) + shown_offsets_[i]);
+    if (exploded_[i] && !all_exploded) continue;
+    bounds_[i] = last_boxes_[i];
+    camera_boxes_[i] = motion_.camera_box(bounds_[i], offsets_[i], rooms_[i]);
+  }
+}
+
+// On land, the ground slides under each robot that stays in its cell.
+void GroupScene::place_patches() {
+  patches_.clear();
+  if (motion_.layout() == Layout::cells && motion_.on_land() && scene_.surroundings == render::Surroundings::land)
+    for (std::size_t i = 0; i < placements_.size(); ++i) {
+      if (placements_[i].hidden) continue;
+      const Eigen::Vector2f middle = (offsets_[i] + rooms_[i].center).head<2>();
+      patches_.push_back({middle, 1.04f * rooms_[i].radius, -shown_offsets_[i].head<2>()});
+    }
+  scene_.patches = patches_;
+}
+
+// A robot that was torn apart would cover everything else, so only its name is shown where it was last, until it is
+// selected.
+void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
+  constexpr float most_strain = 3;  // of a wreck that is drawn
+  shown_texts_ = texts_;
+  torn_.assign(placements_.size(), false);
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    torn_[i] = exploded_[i] && !(telemetry[i].largest_strain <= most_strain);
+    placements_[i].hidden = hidden_[i] || (torn_[i] && !placements_[i].selected);
+    if (torn_[i] && !hidden_[i])
+      shown_texts_.push_back({.at = eigen(trails_[i].last()) + shown_offsets_[i],
+                              .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at)});
+  }
+  scene_.texts = shown_texts_;
+}
+
+void GroupScene::lengthen_paths() {
+  constexpr float step = 0.02f, reach = 1.2f, bar = 0.12f;  // of a room's radius
+  paths_.clear();
+  marks_.clear();
+  marks_.reserve(trails_.size());  // paths refer to it
+  for (std::size_t i = 0; i < trails_.size(); ++i) {
+    const float radius = rooms_[i].radius;
+    if (!exploded_[i]) trails_[i].lengthen(step * radius);
+    const bool wake = motion_.layout() == Layout::cells;
+    const auto points = wake ? trails_[i].wake(reach * radius) : trails_[i].points();
+    const auto body = static_cast<std::uint32_t>(i);
+    const render::Color color = render::category_color(static_cast<int>(i));
+    paths_.push_back({.body = body, .points = points, .color = color});
+    if (!wake) continue;
+    marks_.push_back(marks_of(trails_[i], points, mark_distance_, bar * radius));
+    for (std::size_t at = 0; at < marks_.back().size(); at += 6)
+      paths_.push_back(
+          {.body = body, .points = std::span(marks_.back()).subspan(at, 6), .color = color, .fades = false});
+  }
+  scene_.paths = paths_;
+}
+
+void GroupScene::race(double time) {
+  std::vector<float> progress;
+  std::vector<Lane> lanes;
+  float lowest = 1e30f, farthest = 0;
+  for (std::size_t i = 0; i < trails_.size(); ++i) {
+    const float way = motion_.progress_of(trails_[i]);
+    const Eigen::Vector3f start = offsets_[i] + rooms_[i].center;
+    progress.push_back(exploded_[i] ? -1 : way);
+    lanes.push_back({start, rooms_[i].radius, way, render::category_color(static_cast<int>(i))});
+    lowest = std::min(lowest, start.z() - 0.8f * rooms_[i].radius);
+    farthest = std::max(farthest, way);
+  }
+  mark_times_.update(time, progress);
+  const std::size_t step = marks_per_line(mark_distance_, farthest);
+  // On land just above the ground, so that the lines are not hidden by it.
+  const float height = motion_.on_land() ? 0.01f * mark_distance_ : lowest;
+  course_.draw(lanes, motion_.along(), height, mark_times_, step, settings_.theme);
+  scene_.paths = course_.lines();
+  std::ranges::copy(course_.numbers(), std::back_inserter(shown_texts_));
+  scene_.texts = shown_texts_;
+  order_ = order_text(mark_times_, step, names_);
+}
+
+void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < trails_.size(); ++i)
+    distances.push_back(telemetry[i].exploded ? -1
+                                              : static_cast<float>(distance_between(
+                                                    trails_[i].start(), telemetry[i].center_of_mass, environment_)));
+  // No ranks before a robot has moved.
+  const bool ranked = trails_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
+  labels_.clear();
+  for (std::size_t i = 0; i < trails_.size(); ++i) {
+    const auto rank = 1 + std::count_if(distances.begin(), distances.end(), [&](float d) { return d > distances[i]; });
+    std::string text = names_[i];
+    if (telemetry[i].exploded)
+      text += fmt::format("\nexploded at {:.1f} s", telemetry[i].exploded_at);
+    else if (settings_.shown.labels)
+      text += fmt::format("\n{}{}", distance_text(distances[i]), ranked ? fmt::format("   #{}", rank) : "");
+    if (!torn_[i])
+      labels_.push_back({.body = static_cast<std::uint32_t>(i),
+                         .text = text,
+                         .priority = distances[i],
+                         .forced = placements_[i].selected});
+  }
+  scene_.labels = labels_;
+}
+
+// Fits the scale to the values that are visible: those of robots that are neither hidden nor have exploded, and of what
+// is shown of them.
+void GroupScene::fit_scale(double time) {
+  const render::Show& show = scene_.show;
+  const ColorValues& values = details_.values;
+  const bool on_springs = !values.spring.empty() && (show.springs && !show.skin);
+  const bool on_faces = !values.face.empty() && !on_springs && (show.skin || values.mass.empty());
+  const bool on_masses = !values.mass.empty() && !on_springs && !on_faces;
+  const std::vector<float>& all = on_faces ? values.face : on_masses ? values.mass : values.spring;
+  const std::vector<std::size_t>& counts = on_faces ? face_counts_ : on_masses ? mass_counts_ : spring_counts_;
+  std::vector<bool> counted;
+  std::vector<ValueRange> ranges;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    counted.push_back(!placements_[i].hidden && !placements_[i].faulty);
+    if (counted.back() && counts[i] > 0) ranges.push_back({first, counts[i]});
+    first += counts[i];
+  }
+  if (all.size() != first) ranges.clear();
+  const bool others = counted != counted_ || show.skin != counted_show_.skin || show.springs != counted_show_.springs;
+  counted_ = std::move(counted);
+  counted_show_ = show;
+  scale_.fit(time, sample(all, ranges), others);
+}
+
+void GroupScene::color(double time, SceneDetails details) {
+  details_ = std::move(details);
+  fit_scale(time);
+  scene_.face_values = details_.values.face;
+  scene_.mass_values = details_.values.mass;
+  scene_.spring_values = details_.values.spring;
+  scene_.scale = scale_.scale();
+  scene_.arrows = details_.arrows;
+  scene_.caption = settings_.caption;
+  if (!scene_.caption.empty() && !details_.arrow_key.empty()) scene_.caption += "\n";
+  scene_.caption += details_.arrow_key;
+  const std::string note = motion_.layout() == Layout::cells && settings_.shown.path
+                               ? fmt::format("robots stay in their cells; marks on trails every {:g} m", mark_distance_)
+                               : order_;
+  if (!scene_.caption.empty() && !note.empty()) scene_.caption += "\n";
+  scene_.caption += note;
+  if (settings_.board) scene_.legend = settings_.board->legend;
+  if (settings_.board || !settings_.shown.legend) return;
+  scene_.legend = settings_.color->has_values()
+                      ? scale_.legend()
+                      : render::Legend{.title = std::string(settings_.color->key), .swatches = swatches_};
+}
+
+}  // namespace mercury

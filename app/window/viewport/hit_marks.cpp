@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/viewport/hit_marks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <string>
+
+#include "app/scene/eigen_vec3.h"
+#include "app/window/toolkit/theme.h"
+
+namespace mercury::window {
+namespace {
+
+std::optional<ImVec2> on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  if (!p.allFinite() || p.z() < camera.near) return std::nullopt;
+  return ImVec2(area.low.x + p.x(), area.low.y + p.y());
+}
+
+}  // namespace
+
+std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
+                                    const render::Camera& camera) {
+  const auto index = scene.snapshot().robots->index_of(hit.robot);
+  const LivePicture& picture = scene.picture();
+  if (!index || *index >= picture.offsets().size()) return std::nullopt;
+  const Robot& robot = *scene.snapshot().robots->robots[*index].robot;
+  const std::span<const Vec3> positions = picture.positions_of(*index);
+  const auto place = [&](std::uint16_t mass) {
+    return on_screen(area, camera, eigen(positions[mass]) + picture.offsets()[*index]);
+  };
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize(), thick = 0.16f * text, edge = 0.09f * text;
+  const ImU32 mark = palette().warning, outline = palette().mark_outline;
+  list.PushClipRect(area.low, area.high);
+  if (hit.spring && *hit.spring < robot.springs.size()) {
+    const auto a = place(robot.springs[*hit.spring].a), b = place(robot.springs[*hit.spring].b);
+    if (a && b) {
+      list.AddLine(*a, *b, outline, thick + 2 * edge);
+      list.AddLine(*a, *b, mark, thick);
+    }
+  }
+  const auto at = hit.mass < positions.size() ? place(hit.mass) : std::nullopt;
+  if (at) {
+    list.AddCircleFilled(*at, 0.3f * text + edge, outline);
+    list.AddCircleFilled(*at, 0.3f * text, mark);
+  }
+  list.PopClipRect();
+  return at;
+}
+
+void write_figures(const LiveScene& scene, const Hit& hit) {
+  const HitDetails figures = scene.describe(hit);
+  ImGui::TextUnformatted(figures.robot.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
+  ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hit.mass), speed.c_str(), figures.mass.springs);
+  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
+              static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
+  if (figures.spring) {
+    ImGui::Text("spring: %s", figures.spring->material_name.c_str());
+    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
+                static_cast<double>(figures.spring->force));
+    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+                static_cast<double>(figures.spring->rest_length));
+  }
+  ImGui::PopStyleColor();
+}
+
+bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
+                         const render::Camera& camera) {
+  if (!scene.snapshot().robots->index_of(hit.robot)) return false;
+  const auto at = draw_hit_mark(scene, hit, area, camera);
+  const float text = ImGui::GetFontSize(), width = 18 * text, height = 11 * text, gap = 2 * text;
+  const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));
+  const float x = mass.x + gap + width < area.high.x ? mass.x + gap : mass.x - gap - width;
+  const ImVec2 corner{std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - width)),
+                      std::clamp(mass.y - height - gap, area.low.y, std::max(area.low.y, area.high.y - height))};
+  if (at)
+    ImGui::GetBackgroundDrawList()->AddLine(*at, {corner.x + (x > mass.x ? 0 : width), corner.y + 2 * text},
+                                            palette().warning, 0.06f * text);
+  ImGui::SetNextWindowPos(corner);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {FLT_MAX, FLT_MAX});
+  ImGui::Begin("##pinned", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  write_figures(scene, hit);
+  const bool closed = ImGui::SmallButton("close");
+  log.item("pinned.close");
+  const ImVec2 low = ImGui::GetWindowPos();
+  log.item("panel.Pinned", low, {low.x + ImGui::GetWindowWidth(), low.y + ImGui::GetWindowHeight()});
+  ImGui::End();
+  return !closed;
+}
+
+}  // namespace mercury::window

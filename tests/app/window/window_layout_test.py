@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Layout, camera and names in the real window: window_layout_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+import json
+import math
+
+from window_case import SAMPLES, WindowCase, main, numpy
+from window_driver import scratch
+from window_playback_test import robot_that_explodes
+
+
+def farthest(a, b):
+    """The largest distance between places of the same robot [pixels]."""
+    return numpy.linalg.norm(numpy.subtract(a, b), axis=1).max()
+
+
+class LayoutTest(WindowCase):
+    def after(self, window, seconds):
+        """The first frame this much later in simulated time."""
+        time = window.frame()["time"]
+        return window.frame(lambda frame: frame["time"] > time + seconds)
+
+    def test_robots_stay_in_their_cells_until_they_may_travel(self):
+        window = self.small("--camera", "still")
+        first = window.frame(lambda frame: len(frame["where"]) == 2 and frame["time"] > 0.2)
+        self.assertEqual(first["layout"], "cells")
+        self.assertLess(farthest(first["where"], self.after(window, 1)["where"]), 1.5)
+        since = window.mark()
+        window.key("c")
+        travels = window.frame(lambda frame: frame["layout"] == "grid", since)
+        self.assertGreater(farthest(travels["where"], self.after(window, 1.5)["where"]), 3)
+        self.finish(window)
+
+    def test_top_shows_a_grid_from_above(self):
+        window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("eel", "fish", "ray", "squid")), "--paused",
+                           "--grid", "2x2")
+        before = window.frame(lambda frame: len(frame["where"]) == 4)
+        window.key("z")
+        above = window.frame(lambda frame: frame["elevation"] > 1.5)
+        for _ in range(2):
+            above = window.frame()
+        where = numpy.array(above["where"])
+        self.assertGreater(numpy.ptp(where[:, 0]), 100)
+        self.assertGreater(numpy.ptp(where[:, 1]), 100, "rows lie beside each other")
+        window.key("z")
+        window.frame(lambda frame: abs(frame["elevation"] - before["elevation"]) < 0.01)
+        self.finish(window)
+
+    def test_a_wreck_neither_moves_the_camera_nor_hides_the_others(self):
+        folder = scratch()
+        (folder / "bad.json").write_text(json.dumps(robot_that_explodes("bad")))
+        window = self.open(str(SAMPLES / "fish.json"), str(folder / "bad.json"), "--camera", "group", "--paused")
+        before = window.frame(lambda frame: len(frame["where"]) == 2)["distance"]
+        window.key("space")
+        window.wait("exploded")
+        later = self.after(window, 1)
+        self.assertLess(later["distance"], 1.3 * before)
+        x, y = later["where"][0]
+        area = window.items["picture"]
+        self.assertLess(abs(x - area["x"]), area["width"] / 2)
+        self.assertLess(abs(y - area["y"]), area["height"] / 2)
+        window.click("explosion.dismiss")
+        picture = window.screenshot()
+        red = (picture[:, :, 0] > 0.75) & (picture[:, :, 1] < 0.6) & (picture[:, :, 2] < 0.65)
+        self.assertLess(red.mean(), 0.02)
+        self.finish(window)
+
+    def labels(self, window):
+        window.frame()
+        window.frame()
+        return [item for name, item in window.items.items() if name.startswith("label.")]
+
+    def test_names_do_not_cover_each_other(self):
+        window = self.open("--random", "voxel:12", "--show", "skin,labels", "--paused")
+        window.frame(lambda frame: len(frame["where"]) == 12)
+        labels = self.labels(window)
+        self.assertGreaterEqual(len(labels), 6)
+        for i, a in enumerate(labels):
+            for b in labels[:i]:
+                apart = max(abs(a["x"] - b["x"]) - (a["width"] + b["width"]) / 2,
+                            abs(a["y"] - b["y"]) - (a["height"] + b["height"]) / 2)
+                self.assertGreater(apart, -1.5)
+        self.finish(window)
+
+    def test_of_many_robots_only_the_best_and_the_selected_one_are_named(self):
+        window = self.open("--random", "voxel:40", "--show", "skin,labels", "--paused")
+        x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 20)["where"][19])
+        self.assertLessEqual(len(self.labels(window)), 10)
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("click", 1)
+        window.frame(lambda frame: frame["selected"] == 1)
+        window.until("the name of the selected robot", lambda: "label.19" in window.items)
+        window.key("Escape")
+        self.finish(window)
+
+    def test_a_click_pins_figures_and_escape_takes_them_away(self):
+        window = self.small("--paused")
+        x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][1])
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("click", 1)
+        window.wait("pinned")
+        window.place("panel.Pinned")
+        window.do("mousemove", x, y + 200)
+        window.frame()
+        window.place("panel.Pinned")
+        window.key("Escape")
+        window.until("the figures gone", lambda: "panel.Pinned" not in window.items)
+        self.finish(window)
+
+    def test_the_axes_turn_the_camera_and_bookmarks_bring_it_back(self):
+        window = self.small("--paused", "--camera", "still")
+        begin = window.frame(lambda frame: len(frame["where"]) == 2)
+        since = window.mark()
+        window.key("shift+F5")
+        window.wait("bookmark", since, lambda event: event.get("set") == 1)
+        window.click("axes.y")
+        window.frame(lambda frame: abs(frame["azimuth"] - math.pi / 2) < 0.01 and abs(frame["elevation"]) < 0.01)
+        since = window.mark()
+        window.key("F5")
+        window.wait("bookmark", since, lambda event: event.get("gone") == 1)
+        window.frame(lambda frame: abs(frame["azimuth"] - begin["azimuth"]) < 0.01 and
+                     abs(frame["elevation"] - begin["elevation"]) < 0.01 and
+                     abs(frame["distance"] - begin["distance"]) < 0.01 * begin["distance"])
+        window.key("ctrl+s")
+        window.dialog(str(self.folder / "marked.toml"))
+        window.wait("saved")
+        self.finish(window)
+        again = self.window_in(self.folder / "again", str(self.folder / "marked.toml"), "--paused")
+        again.frame(lambda frame: len(frame["where"]) == 2)
+        since = again.mark()
+        again.key("F5")
+        again.wait("bookmark", since, lambda event: event.get("gone") == 1)
+        self.finish(again)
+
+    def test_racers_keep_to_their_lanes(self):
+        window = self.small("--layout", "race", "--camera", "still")
+        start = window.frame(lambda frame: len(frame["where"]) == 2)
+        later = self.after(window, 3)
+        first, last = numpy.array(start["where"]), numpy.array(later["where"])
+        self.assertGreater((last - first)[:, 0].max(), 5, "one of them has come along its lane")
+        self.assertLess(abs((last - first)[:, 1]).max(), 0.4 * abs(first[1, 1] - first[0, 1]))
+        self.finish(window)
+
+
+if __name__ == "__main__":
+    main()
