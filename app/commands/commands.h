@@ -27,6 +27,7 @@ void add_grow_command(CLI::App& program, const Choose& choose);
 void add_import_command(CLI::App& program, const Choose& choose);
 void add_bench_command(CLI::App& program, const Choose& choose);
 void add_export_command(CLI::App& program, const Choose& choose);
+void add_verify_command(CLI::App& program, const Choose& choose);
 void add_info_command(CLI::App& program, const Choose& choose);
 void add_describe_command(CLI::App& program, const Choose& choose);
 

@@ -83,6 +83,7 @@ class Program {
     add_export_command(app_, choose);
     add_import_command(app_, choose);
     add_bench_command(app_, choose);
+    add_verify_command(app_, choose);
     add_info_command(app_, choose);
     add_help_command();
     add_describe_command(app_, choose);

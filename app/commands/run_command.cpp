@@ -32,29 +32,45 @@
 namespace mercury {
 namespace {
 
-constexpr double recorded_rate = 30;  // frames per second of simulated time, without --every
+constexpr double recorded_rate = 30;      // frames per second of simulated time, without --every
+constexpr double checkpoint_period = 60;  // [s], without --checkpoint-every
 
 struct RunOptions {
   RobotOptions robots;
   SimulationOptions simulation;
   TrialSettings trials;
   OutputOptions output;
-  std::string csv, record;
+  std::string csv, record, checkpoint, resume;
   std::optional<std::int64_t> every;
+  std::optional<double> checkpoint_every;
   bool compress = false;
   bool json = false, strict = false;
 };
 
-// Throws InputError for files that cannot be written. Makes their folders.
-void prepare_outputs(const RunOptions& options) {
+void require_trajectory_name(const char* option, const std::string& name) {
+  if (!is_trajectory_name(name))
+    throw InputError(option, "\"" + name + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
+}
+
+// Throws InputError for files that cannot be written. Makes their folders. A resumed run may replace its own checkpoint
+// and its recording (`continued`, may be empty).
+void prepare_outputs(const RunOptions& options, const std::string& continued = {}) {
   OutputFiles outputs = options.output.files();
   for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
   if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
   if (!options.record.empty()) {
-    if (!is_trajectory_name(options.record))
-      throw InputError("--record",
-                       "\"" + options.record + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
-    outputs.add_file("--record", options.record);
+    require_trajectory_name("--record", options.record);
+    if (continued.empty() || !is_same_file(options.record, continued)) outputs.add_file("--record", options.record);
+  }
+  if (!options.checkpoint.empty()) {
+    require_trajectory_name("--checkpoint", options.checkpoint);
+    if (options.resume.empty() || !is_same_file(options.checkpoint, options.resume))
+      outputs.add_file("--checkpoint", options.checkpoint);
   }
   outputs.check();
   if (!options.output.dry_run()) outputs.make_folders();
@@ -66,6 +82,11 @@ void validate_recording(const RunOptions& options) {
     throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
   if (options.record.empty() && (options.every || options.compress))
     throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
+  if (options.checkpoint_every && options.checkpoint.empty())
+    throw InputError("--checkpoint-every", "goes with --checkpoint FILE.h5");
+  if (options.checkpoint_every && !(*options.checkpoint_every >= 0 && std::isfinite(*options.checkpoint_every)))
+    throw InputError("--checkpoint-every",
+                     fmt::format("{} is not accepted; give seconds, 0 or more", *options.checkpoint_every));
 }
 
 // Steps between two frames.
@@ -126,6 +147,7 @@ int describe_work(const RunOptions& options, const Configuration& configuration,
               {"on", device_text(configuration.device)},
               {"record",
                options.record.empty() ? "" : options.record + ": " + count_text(steps / every + 1, "frame", "frames")},
+              {"checkpoint", options.checkpoint},
               {"write", options.csv},
               {"print", is_standard_output(options.csv) ? "CSV"
                         : options.json                  ? "JSON"
@@ -139,6 +161,7 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
     throw InputError(file.string(), "has its own configuration; give only --device, --threads and --seconds with it");
   if (!options.record.empty() || options.every) throw InputError("--record", "does not work with a repro; give robots");
   if (options.trials.settle != 0) throw InputError("--settle", "does not work with a repro; give robots");
+  if (!options.checkpoint.empty()) throw InputError("--checkpoint", "does not work with a repro; give robots");
   const Repro repro = load_repro(file);
   Simulation simulation = start_of(repro, device);
   if (simulation.device_name() != repro.device_name)
@@ -160,32 +183,133 @@ void print_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) warn(note);
 }
 
-// A recording needs all robots in one simulation.
-int run_recorded(const RunOptions& options, const RobotSequence& robots, const Configuration& configuration,
-                 const TrialSettings& trials) {
+// What a checkpoint notes besides the robots' states.
+CheckpointNotes notes_of(const RunOptions& options, const Configuration& configuration, const TrialSettings& trials,
+                         std::span<const RobotIdentity> identities, std::span<const RobotResult> failed) {
+  CheckpointNotes notes{.seconds = trials.seconds,
+                        .settle = trials.settle,
+                        .strain_limit = trials.strain_limit,
+                        .seed = options.robots.seed()};
+  for (const RobotIdentity& identity : identities) notes.robots.push_back(checkpoint_robot_of(identity));
+  for (const RobotResult& robot : failed) notes.failed.push_back(checkpoint_robot_of(robot.identity, robot.failure));
+  if (!options.record.empty())
+    notes.recording = {.path = std::filesystem::absolute(options.record).string(),
+                       .every = recorded_every(options, configuration),
+                       .compressed = options.compress};
+  return notes;
+}
+
+// Runs to the end, with a recording and checkpoints if they are wanted. `work` simulates.
+template <class Work>
+int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, std::optional<Checkpoints> checkpoints,
+                std::vector<RobotResult> failed, const Work& work) {
+  RunReport report;
+  try {
+    report = work(StepObservers{.recorder = recorder.get(), .checkpoints = checkpoints ? &*checkpoints : nullptr});
+  } catch (const DeviceError&) {
+    if (recorder) {
+      recorder->finish_without_device();
+      warn(fmt::format("{} holds the {} frames so far", options.record, recorder->frames()));
+    }
+    throw;
+  }
+  add_failed(report, std::move(failed));
+  const int status = report_results(options, report);
+  if (recorder) recorder->finish();  // it may fail, so it comes last
+  return checkpoints && checkpoints->failed() ? std::max(status, 1) : status;
+}
+
+std::optional<Checkpoints> checkpoints_of(const RunOptions& options, CheckpointNotes notes) {
+  if (options.checkpoint.empty()) return {};
+  return Checkpoints(options.checkpoint, options.checkpoint_every.value_or(checkpoint_period), std::move(notes));
+}
+
+// A recording and checkpoints need all robots in one simulation.
+int run_in_one(const RunOptions& options, const RobotSequence& robots, const Configuration& configuration,
+               const TrialSettings& trials) {
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
-  const std::unique_ptr<Recorder> recorder = open_recorder(options, simulation);
-  RunReport report;
-  try {
-    report = simulate(simulation, std::move(gathered.identities), trials, {.recorder = recorder.get()});
-  } catch (const DeviceError&) {
-    recorder->finish_without_device();
-    warn(fmt::format("{} holds the {} frames so far", options.record, recorder->frames()));
-    throw;
+  std::optional<Checkpoints> checkpoints =
+      checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
+  return run_watched(options, options.record.empty() ? nullptr : open_recorder(options, simulation),
+                     std::move(checkpoints), std::move(gathered.failed), [&](const StepObservers& observers) {
+                       return simulate(simulation, std::move(gathered.identities), trials, observers);
+                     });
+}
+
+// Throws InputError for options that a checkpoint has already.
+void validate_resume(const RunOptions& options) {
+  const Device device = options.simulation.configuration().device;
+  if (!options.robots.empty())
+    throw InputError("--resume", "goes on with the robots of " + options.resume + "; give no others");
+  if (options.simulation.configuration() != Configuration{.device = device} || options.trials != TrialSettings{} ||
+      !options.simulation.chosen_environment().empty())
+    throw InputError(
+        "--resume", options.resume + " has its own configuration; give only --device, --threads and --seconds with it");
+  if (options.every || options.compress)
+    throw InputError(options.every ? "--every" : "--compress",
+                     "is that of " + options.resume + " in a resumed run; leave it out");
+}
+
+// The recording of a resumed run: what it had before the checkpoint, and what follows.
+std::unique_ptr<Recorder> continue_recording(const RunOptions& options, const ResumedRun& run, std::int64_t last_step) {
+  const std::optional<CheckpointRecording>& before = run.notes.recording;
+  if (options.record.empty()) {
+    if (before) warn(before->path + " is not continued; give --record to continue it");
+    return nullptr;
   }
-  add_failed(report, std::move(gathered.failed));
-  const int status = report_results(options, report);
-  recorder->finish();  // it may fail, so it comes last
-  return status;
+  const auto reader = recording_before(*before);
+  return std::make_unique<Recorder>(run.simulation, options.record,
+                                    RecordingOptions{.every = before->every,
+                                                     .first_step = 0,
+                                                     .last_step = last_step,
+                                                     .seed = run.notes.seed,
+                                                     .deflate = before->compressed ? 1 : 0},
+                                    RecordingStart{*reader, before->frames});
+}
+
+int run_resumed(RunOptions options) {
+  validate_resume(options);
+  Checkpoint checkpoint = load_checkpoint(options.resume);
+  const Configuration& configuration = checkpoint.configuration;
+  if (!options.record.empty() && !checkpoint.notes.recording)
+    throw InputError("--record", options.resume + " is from a run without a recording; leave it out");
+  prepare_outputs(options, checkpoint.notes.recording ? checkpoint.notes.recording->path : "");
+  TrialSettings trials{.seconds = options.simulation.seconds(checkpoint.notes.seconds),
+                       .settle = checkpoint.notes.settle,
+                       .strain_limit = checkpoint.notes.strain_limit};
+  validate(trials);
+  const double steps = std::round(trials.seconds / configuration.dt);
+  if (!(steps <= 1e15) || steps < static_cast<double>(checkpoint.state.clock.step))
+    throw InputError("--seconds", fmt::format("{} is not accepted; {} has come to {:.6g} s", trials.seconds,
+                                              options.resume, time_of(checkpoint.state.clock)));
+  if (options.output.dry_run()) {
+    if (checkpoint.notes.recording) options.every = checkpoint.notes.recording->every;
+    return describe_work(options, configuration, static_cast<std::int64_t>(steps), size_text(checkpoint.robots));
+  }
+  const Device device = options.simulation.configuration().device;
+  ResumedRun run = resumed_run(std::move(checkpoint), options.resume, device);
+  print_notes(run.simulation.notes());
+  CheckpointNotes notes = run.notes;
+  notes.seconds = trials.seconds;
+  if (options.record.empty())
+    notes.recording.reset();
+  else
+    notes.recording->path = std::filesystem::absolute(options.record).string();
+  return run_watched(
+      options, continue_recording(options, run, static_cast<std::int64_t>(steps)),
+      checkpoints_of(options, std::move(notes)), std::move(run.failed), [&](const StepObservers& observers) {
+        return resume(run.simulation, std::move(run.identities), trials, observers, std::move(run.progress));
+      });
 }
 
 int run(const RunOptions& options) {
-  prepare_outputs(options);
+  if (options.resume.empty()) prepare_outputs(options);
   if (options.json && is_standard_output(options.csv))
     throw InputError("--csv", options.csv + " and --json both mean standard output; give --csv a file");
   validate_recording(options);
+  if (!options.resume.empty()) return run_resumed(options);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
   options.simulation.configuration();  // errors in options come before those in files
   TrialSettings trials = options.trials;
@@ -197,7 +321,7 @@ int run(const RunOptions& options) {
   print_notes(notes);
   if (options.output.dry_run())
     return describe_work(options, configuration, options.simulation.steps(), size_text(robots));
-  if (!options.record.empty()) return run_recorded(options, robots, configuration, trials);
+  if (!options.record.empty() || !options.checkpoint.empty()) return run_in_one(options, robots, configuration, trials);
   const RunReport report = evaluate(robots, configuration, trials);
   print_notes(report.notes);
   return report_results(options, report);
@@ -216,6 +340,11 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
            "FILE.h5");
   add_number(*command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
+  add_text(*command, "--checkpoint", options->checkpoint,
+           "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
+  add_number(*command, "--checkpoint-every", options->checkpoint_every,
+             "Wall time between two checkpoints (default 60)", "S");
+  add_text(*command, "--resume", options->resume, "Go on with the run of a checkpoint, bit for bit", "FILE.h5");
   options->output.add_to(*command);
   command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
@@ -232,6 +361,8 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"
+      "  mercury run my-robots --seconds 3600 --checkpoint long.h5\n"
+      "  mercury run --resume long.h5 --checkpoint long.h5        (goes on after a crash)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
   command->callback([options, choose] { choose([options] { return options->robots.status(run(*options)); }); });

@@ -27,18 +27,23 @@ namespace {
 // Steps a simulation to a step, with those who take part. Returns false once the user interrupts.
 class Advance {
  public:
-  Advance(Simulation& simulation, const StepObservers& observers, std::int64_t end)
-      : simulation_(simulation), observers_(observers), stepper_(simulation), first_(simulation.steps()),
-        progress_("simulating", "steps", end - first_) {}
+  // `stride` = steps between two looks at the time for a checkpoint.
+  Advance(Simulation& simulation, const StepObservers& observers, const TrialProgress& trial, std::int64_t end,
+          std::int64_t stride)
+      : simulation_(simulation), observers_(observers), trial_(trial), stepper_(simulation), first_(simulation.steps()),
+        stride_(stride), progress_("simulating", "steps", end - first_) {}
 
   bool to(std::int64_t target) {
-    const auto& [recorder, changes] = observers_;
+    const auto& [recorder, changes, checkpoints] = observers_;
     while (simulation_.steps() < target) {
       if (changes) changes->apply(simulation_);
       std::int64_t stop = changes ? std::min(target, changes->next_step()) : target;
       if (recorder) stop = std::min(stop, recorder->next_step());
-      if (!stepper_.advance_to(stop)) return false;
-      if (recorder) recorder->observe();
+      if (checkpoints) stop = std::min(stop, simulation_.steps() + stride_);
+      const bool goes_on = stepper_.advance_to(stop);
+      if (goes_on && recorder) recorder->observe();
+      if (!goes_on) return false;
+      if (checkpoints && checkpoints->due()) checkpoints->write(simulation_, trial_, recorder);
       progress_.update(simulation_.steps() - first_);
     }
     return true;
@@ -49,8 +54,9 @@ class Advance {
  private:
   Simulation& simulation_;
   const StepObservers observers_;
+  const TrialProgress& trial_;
   Stepper stepper_;
-  const std::int64_t first_;
+  const std::int64_t first_, stride_;
   Progress progress_;
 };
 
@@ -90,6 +96,46 @@ void report_failures(const RobotSequence& robots, std::span<const RobotResult> r
       throw InputError("--random", "none could be grown: " + (*std::ranges::find_if(failed, is_of_request))->failure);
   }
   for (const RobotResult* robot : failed) report_failure(*robot);
+}
+
+// A trial that began at step `first` and has come to `trial`. A sample that is not complete at the end counts for the
+// results, but not for the last checkpoint: a run that goes on from there completes it.
+RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
+                  const StepObservers& observers, std::int64_t first, TrialProgress trial) {
+  const EvaluationRequest request = trial_request(trials, simulation.configuration());
+  const std::int64_t start = first + request.settling, end = start + request.steps;
+  Advance advance(simulation, observers, trial, end, request.sample_every);
+  RunReport report{.settle = trials.settle, .interrupted = trial.sampled < 0 && !advance.to(start)};
+  if (trial.sampled < 0 && !report.interrupted) {
+    for (const Telemetry& telemetry : simulation.telemetry()) trial.measures.emplace_back(telemetry);
+    trial.sampled = simulation.steps();
+  }
+  const auto add_sample = [&] {
+    const double seconds = simulation.configuration().dt * static_cast<double>(simulation.steps() - trial.sampled);
+    const std::vector<Telemetry> now = simulation.telemetry();
+    if (seconds > 0)
+      for (std::size_t i = 0; i < now.size(); ++i) trial.measures[i].add(now[i], seconds);
+    trial.sampled = simulation.steps();
+  };
+  while (!report.interrupted && simulation.steps() < end) {
+    const std::int64_t next = trial.sampled + request.sample_every;
+    report.interrupted = !advance.to(std::min(end, next));
+    if (!report.interrupted && simulation.steps() == next) add_sample();
+  }
+  if (observers.checkpoints) observers.checkpoints->write(simulation, trial, observers.recorder);
+  if (trial.sampled >= 0) {
+    if (trial.sampled < simulation.steps()) add_sample();
+    for (const Evaluation& robot : evaluations_of(simulation, trial.measures, simulation.steps() - start))
+      report.robots.push_back(result_of(std::move(identities[robot.index]), robot, request, trials.strain_limit));
+  }
+  report.missing = simulation.size() - report.robots.size();
+  report.configuration = simulation.configuration();
+  report.device = simulation.device_name();
+  report.steps = simulation.steps();
+  report.seconds = simulation.time();
+  report.wall_seconds = advance.wall_seconds();
+  report.notes = simulation.notes();
+  return report;
 }
 
 }  // namespace
@@ -141,31 +187,12 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
 
 RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
                    const StepObservers& observers) {
-  const EvaluationRequest request = trial_request(trials, simulation.configuration());
-  const std::int64_t start = simulation.steps() + request.settling, end = start + request.steps;
-  Advance advance(simulation, observers, end);
-  RunReport report{.settle = trials.settle, .interrupted = !advance.to(start)};
-  if (!report.interrupted) {
-    std::vector<TrialMeasures> measures;
-    for (const Telemetry& telemetry : simulation.telemetry()) measures.emplace_back(telemetry);
-    for (std::int64_t sampled = start; !report.interrupted && sampled < end; sampled = simulation.steps()) {
-      report.interrupted = !advance.to(std::min(end, sampled + request.sample_every));
-      const double seconds = simulation.configuration().dt * static_cast<double>(simulation.steps() - sampled);
-      const std::vector<Telemetry> now = simulation.telemetry();
-      if (seconds > 0)
-        for (std::size_t i = 0; i < now.size(); ++i) measures[i].add(now[i], seconds);
-    }
-    for (const Evaluation& robot : evaluations_of(simulation, measures, simulation.steps() - start))
-      report.robots.push_back(result_of(std::move(identities[robot.index]), robot, request, trials.strain_limit));
-  }
-  report.missing = simulation.size() - report.robots.size();
-  report.configuration = simulation.configuration();
-  report.device = simulation.device_name();
-  report.steps = simulation.steps();
-  report.seconds = simulation.time();
-  report.wall_seconds = advance.wall_seconds();
-  report.notes = simulation.notes();
-  return report;
+  return measure(simulation, std::move(identities), trials, observers, simulation.steps(), {});
+}
+
+RunReport resume(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
+                 const StepObservers& observers, TrialProgress progress) {
+  return measure(simulation, std::move(identities), trials, observers, 0, std::move(progress));
 }
 
 GatheredRobots gather(const RobotSequence& robots) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/commands/run_checkpoints.h"
 #include "app/commands/run_report.h"
 #include "app/options/robot_options.h"
 #include "app/recording/recorder.h"
@@ -39,12 +40,16 @@ GatheredRobots gather(const RobotSequence& robots);
 struct StepObservers {
   Recorder* recorder = nullptr;
   ReproChanges* changes = nullptr;
+  Checkpoints* checkpoints = nullptr;
 };
 
 // Simulates the robots of a simulation, `identities`, from where it stands, as one trial. If the user interrupts while
 // they settle, the report holds no robot.
 RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
                    const StepObservers& observers);
+// The rest of a trial that began at step 0 and has come to `progress`.
+RunReport resume(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
+                 const StepObservers& observers, TrialProgress progress);
 
 // Puts robots that could not be made in their places.
 void add_failed(RunReport& report, std::vector<RobotResult> failed);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "mercury/error.h"
+
 namespace mercury {
 namespace {
 
@@ -14,12 +16,13 @@ std::vector<const Robot*> robots_of(const Simulation& simulation) {
 }
 
 TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions& options) {
-  const std::int64_t steps = options.last_step.value_or(0) - simulation.steps();
+  const std::int64_t steps = options.last_step.value_or(0) - options.first_step.value_or(simulation.steps());
   return {.configuration = simulation.configuration(),
           .device_name = simulation.device_name(),
           .seed = options.seed,
           .every = options.every,
           .expected_frames = options.last_step ? steps / options.every + 1 : 0,
+          .time = simulation.clock(),
           .deflate = options.deflate};
 }
 
@@ -31,6 +34,25 @@ Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& pa
   take();
 }
 
+Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
+                   const RecordingStart& start)
+    : simulation_(simulation), every_(options.every), next_(simulation.steps()),
+      writer_(path, header_of(simulation, options), robots_of(simulation), simulation.materials(), "--record") {
+  TrajectoryReader& before = start.recording;
+  const auto frames = static_cast<std::size_t>(start.frames);
+  if (frames < 1 || before.frames() < frames || before.every() != every_ ||
+      before.mass_count() != simulation.mass_count() || before.robots().size() != simulation.size() ||
+      before.step(frames - 1) > simulation.steps())
+    throw InputError(before.path().string(), "is not the beginning of this recording");
+  for (std::size_t i = 0; i < frames; ++i) {
+    const TrajectoryWriter::Frame frame = writer_.add(before.step(i), before.time(i));
+    std::ranges::copy(before.positions(i), frame.positions.begin());
+    std::ranges::copy(before.velocities(i), frame.velocities.begin());
+    writer_.commit();
+  }
+  set_next(before.step(frames - 1));
+}
+
 void Recorder::observe() {
   if (simulation_.steps() >= next_) take();
 }
@@ -40,7 +62,11 @@ void Recorder::take() {
   simulation_.read_positions(frame.positions);
   simulation_.read_velocities(frame.velocities);
   writer_.commit();
-  next_ = simulation_.steps() + std::min(every_, std::numeric_limits<std::int64_t>::max() - simulation_.steps());
+  set_next(simulation_.steps());
+}
+
+void Recorder::set_next(std::int64_t last_frame) {
+  next_ = last_frame + std::min(every_, std::numeric_limits<std::int64_t>::max() - last_frame);
 }
 
 void Recorder::finish() { writer_.finish(simulation_.telemetry()); }

@@ -3,9 +3,11 @@
 // expected kind too.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,20 @@ void read_dataset(hid_t dataset, hid_t memory_type, void* content);
 // time, with more rows, may have the checksum of neither: its first rows, which did not change, are read without the
 // check.
 void read_last_rows(hid_t dataset, hid_t memory_type, hid_t memory, hid_t selection, void* content);
+// All elements of a dataset of any length whose elements have the extent `row`.
+template <class Element>
+std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memory_type, const Extent& row) {
+  const Handle dataset = open_dataset(parent, name);
+  const Extent extent = extent_of(dataset);
+  if (extent.size() != row.size() + 1 || !std::equal(row.begin(), row.end(), extent.begin() + 1))
+    throw Error("\"" + name + "\" has another shape");
+  if (extent[0] > std::numeric_limits<std::uint64_t>::max() / sizeof(Element))
+    throw Error("\"" + name + "\" is too large");
+  require_content(dataset, extent[0] * sizeof(Element));
+  std::vector<Element> rows(extent[0]);
+  if (!rows.empty()) read_dataset(dataset, memory_type, rows.data());
+  return rows;
+}
 std::string read_text_dataset(hid_t parent, const std::string& name);
 std::vector<std::string> read_texts_dataset(hid_t parent, const std::string& name);
 

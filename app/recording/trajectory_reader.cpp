@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
@@ -17,21 +16,6 @@ namespace {
 using namespace hdf5;
 
 constexpr std::size_t held_bytes = std::size_t{64} << 20;
-
-// All elements of a dataset of any length whose elements have the extent `row`.
-template <class Element>
-std::vector<Element> read_rows(hid_t parent, const std::string& name, hid_t memory_type, const Extent& row) {
-  const Handle dataset = open_dataset(parent, name);
-  const Extent extent = extent_of(dataset);
-  if (extent.size() != row.size() + 1 || !std::equal(row.begin(), row.end(), extent.begin() + 1))
-    throw Error("\"" + name + "\" has another shape");
-  if (extent[0] > std::numeric_limits<std::uint64_t>::max() / sizeof(Element))
-    throw Error("\"" + name + "\" is too large");
-  require_content(dataset, extent[0] * sizeof(Element));
-  std::vector<Element> rows(extent[0]);
-  if (!rows.empty()) read_dataset(dataset, memory_type, rows.data());
-  return rows;
-}
 
 Configuration read_configuration(hid_t parameters) {
   const auto read = [&]<class Value>(const auto& parameter, Value& value) {
@@ -179,6 +163,8 @@ void TrajectoryReader::read_parameters() {
   for (std::size_t i = 0; i < times_.size(); ++i)
     if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1] && steps_[i] > steps_[i - 1])))
       throw Error("the times of its frames do not grow");
+  if (!steps_.empty() && steps_.front() < 0) throw Error("the steps of its frames are negative");
+  read_base(parameters);
 }
 
 // The program that writes the file may be ahead with one of the two.
@@ -260,6 +246,38 @@ void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
     if (extent != Extent{steps_.size(), masses, 3})
       throw Error(std::string(element) + "/value has another shape than its masses and the file's frames");
   }
+}
+
+// A clock that does not agree with the first frame is not that of its simulation: an older program did not record it.
+void TrajectoryReader::read_base(hid_t parameters) {
+  base_ = {.dt = configuration_.dt};
+  if (steps_.empty()) return;
+  if (has_attribute(parameters, "base_step"))
+    base_ = {.dt = configuration_.dt,
+             .base_time = read_attribute<double>(parameters, "base_time"),
+             .base_step = read_attribute<std::int64_t>(parameters, "base_step")};
+  if (!std::isfinite(base_.base_time) || base_.base_step < 0 || steps_.front() < base_.base_step)
+    throw Error("its base_time or base_step is out of range");
+  base_.step = steps_.front();
+  if (time_of(base_) != times_.front())
+    base_ = {.dt = configuration_.dt, .base_time = times_.front(), .base_step = steps_.front()};
+}
+
+Clock TrajectoryReader::clock(std::size_t frame) const {
+  Clock clock = base_;
+  clock.step = step(frame);
+  return clock;
+}
+
+BatchState TrajectoryReader::state(std::size_t frame) {
+  BatchState state{.clock = clock(frame), .positions = {}, .velocities = {}, .explosions = {}};
+  const auto copied = [](std::span<const Vec3> values) { return std::vector<Vec3>(values.begin(), values.end()); };
+  state.positions = copied(positions(frame));
+  state.velocities = copied(velocities(frame));
+  for (std::size_t i = 0; i < robots_.size(); ++i)
+    if (const auto& at = robots_[i].exploded_at; at && *at < time(frame))
+      state.explosions.push_back({i, state.clock.step, *at, robots_[i].culprit_spring.value_or(no_spring)});
+  return state;
 }
 
 std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "app/recording/trajectory_hdf5.h"
+#include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
+#include "mercury/state.h"
 
 namespace mercury {
 
@@ -44,6 +46,10 @@ class TrajectoryReader {
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
   double time(std::size_t frame) const { return times_.at(frame); }  // [s]
+  // The exact instant of a frame.
+  Clock clock(std::size_t frame) const;
+  // The state at a frame, from which a simulation of robots() and configuration() goes on bit for bit.
+  BatchState state(std::size_t frame);
   // The last frame at or before a time or step; 0 if that is before the first frame.
   std::size_t frame_at(double time) const;
   std::size_t frame_of_step(std::int64_t step) const;
@@ -73,6 +79,7 @@ class TrajectoryReader {
   static constexpr std::size_t all_robots = static_cast<std::size_t>(-1);
 
   void read_parameters();
+  void read_base(hid_t parameters);
   void read_unfinished_times(hid_t parameters);
   void require_chunks(hid_t dataset, std::size_t first, std::size_t count) const;
   void read_robots();
@@ -93,6 +100,7 @@ class TrajectoryReader {
   std::string device_name_, program_;
   std::optional<std::uint64_t> seed_;
   std::int64_t every_ = 1;
+  Clock base_;
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;
   std::vector<RecordedRobot> robots_;

@@ -125,6 +125,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
       write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
       watch("writing robots", i + 1, robots.size());
     }
+    if (header.more) header.more(file_);
   });
   last_commit_ = last_flush_ = clock_();
 }
@@ -150,6 +151,10 @@ void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
   write_attribute(parameters_, "format", std::int32_t{trajectory_format});
   write_attribute(parameters_, "every", header.every);
   if (header.seed) write_attribute(parameters_, "seed", *header.seed);
+  if (header.time.base_step != 0 || header.time.base_time != 0) {
+    write_attribute(parameters_, "base_step", header.time.base_step);
+    write_attribute(parameters_, "base_time", header.time.base_time);
+  }
   write_text(parameters_, "device_name", header.device_name);
   write_configuration(parameters_, header.configuration);
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/recording/trajectory_hdf5.h"
+#include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
 #include "mercury/telemetry.h"
@@ -23,13 +25,15 @@ double wall_clock();
 // Everything in a trajectory except robots and frames.
 struct TrajectoryHeader {
   Configuration configuration;
-  std::string device_name;            // for people
-  std::optional<std::uint64_t> seed;  // of the random robots, if any
-  std::int64_t every = 1;             // steps per frame
-  std::int64_t expected_frames = 0;   // 0 = unknown
-  int deflate = 0;                    // compression of the frames: 0 = none, 1 (fast) .. 9
-  double flush_period = 5;            // [s] of wall time from one flush to the next; 0 = flush each frame
-  double (*clock)() = wall_clock;     // [s]; tests set their own
+  std::string device_name;               // for people
+  std::optional<std::uint64_t> seed;     // of the random robots, if any
+  std::int64_t every = 1;                // steps per frame
+  std::int64_t expected_frames = 0;      // 0 = unknown
+  Clock time;                            // of the simulation: its base, from which times count
+  int deflate = 0;                       // compression of the frames: 0 = none, 1 (fast) .. 9
+  double flush_period = 5;               // [s] of wall time from one flush to the next; 0 = flush each frame
+  double (*clock)() = wall_clock;        // [s]; tests set their own
+  std::function<void(hid_t file)> more;  // writes what else the file has, before the frames; throws hdf5::Error
 };
 
 // Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.
@@ -66,6 +70,11 @@ class TrajectoryWriter {
   // Writes and flushes what is due. Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
   void commit();
 
+  // Writes all frames so far, so that they survive the program. Throws like commit().
+  void flush();
+  // The temporary name that the file has until finish().
+  const std::filesystem::path& unfinished_path() const { return unfinished_.path(); }
+
   // Records which robots exploded (`telemetry` has one element per robot, or none if it is unknown), closes the file
   // and gives it its name. Throws like commit().
   void finish(std::span<const Telemetry> telemetry);
@@ -84,7 +93,6 @@ class TrajectoryWriter {
   void write_block();
   void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
   bool survives_kill() const;  // otherwise the file can be read only once it is complete
-  void flush();
   template <class Work>
   void guarded(const Work& work);
 

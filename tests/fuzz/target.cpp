@@ -57,6 +57,7 @@ std::span<const Target> targets() {
                                   Target{"robot_cbor", "robot", robot_cbor_seeds, check_robot_cbor},
                                   Target{"repro", "repro", repro_seeds, check_repro},
                                   Target{"recording", "recording", recording_seeds, check_recording},
+                                  Target{"checkpoint", "recording", checkpoint_seeds, check_checkpoint},
                                   Target{"run_file", "run_file", run_file_seeds, check_run_file},
                                   Target{"journal", "journal", journal_seeds, check_journal},
                                   Target{"genome", "journal", genome_seeds, check_genome},

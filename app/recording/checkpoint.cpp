@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/recording/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "app/recording/trajectory_hdf5_reading.h"
+#include "app/recording/trajectory_hdf5_writing.h"
+#include "app/recording/trajectory_reader.h"
+#include "app/recording/trajectory_writer.h"
+#include "mercury/error.h"
+
+namespace mercury {
+namespace {
+
+using namespace hdf5;
+
+constexpr std::int32_t checkpoint_version = 1;
+constexpr const char* group_name = "checkpoint";
+
+// A robot's sums as a row of doubles: every float and every number of a spring is one exactly.
+constexpr std::size_t telemetry_numbers = 14, row_numbers = 2 * telemetry_numbers + 5;
+using Row = std::array<double, row_numbers>;
+
+void append(const Telemetry& telemetry, double*& out) {
+  for (const Vec3 v : {telemetry.center_of_mass, telemetry.velocity})
+    for (const float number : {v.x, v.y, v.z}) *out++ = static_cast<double>(number);
+  for (const double number :
+       {telemetry.kinetic_energy, telemetry.elastic_energy, telemetry.muscle_power,
+        static_cast<double>(telemetry.largest_strain), static_cast<double>(telemetry.strained_share),
+        telemetry.exploded ? 1.0 : 0.0, telemetry.exploded_at, static_cast<double>(telemetry.culprit_spring)})
+    *out++ = number;
+}
+
+Row row_of(const TrialMeasures::Sums& sums) {
+  Row row{};
+  double* out = row.data();
+  append(sums.start, out);
+  append(sums.last, out);
+  for (const double number : {sums.path, sums.work, sums.highest, sums.largest_strain, sums.strained_share})
+    *out++ = number;
+  return row;
+}
+
+float float_of(double number) {
+  if (std::isfinite(number) && std::abs(number) > static_cast<double>(std::numeric_limits<float>::max()))
+    throw Error("/checkpoint/measures: a number is out of range");
+  return static_cast<float>(number);
+}
+
+Telemetry telemetry_from(const double*& in) {
+  Telemetry telemetry;
+  for (Vec3* v : {&telemetry.center_of_mass, &telemetry.velocity})
+    for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) v->*axis = float_of(*in++);
+  telemetry.kinetic_energy = *in++;
+  telemetry.elastic_energy = *in++;
+  telemetry.muscle_power = *in++;
+  telemetry.largest_strain = float_of(*in++);
+  telemetry.strained_share = float_of(*in++);
+  telemetry.exploded = *in++ != 0;
+  telemetry.exploded_at = *in++;
+  const double spring = *in++;
+  if (!(spring >= 0 && spring <= static_cast<double>(no_spring)))
+    throw Error("/checkpoint/measures: a spring is out of range");
+  telemetry.culprit_spring = static_cast<std::uint32_t>(spring);
+  return telemetry;
+}
+
+TrialMeasures::Sums sums_from(const Row& row) {
+  const double* in = row.data();
+  TrialMeasures::Sums sums;
+  sums.start = telemetry_from(in);
+  sums.last = telemetry_from(in);
+  for (double TrialMeasures::Sums::*number :
+       {&TrialMeasures::Sums::path, &TrialMeasures::Sums::work, &TrialMeasures::Sums::highest,
+        &TrialMeasures::Sums::largest_strain, &TrialMeasures::Sums::strained_share})
+    sums.*number = *in++;
+  return sums;
+}
+
+void write_robots(hid_t parent, const std::string& name, std::span<const CheckpointRobot> robots) {
+  const Handle group = create_group(parent, name);
+  std::vector<std::uint64_t> indices;
+  for (const CheckpointRobot& robot : robots) indices.push_back(robot.index);
+  write_dataset(group, "index", H5T_STD_U64LE, H5T_NATIVE_UINT64, {indices.size()}, indices.data());
+  const auto write = [&](const char* of, std::string CheckpointRobot::*text) {
+    std::vector<std::string> texts;
+    for (const CheckpointRobot& robot : robots) texts.push_back(robot.*text);
+    write_text_dataset(group, of, texts);
+  };
+  write("name", &CheckpointRobot::name);
+  write("file", &CheckpointRobot::file);
+  write("random", &CheckpointRobot::random);
+  write("failure", &CheckpointRobot::failure);
+}
+
+std::vector<CheckpointRobot> read_robots(hid_t parent, const std::string& name) {
+  const Handle group = open_group(parent, name);
+  const auto indices = read_rows<std::uint64_t>(group, "index", H5T_NATIVE_UINT64, {});
+  std::vector<CheckpointRobot> robots(indices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) robots[i].index = indices[i];
+  const auto read = [&](const char* of, std::string CheckpointRobot::*text) {
+    std::vector<std::string> texts = read_texts_dataset(group, of);
+    if (texts.size() != robots.size()) throw Error(fmt::format("/checkpoint/{}: {} has another length", name, of));
+    for (std::size_t i = 0; i < texts.size(); ++i) robots[i].*text = std::move(texts[i]);
+  };
+  read("name", &CheckpointRobot::name);
+  read("file", &CheckpointRobot::file);
+  read("random", &CheckpointRobot::random);
+  read("failure", &CheckpointRobot::failure);
+  return robots;
+}
+
+void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes& notes) {
+  const Handle group = create_group(file, group_name);
+  write_attribute(group, "version", checkpoint_version);
+  write_text(group, "backend", name_of(Device{.kind = backend_of(simulation)}));
+  write_attribute(group, "seconds", notes.seconds);
+  write_attribute(group, "settle", notes.settle);
+  write_attribute(group, "strain_limit", notes.strain_limit);
+  write_attribute(group, "sampled", notes.sampled);
+  write_robots(group, "robots", notes.robots);
+  write_robots(group, "failed", notes.failed);
+  std::vector<Row> rows;
+  for (const TrialMeasures::Sums& sums : notes.measures) rows.push_back(row_of(sums));
+  write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
+  if (!notes.recording) return;
+  const Handle recording = create_group(group, "recording");
+  write_text(recording, "path", notes.recording->path);
+  write_text(recording, "unfinished", notes.recording->unfinished);
+  write_attribute(recording, "frames", notes.recording->frames);
+  write_attribute(recording, "every", notes.recording->every);
+  write_attribute(recording, "compressed", std::uint8_t{notes.recording->compressed});
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw Error(std::string("/checkpoint: ") + what);
+}
+
+CheckpointNotes read_notes(hid_t group) {
+  CheckpointNotes notes{.seconds = read_attribute<double>(group, "seconds"),
+                        .settle = read_attribute<double>(group, "settle"),
+                        .strain_limit = read_attribute<double>(group, "strain_limit"),
+                        .sampled = read_attribute<std::int64_t>(group, "sampled"),
+                        .robots = read_robots(group, "robots"),
+                        .failed = read_robots(group, "failed")};
+  for (const Row& row : read_rows<Row>(group, "measures", H5T_NATIVE_DOUBLE, {row_numbers}))
+    notes.measures.push_back(sums_from(row));
+  if (!has_member(group, "recording")) return notes;
+  const Handle recording = open_group(group, "recording");
+  notes.recording = {.path = read_text(recording, "path"),
+                     .unfinished = read_text(recording, "unfinished"),
+                     .frames = read_attribute<std::int64_t>(recording, "frames"),
+                     .every = read_attribute<std::int64_t>(recording, "every"),
+                     .compressed = read_attribute<std::uint8_t>(recording, "compressed") != 0};
+  require(notes.recording->frames >= 1 && notes.recording->every >= 1, "the frames of its recording are out of range");
+  return notes;
+}
+
+void validate_notes(const CheckpointNotes& notes, std::size_t robots, std::int64_t step) {
+  const bool fits = notes.sampled < 0 ? notes.measures.empty() : notes.measures.size() == robots;
+  require(notes.robots.size() == robots && fits, "its robots and measures differ in number");
+  require(notes.sampled >= -1 && notes.sampled <= step, "the step of its last sample is out of range");
+  require(std::isfinite(notes.seconds) && notes.seconds >= 0 && std::isfinite(notes.settle) && notes.settle >= 0 &&
+              notes.settle <= notes.seconds && notes.strain_limit >= 0,
+          "seconds, settle or strain_limit is out of range");
+}
+
+}  // namespace
+
+DeviceKind backend_of(const Simulation& simulation) {
+  return simulation.device_name().starts_with("CPU") ? DeviceKind::cpu : DeviceKind::cuda;
+}
+
+void save_checkpoint(const std::filesystem::path& path, const Simulation& simulation, const CheckpointNotes& notes) {
+  std::vector<const Robot*> robots;
+  for (std::size_t i = 0; i < simulation.size(); ++i) robots.push_back(&simulation.robot(i));
+  TrajectoryWriter writer(path,
+                          {.configuration = simulation.configuration(),
+                           .device_name = simulation.device_name(),
+                           .seed = notes.seed,
+                           .expected_frames = 1,
+                           .time = simulation.clock(),
+                           .more = [&](hid_t file) { write_notes(file, simulation, notes); }},
+                          robots, simulation.materials(), "--checkpoint");
+  const TrajectoryWriter::Frame frame = writer.add(simulation.steps(), simulation.time());
+  simulation.read_positions(frame.positions);
+  simulation.read_velocities(frame.velocities);
+  writer.commit();
+  writer.finish(simulation.telemetry());
+}
+
+Checkpoint load_checkpoint(const std::filesystem::path& path) {
+  TrajectoryReader reader(path);
+  Checkpoint checkpoint{.robots = {},
+                        .configuration = reader.configuration(),
+                        .device_name = reader.device_name(),
+                        .state = {},
+                        .notes = {}};
+  try {
+    bool unfinished = false;
+    const Handle file = open_file(path, unfinished);
+    if (!has_member(file, group_name)) throw Error("is a recording, not a checkpoint of mercury run --checkpoint");
+    if (reader.unfinished() || unfinished || reader.frames() != 1) throw Error("is not a complete checkpoint");
+    const Handle group = open_group(file, group_name);
+    if (const auto version = read_attribute<std::int32_t>(group, "version"); version != checkpoint_version)
+      throw Error(
+          fmt::format("is a checkpoint of version {}; this program reads version {}", version, checkpoint_version));
+    checkpoint.backend = device_named(read_text(group, "backend")).kind;
+    checkpoint.notes = read_notes(group);
+    checkpoint.notes.seed = reader.seed();
+    validate_notes(checkpoint.notes, reader.robots().size(), reader.step(0));
+  } catch (const Error& error) {
+    throw InputError(path.string(), error.what());
+  } catch (const InputError& error) {
+    throw InputError(path.string(), error.what());
+  }
+  checkpoint.state = reader.state(0);
+  for (const RecordedRobot& recorded : reader.robots()) checkpoint.robots.push_back(recorded.robot);
+  return checkpoint;
+}
+
+}  // namespace mercury

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury run --checkpoint and --resume: a run that was killed ends as if it had not been; mercury verify.
+#include <gmock/gmock.h>
+#include <hdf5.h>
+
+#include <thread>
+
+#include "app/recording/trajectory_reader.h"
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+using Arguments = std::vector<std::string>;
+
+Arguments operator+(Arguments a, const Arguments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+json robots_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  return json::parse(outcome.output, nullptr, false)["robots"];
+}
+
+class Checkpoint : public FolderTest {
+ protected:
+  const Arguments run_{"run",     "--random",  "voxel:3", "--seed",        "4",   "--seconds",
+                       "1.23",    "--settle",  "0.1",     "--device",      "cpu", "--json",
+                       "--quiet", "--threads", "1",       "--environment", "land"};
+  // The same run, killed as soon as it has saved a checkpoint.
+  void kill(const Arguments& more) {
+    Arguments arguments = run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"} + more;
+    ChildProcess child(MERCURY_PROGRAM, arguments);
+    while (!std::filesystem::exists(path("c.h5")) && child.running()) std::this_thread::yield();
+    child.kill();
+  }
+  const Arguments resume_{"run", "--resume", path("c.h5"), "--json", "--quiet"};
+  Outcome refused(const Arguments& arguments) {
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.messages;
+    EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+    return outcome;
+  }
+  // Expects two recordings to hold the same.
+  void expect_same(const std::string& a, const std::string& b) {
+    TrajectoryReader first(a), second(b);
+    ASSERT_EQ(first.frames(), second.frames());
+    ASSERT_EQ(first.robots().size(), second.robots().size());
+    EXPECT_EQ(first.every(), second.every());
+    EXPECT_EQ(first.configuration(), second.configuration());
+    for (std::size_t i = 0; i < first.robots().size(); ++i)
+      EXPECT_EQ(first.robots()[i].robot, second.robots()[i].robot);
+    for (std::size_t i = 0; i < first.frames(); ++i) {
+      EXPECT_EQ(first.step(i), second.step(i));
+      EXPECT_EQ(first.time(i), second.time(i));
+      EXPECT_TRUE(std::ranges::equal(first.positions(i), second.positions(i))) << "frame " << i;
+      EXPECT_TRUE(std::ranges::equal(first.velocities(i), second.velocities(i))) << "frame " << i;
+    }
+  }
+};
+
+TEST_F(Checkpoint, ARunThatWasKilledEndsAsOneThatWasNot) {
+  const json whole = robots_of(mercury(run_));
+  kill({});
+  EXPECT_EQ(robots_of(mercury(resume_)), whole);
+}
+
+TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
+  const json whole = robots_of(mercury(run_));
+  EXPECT_EQ(robots_of(mercury(run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"})), whole);
+  EXPECT_EQ(robots_of(mercury(resume_)), whole);
+  EXPECT_EQ(TrajectoryReader(path("c.h5")).step(0), 1230);
+  EXPECT_THAT(listing(), SizeIs(1));
+}
+
+TEST_F(Checkpoint, ItCanGoOnForLonger) {
+  Arguments longer = run_;
+  *(std::ranges::find(longer, "1.23")) = "1.5";
+  const json whole = robots_of(mercury(longer));
+  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  EXPECT_EQ(robots_of(mercury(resume_ + Arguments{"--seconds", "1.5"})), whole);
+}
+
+TEST_F(Checkpoint, ARunThatWasStoppedTwiceGoesOn) {
+  const json whole = robots_of(mercury(run_));
+  kill({});
+  ChildProcess child(MERCURY_PROGRAM, resume_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
+  const auto first = std::filesystem::last_write_time(path("c.h5"));
+  while (std::filesystem::last_write_time(path("c.h5")) == first && child.running()) std::this_thread::yield();
+  child.kill();
+  EXPECT_EQ(robots_of(mercury(resume_)), whole);
+}
+
+TEST_F(Checkpoint, ARecordingIsContinued) {
+  const Arguments record{"--record", path("a.h5"), "--every", "7"};
+  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5"), "--every", "7"}));
+  kill(record);
+  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  expect_same(path("a.h5"), path("whole.h5"));
+}
+
+TEST_F(Checkpoint, ARecordingThatIsNotThereIsReported) {
+  kill({"--record", path("a.h5")});
+  for (const std::string& name : listing())
+    if (name.ends_with(".part")) std::filesystem::remove(path(name));
+  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5")}).messages, HasSubstr("cannot be continued"));
+  const Outcome without = mercury(resume_);
+  EXPECT_EQ(without.status, 0);
+  EXPECT_THAT(without.messages, HasSubstr("is not continued"));
+}
+
+TEST_F(Checkpoint, OptionsThatItHasAreRefused) {
+  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  EXPECT_THAT(refused(resume_ + Arguments{"--random", "voxel:2"}).messages, HasSubstr("give no others"));
+  EXPECT_THAT(refused(resume_ + Arguments{"--dt", "0.01"}).messages, HasSubstr("its own configuration"));
+  EXPECT_THAT(refused(resume_ + Arguments{"--seconds", "0.5"}).messages, HasSubstr("has come to 1.23 s"));
+  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5")}).messages, HasSubstr("without a recording"));
+  EXPECT_THAT(refused(run_ + Arguments{"--checkpoint-every", "5"}).messages, HasSubstr("goes with --checkpoint"));
+  EXPECT_THAT(refused(run_ + Arguments{"--checkpoint", path("c.h5")}).messages, HasSubstr("exists"));
+}
+
+TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
+  write("text.h5", "nothing");
+  EXPECT_THAT(refused({"run", "--resume", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
+  EXPECT_THAT(refused({"run", "--resume", path("missing.h5")}).messages, HasSubstr("missing.h5"));
+  ASSERT_EQ(mercury(run_ + Arguments{"--record", path("r.h5")}).status, 0);
+  EXPECT_THAT(refused({"run", "--resume", path("r.h5")}).messages, HasSubstr("is a recording, not a checkpoint"));
+  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  const std::string whole = read("c.h5");
+  write("half.h5", whole.substr(0, whole.size() / 2));
+  refused({"run", "--resume", path("half.h5")});
+  const hid_t file = H5Fopen(path("c.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t group = H5Gopen2(file, "checkpoint", H5P_DEFAULT);
+  H5Adelete(group, "version");
+  const hid_t one = H5Screate(H5S_SCALAR),
+              version = H5Acreate2(group, "version", H5T_STD_I32LE, one, H5P_DEFAULT, H5P_DEFAULT);
+  const int newer = 2;
+  H5Awrite(version, H5T_NATIVE_INT, &newer);
+  H5Aclose(version);
+  H5Sclose(one);
+  H5Gclose(group);
+  H5Fclose(file);
+  EXPECT_THAT(refused(resume_).messages, HasSubstr("is a checkpoint of version 2; this program reads version 1"));
+}
+
+class Verify : public Checkpoint {
+ protected:
+  void record(const Arguments& more = {}) {
+    ASSERT_EQ(mercury(run_ + Arguments{"--record", path("r.h5")} + more).status, 0);
+  }
+};
+
+TEST_F(Verify, ARecordingIsTheSameOnItsDevice) {
+  record();
+  const Outcome outcome = mercury({"verify", path("r.h5"), "--quiet"});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, HasSubstr("same: positions and velocities are identical, bit for bit"));
+  const json report = json::parse(mercury({"verify", path("r.h5"), "--json", "--quiet"}).output);
+  EXPECT_EQ(report["identical"], true);
+  EXPECT_EQ(report["frames"].size(), TrajectoryReader(path("r.h5")).frames());
+  EXPECT_TRUE(report["first_difference"].is_null());
+}
+
+// A mass is moved by 1 mm in one frame.
+TEST_F(Verify, ADifferenceIsFound) {
+  record();
+  const std::string group = TrajectoryReader(path("r.h5")).robots()[1].group;
+  const hid_t file = H5Fopen(path("r.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t values = H5Dopen2(file, ("particles/" + group + "/position/value").c_str(), H5P_DEFAULT);
+  const hid_t space = H5Dget_space(values), one = H5Screate(H5S_SCALAR);
+  const hsize_t start[] = {5, 2, 0}, count[] = {1, 1, 1};
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr);
+  float x = 0;
+  H5Dread(values, H5T_NATIVE_FLOAT, one, space, H5P_DEFAULT, &x);
+  x += 1e-3f;
+  H5Dwrite(values, H5T_NATIVE_FLOAT, one, space, H5P_DEFAULT, &x);
+  for (const hid_t id : {space, one}) H5Sclose(id);
+  H5Dclose(values);
+  H5Fclose(file);
+  const Outcome outcome = mercury({"verify", path("r.h5"), "--json", "--quiet"});
+  EXPECT_EQ(outcome.status, 1);
+  const json report = json::parse(outcome.output);
+  EXPECT_EQ(report["identical"], false);
+  EXPECT_NEAR(report["largest_difference"], 1e-3, 1e-6);
+  EXPECT_EQ(report["first_difference"]["robot"], 1);
+  EXPECT_EQ(report["first_difference"]["step"], 5 * 33);
+  EXPECT_EQ(mercury({"verify", path("r.h5"), "--tolerance", "0.01", "--quiet"}).status, 0);
+  EXPECT_EQ(mercury({"verify", path("r.h5"), "--tolerance", "0.0001", "--quiet"}).status, 1);
+}
+
+TEST_F(Verify, FilesThatAreNoRecordingsAreRefused) {
+  write("text.h5", "nothing");
+  EXPECT_THAT(refused({"verify", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
+  EXPECT_THAT(refused({"verify", path("missing.h5")}).messages, HasSubstr("missing.h5"));
+  record();
+  EXPECT_THAT(refused({"verify", path("r.h5"), "--tolerance", "-1"}).messages, HasSubstr("--tolerance"));
+}
+
+}  // namespace
+}  // namespace mercury::test
