@@ -15,6 +15,7 @@
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
 #include "app/recording/repro.h"
+#include "app/recording/trajectory_reader.h"
 #include "app/video/frame_writer.h"
 #include "app/window/toolkit/embedded.h"
 #include "app/window/viewer.h"
@@ -111,6 +112,14 @@ int view(const ViewCommandOptions& options) {
     viewer.files = {*file};
     return window::run_viewer(std::move(viewer));
   }
+  if (const auto file = options.robots.recording()) {
+    const TrajectoryReader recording(*file);  // throws for an invalid file, before the window opens
+    const Device device = viewer.configuration.device;
+    viewer.configuration = recording.configuration();
+    viewer.configuration.device = device;
+    viewer.files = {*file};
+    return window::run_viewer(std::move(viewer));
+  }
   // Read the files here to report errors before the window opens, and to choose the environment of the robots. The
   // window reads them again.
   viewer.generations = options.robots.random();
@@ -167,7 +176,8 @@ void add_view_command(CLI::App& program, const Choose& choose) {
       "  mercury view\n"
       "  mercury view my-robots --environment land\n"
       "  mercury view --random voxel:12 --seed 3 --color strain\n"
-      "  mercury view swim                 (a run)");
+      "  mercury view swim                 (a run)\n"
+      "  mercury view swim.h5              (a recording: play, drag, go on from any frame)");
   command->callback([options, choose] { choose([options] { return options->robots.status(view(*options)); }); });
 }
 

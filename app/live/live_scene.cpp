@@ -35,6 +35,7 @@ void LiveScene::frame(float aspect) {
   parts.background.finish_done();
   if (parts.described > 0 && --parts.described == 0) parts.physics.watch_velocities(false);
   parts.snapshot = parts.physics.newest();
+  parts.goes_on = parts.goes_on && parts.snapshot->timeline.viewing;
   if (parts.snapshot->stops != parts.stops) {
     parts.stops = parts.snapshot->stops;
     parts.playing = false;

@@ -55,6 +55,9 @@ struct RobotEntry {
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
 };
 
+// What LiveScene::mark_loop() did.
+enum class LoopMark { begun, closed, ended };
+
 // All members are called from one thread. None waits for physics or for files, except those named wait_*. Errors are
 // reported by take_messages(); only the constructor throws.
 class LiveScene {
@@ -90,6 +93,22 @@ class LiveScene {
   double speed() const;
   void change_speed(int notches);  // faster if > 0: 0.1, 0.2, 0.5, 1, 2, 5, ...
 
+  // The timeline (timeline.h). snapshot().timeline says which moments there are; times are simulated seconds. An edit
+  // while an earlier moment is shown goes on from there.
+  void seek(double time);
+  void step_back(std::int64_t count = 1);  // pauses first
+  void go_on();                            // what came after the moment shown is forgotten
+  // Copies of robots in the state of the moment shown, which goes on. Returns their ids.
+  std::vector<RobotId> fork(const std::vector<RobotId>& robots);
+  void set_loop(std::optional<std::pair<double, double>> times);
+  // One key: begins a loop at the moment shown, closes it there, ends it.
+  LoopMark mark_loop();
+  std::optional<double> loop_begin() const;      // of a loop that is not closed yet
+  const std::vector<double>& bookmarks() const;  // ascending
+  bool toggle_bookmark();                        // at the moment shown; returns whether there is one now
+  bool seek_bookmark(int direction);             // to the next (> 0) or previous one; false = there is none
+  void set_timeline_budget(std::size_t bytes);
+
   // Robots.
   std::vector<RobotEntry> entries() const;
   const SceneDocument& document() const;
@@ -97,8 +116,8 @@ class LiveScene {
   std::vector<RobotId> add(std::vector<Robot> robots, bool unsaved = true);
   // Shows these robots alone, in this configuration (but on the same device), as one edit. They need no saving.
   void show(std::vector<Robot> robots, const Configuration& configuration, const std::string& edit);
-  // Opens robot files, folders of them, the robots of recordings, or one repro or scene, in the background. A scene
-  // takes the place of the present one.
+  // Opens robot files, folders of them, or one recording, repro or scene, in the background. Those three take the place
+  // of the present scene; of several recordings, the robots are opened at rest.
   void open(const std::vector<std::filesystem::path>& paths);
   // Makes random robots in the background. `replace`: they replace all robots.
   void generate(const RandomRobots& generation, bool replace = false);

@@ -21,6 +21,7 @@ std::string LiveScene::Parts::free_name(const std::string& wanted) const {
 
 bool LiveScene::Parts::change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                                         const std::function<bool(DocumentRobot&)>& change) {
+  adopt_moment();
   SceneDocument after = document;
   bool any = false;
   for (const RobotId id : robots)
@@ -112,9 +113,11 @@ void LiveScene::duplicate(const std::vector<RobotId>& robots) {
 }
 
 void LiveScene::rename(RobotId robot, const std::string& name) {
+  const DocumentRobot* before = parts_->find(robot);
+  if (!before || name.empty() || before->body.name == name) return;
+  parts_->edit("rename " + before->body.name);
   DocumentRobot* found = parts_->find(robot);
-  if (!found || name.empty() || found->body.name == name) return;
-  parts_->edit("rename " + found->body.name);
+  if (!found) return;
   found->body.name = name;
   parts_->apply_document();
 }

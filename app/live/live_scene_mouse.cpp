@@ -47,6 +47,7 @@ HitDetails LiveScene::describe(const Hit& hit) const {
 void LiveScene::begin_perturbation(const Hit& hit, float stiffness) {
   const auto index = parts_->snapshot->robots->index_of(hit.robot);
   if (!index || hit.mass >= parts_->snapshot->positions_of(*index).size()) return;
+  parts_->adopt_moment();
   const LiveRobot& robot = parts_->snapshot->robots->robots[*index];
   const float suitable = suitable_stiffness(robot, parts_->document.configuration);
   const bool usable = std::isfinite(stiffness) && stiffness > 0;

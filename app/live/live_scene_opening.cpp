@@ -26,9 +26,10 @@ struct OpenedRobot {
 // What a task has read.
 struct Opened {
   std::vector<OpenedRobot> robots;
-  std::shared_ptr<const Repro> repro;      // replaces the whole scene
-  std::shared_ptr<const SceneFile> scene;  // the same
-  fs::path repro_file;
+  std::shared_ptr<const Repro> repro;           // replaces the whole scene
+  std::shared_ptr<const SceneFile> scene;       // the same
+  std::shared_ptr<TrajectoryReader> recording;  // the same
+  fs::path file;                                // of the repro or recording
 };
 
 // Lists files, and the robot files of folders sorted by name. Reading them reports other kinds of files.
@@ -58,12 +59,17 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
   return files;
 }
 
-// Opens the robots of a recording, at rest.
-void read_recording(const fs::path& file, Opened& opened, Messages& messages) {
-  const TrajectoryReader recording(file);
-  for (const RecordedRobot& recorded : recording.robots()) opened.robots.push_back({"", recorded.robot});
-  messages.add(Severity::note, fmt::format("{}: the recording's {}, at rest; mercury render plays it", file.string(),
-                                           robot_count_text(recording.robots().size())));
+// Alone, a recording is played. Otherwise its robots are opened, at rest.
+void read_recording(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
+  auto recording = std::make_shared<TrajectoryReader>(file);
+  opened.file = file;
+  if (alone && recording->frames() > 0) {
+    opened.recording = std::move(recording);
+    return;
+  }
+  for (const RecordedRobot& recorded : recording->robots()) opened.robots.push_back({"", recorded.robot});
+  messages.add(Severity::note, fmt::format("{}: the recording's {}, at rest; open it alone to play it", file.string(),
+                                           robot_count_text(recording->robots().size())));
 }
 
 // Opens the robots of another simulator. Their worlds are not applied: the scene may have others.
@@ -94,11 +100,11 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
   if (is_repro_name(file)) {
     if (!alone) throw InputError(file.string(), "is a repro, which has its own time; open it alone");
     opened.repro = std::make_shared<const Repro>(load_repro(file));
-    opened.repro_file = file;
+    opened.file = file;
     return;
   }
   if (is_readable_trajectory_name(file.string())) {
-    read_recording(file, opened, messages);
+    read_recording(file, alone, opened, messages);
     return;
   }
   if (is_scene_name(file)) {
@@ -158,7 +164,8 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
   parts.background.begin(name, 0, [this, &parts, paths](WorkControl& control) -> Background::Finish {
     auto opened = std::make_shared<Opened>(read_robots(files_of(paths, parts.messages), control, parts.messages));
     return [this, &parts, opened] {
-      if (opened->repro) parts.replay(opened->repro, opened->repro_file);
+      if (opened->repro) parts.replay(opened->repro, opened->file);
+      if (opened->recording) parts.play_recording(opened->recording, opened->file);
       if (opened->scene) {
         parts.open_scene(*opened->scene, environments_of(*opened->scene, opened->robots));
         for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});

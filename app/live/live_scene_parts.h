@@ -43,7 +43,10 @@ struct LiveScene::Parts {
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
   std::optional<LivePerturbation> perturbation;
-  mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
+  std::vector<double> bookmarks;     // ascending [s]
+  std::optional<double> loop_begin;  // of a loop that is not closed yet [s]
+  bool goes_on = false;              // the moment shown becomes the present; physics has not done so yet
+  mutable int described = 0;         // frames until snapshots stop reading velocities for describe()
 
   Background background;  // last: its tasks end before the members that they use
 
@@ -55,6 +58,7 @@ struct LiveScene::Parts {
   }
   // Call it before the document changes: records the edit, to be undone later.
   void edit(std::string name, std::string key = {}) {
+    adopt_moment();
     history.before_change(document, std::move(name), std::move(key));
   }
   void report(Severity severity, std::string text) { messages.add(severity, std::move(text)); }
@@ -72,6 +76,9 @@ struct LiveScene::Parts {
     const auto found = saved.find(id);
     return found == saved.end() ? "" : found->second.file;
   }
+  void adopt_moment();
+  void forget_later_bookmarks();
+  void play_recording(const std::shared_ptr<TrajectoryReader>& recording, const std::filesystem::path& file);
   // Applies `change` to robots as one edit. `change` returns whether it changed its robot.
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
                         const std::function<bool(DocumentRobot&)>& change);

@@ -136,6 +136,17 @@ void Measurements::observe(double time, std::int64_t step, std::span<const Telem
   if (times_.size() >= capacity_) thin();
 }
 
+void Measurements::cut(double time, std::int64_t step) {
+  const std::lock_guard lock(mutex_);
+  const auto kept = static_cast<std::size_t>(std::ranges::upper_bound(times_, time) - times_.begin());
+  if (kept < times_.size()) next_ = step;
+  times_.resize(kept);
+  for (auto& [id, track] : tracks_) {
+    track.missing = std::min(track.missing, kept);
+    track.samples.resize(kept - track.missing);
+  }
+}
+
 void Measurements::thin_out() {
   const std::lock_guard lock(mutex_);
   if (interval_ >= 1024 * first_interval_) return;

@@ -82,6 +82,9 @@ class Measurements {
   // Takes a sample if one is due at this step, and updates the ranking.
   void observe(double time, std::int64_t step, std::span<const Telemetry> telemetry);
 
+  // The robots went back to this moment: forgets the samples after it.
+  void cut(double time, std::int64_t step);
+
   // Drops every second sample and doubles the interval, up to 1024 times the first interval.
   void thin_out();
 

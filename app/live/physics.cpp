@@ -36,14 +36,49 @@ void request(auto& parts, Change change) {
 }  // namespace
 
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
-  request(*parts_, [&](PendingCommands& pending) { pending.scene = {std::move(robots), configuration, nullptr}; });
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.scene = {std::move(robots), configuration, nullptr, nullptr};
+  });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
                         std::shared_ptr<const Repro> repro) {
   request(*parts_, [&](PendingCommands& pending) {
-    pending.scene = {std::vector{robot}, configuration, std::move(repro)};
+    pending.scene = {std::vector{robot}, configuration, std::move(repro), nullptr};
     pending.steps = 0;
+    pending.drop_timeline();
   });
+}
+void Physics::set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
+                            std::shared_ptr<TrajectoryReader> recording) {
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.scene = {std::move(robots), configuration, nullptr, std::move(recording)};
+    pending.steps = 0;
+    pending.drop_timeline();
+  });
+}
+void Physics::seek(double time) {
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.seek = time;
+    pending.steps_back = 0;
+  });
+}
+void Physics::step_back(std::int64_t count) {
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.playing = false;
+    pending.steps_back += std::max<std::int64_t>(0, count);
+  });
+}
+void Physics::go_on() {
+  request(*parts_, [&](PendingCommands& pending) {
+    pending.go_on = true;
+    if (pending.seek) pending.seek_first = std::exchange(pending.seek, {});
+  });
+}
+void Physics::set_loop(std::optional<std::pair<double, double>> times) {
+  request(*parts_, [&](PendingCommands& pending) { pending.loop = times; });
+}
+void Physics::set_timeline_budget(std::size_t bytes) {
+  request(*parts_, [&](PendingCommands& pending) { pending.timeline_budget = bytes; });
 }
 void Physics::set_view(const ViewSettings& settings) {
   request(*parts_, [&](PendingCommands& pending) { pending.view = settings; });
@@ -82,6 +117,7 @@ void Physics::reset() {
   request(*parts_, [](PendingCommands& pending) {
     pending.reset = true;
     pending.steps = 0;
+    pending.drop_timeline();
   });
 }
 void Physics::pause_on_explosion(bool pause) {

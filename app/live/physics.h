@@ -15,6 +15,9 @@
 //
 // Background tasks (background.h) never touch Physics; their results reach it through the window thread.
 //
+// The timeline (timeline.h) belongs to the physics thread, too: it keeps keyframes while robots play, and computes the
+// moments between them again when the window asks for one. A recording is played in the same way, from its file.
+//
 // A snapshot is written once by the physics thread and is constant from then on, so the window reads it without a lock.
 // The last reader, on whatever thread, returns its memory to the SnapshotPool.
 //
@@ -30,14 +33,18 @@
 //    results depend on the steps and not on how they fall into slices.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/live/measurements.h"
 #include "app/live/messages.h"
 #include "app/live/snapshot.h"
 #include "app/recording/repro.h"
+#include "app/recording/trajectory_reader.h"
 #include "app/scene/view_settings.h"
 
 namespace mercury {
@@ -69,6 +76,10 @@ class Physics {
   // start. Pending steps are dropped. The next set_scene() ends the replay, and later changes of the repro are not
   // applied. `configuration` is the repro's.
   void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
+  // Plays a recording of these robots: its frames, and straight lines between them. reset() returns to its first frame.
+  // go_on() ends it, and so does the next set_scene().
+  void set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
+                     std::shared_ptr<TrajectoryReader> recording);
   void set_view(const ViewSettings& settings);  // selects the details that snapshots hold
   // Replaces all perturbations. Those on missing robots or masses are ignored.
   void set_perturbations(std::vector<LivePerturbation> perturbations);
@@ -78,6 +89,15 @@ class Physics {
   void step(std::int64_t count);  // pauses, then makes `count` steps; several calls add up
   void reset();                   // back to time 0 and rest; drops pending steps
   void pause_on_explosion(bool pause);
+
+  // The timeline. Snapshot::timeline says which moments there are; others become the nearest one. Whatever changes the
+  // robots while an earlier moment is shown makes that moment the present first, as go_on() does.
+  void seek(double time);              // shows a moment, given in simulated seconds
+  void step_back(std::int64_t count);  // pauses, then shows the moment that many steps before; several calls add up
+  void go_on();                        // the moment shown is the present from now on; what came after it is forgotten
+  void set_loop(std::optional<std::pair<double, double>> times);  // plays from the first time to the second [s]
+  void set_timeline_budget(std::size_t bytes);                    // of memory for keyframes
+
   // Snapshots have velocities while physics pauses and after wait_until_done(). With `watch`, those of playing robots
   // have them, too.
   void watch_velocities(bool watch);

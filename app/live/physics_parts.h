@@ -18,6 +18,7 @@
 #include "app/live/population.h"
 #include "app/live/replay_log.h"
 #include "app/live/snapshot_pool.h"
+#include "app/live/timeline.h"
 
 namespace mercury {
 
@@ -26,21 +27,32 @@ struct PendingCommands {
   struct Scene {
     std::vector<LiveRobot> robots;
     Configuration configuration;
-    std::shared_ptr<const Repro> repro;  // to replay, or nothing
+    std::shared_ptr<const Repro> repro;           // to replay, or nothing
+    std::shared_ptr<TrajectoryReader> recording;  // to play, or nothing
   };
+  using Loop = std::optional<std::pair<double, double>>;
   std::optional<Scene> scene;
   std::optional<ViewSettings> view;
   std::optional<std::vector<LivePerturbation>> perturbations;
   std::optional<std::shared_ptr<PositionBridge>> bridge;
   std::optional<bool> playing, pause_on_explosion;
-  std::optional<double> speed;
-  std::int64_t steps = 0;
-  bool drop_steps = false, reset = false, quit = false;
+  std::optional<double> speed, seek, seek_first;  // seek_first: before go_on
+  std::optional<Loop> loop;
+  std::optional<std::size_t> timeline_budget;
+  std::int64_t steps = 0, steps_back = 0;
+  bool drop_steps = false, reset = false, go_on = false, quit = false;
   std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
-    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || steps > 0 || reset ||
-           quit || ticket > 0;
+    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first || loop ||
+           timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit || ticket > 0;
+  }
+  // Forgets the moments that were asked for.
+  void drop_timeline() {
+    seek.reset();
+    seek_first.reset();
+    steps_back = 0;
+    go_on = false;
   }
 };
 
@@ -76,9 +88,21 @@ struct Physics::Parts {
   std::vector<LivePerturbation> perturbations;
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
-  ReplayLog replay_log;
+  EventLog events;
+  ReplayLog replay_log{events};
   std::shared_ptr<const Repro> replayed_repro;  // or nothing
   std::size_t next_change = 0;                  // index in replayed_repro->changes
+  Timeline timeline;
+  bool viewing = false;                         // shows an earlier moment of the timeline, or a recording
+  std::optional<std::int64_t> seek_target;      // the step on the way to which the robots are
+  std::uint64_t next_event = 0, era = 0;        // of the moment that is shown
+  std::int64_t head_step = 0;                   // of the present, while `viewing`
+  std::uint64_t head_era = 0;                   // the same
+  PendingCommands::Loop loop;                   // [s]
+  double work = 0, keyframe_work = 0;           // wall time of all steps, and of those before the last keyframe [s]
+  double keyframe_seconds = 0;                  // wall time of making the last keyframe [s]
+  std::shared_ptr<TrajectoryReader> recording;  // that is played, or nothing
+  double recording_time = 0;                    // its moment that is shown [s]
   std::set<std::string> reported_notes;
   Pace pace;
   SpeedGauge gauge;
@@ -102,6 +126,28 @@ struct Physics::Parts {
   void begin_replay();
   void apply_repro_changes();
   std::int64_t next_change_step() const;
+  void prepare_changes(const PendingCommands& taken);
+  void carry_out_seek(const PendingCommands& taken);
+  void seek(double time);
+  void restart_timeline();
+  void keep_keyframe();
+  void keep_due_keyframe();
+  void follow_changes(bool robots_changed);
+  void begin_seek(std::int64_t step);
+  void finish_seek();
+  void show_keyframe(const Keyframe& keyframe);
+  void advance_seek();
+  void apply_events();
+  std::int64_t next_stop() const;
+  void return_to_present();
+  void make_present();
+  void forget_later();
+  bool loop_back();
+  void begin_recording(std::shared_ptr<TrajectoryReader> reader);
+  void advance_recording();
+  void show_recording(double time);
+  void leave_recording();
+  TimelineState timeline_state() const;
   void observe_details();
   void begin_pace();
   void advance();

@@ -33,6 +33,7 @@ void Physics::Parts::begin_replay() {
   simulation.set_perturbations(population.perturbations_of(perturbations));
   next_change = 0;
   replay_log.follow(simulation, *population.robots(), perturbations);
+  timeline.note(simulation.clock());
   observe_details();
   begin_pace();
 }
@@ -62,7 +63,7 @@ void Physics::Parts::apply_repro_changes() {
     if (change.perturbations) perturbations = live_perturbations(robot.id, *change.perturbations);
   }
   simulation.set_perturbations(population.perturbations_of(perturbations));
-  replay_log.follow(simulation, *population.robots(), perturbations);
+  follow_changes(false);
 }
 
 }  // namespace mercury

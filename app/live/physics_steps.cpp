@@ -21,17 +21,24 @@ void Physics::Parts::begin_pace() {
 
 // Makes one slice of the steps that are due.
 void Physics::Parts::advance() {
+  if (seek_target) return advance_seek();
   if (steps_left == 0 && !playing) return;
+  if (recording) return advance_recording();
+  if (loop_back()) return;
   const auto steps_in = [&](double seconds) {
     return step_seconds > 0 ? static_cast<std::int64_t>(std::clamp(seconds / step_seconds, 1.0, 1e6)) : 1;
   };
   // Several steps per call are faster for large batches, because the state stays in the cache.
-  const std::int64_t affordable =
-      std::max(steps_in(slice_seconds), std::min(steps_in(long_slice_seconds), std::int64_t{16}));
+  std::int64_t affordable = std::max(steps_in(slice_seconds), std::min(steps_in(long_slice_seconds), std::int64_t{16}));
+  if (loop && playing)
+    affordable = std::clamp(timeline.step_at(loop->second) - simulation.steps(), std::int64_t{1}, affordable);
+  if (viewing) affordable = std::min(affordable, head_step - simulation.steps());
+  if (affordable <= 0) return return_to_present();
   if (steps_left > 0) {
     const std::int64_t count = std::min(affordable, steps_left);
     take_steps(count);
     steps_left = std::max<std::int64_t>(0, steps_left - count);
+    if (viewing && simulation.steps() == head_step) return_to_present();
     return;
   }
   const std::int64_t count = std::min(affordable, pace.due(wall_now()));
@@ -39,6 +46,7 @@ void Physics::Parts::advance() {
   take_steps(count);
   pace.done(count);
   gauge.mark(wall_now(), simulation.time());
+  if (viewing && simulation.steps() == head_step && !loop) return_to_present();
 }
 
 // Interrupts the steps where a sample of the telemetry is due and where a replay changes something.
@@ -46,23 +54,27 @@ void Physics::Parts::take_steps(std::int64_t count) {
   const std::int64_t target = simulation.steps() + count;
   double spent = 0;
   while (simulation.steps() < target) {
-    apply_repro_changes();
+    viewing ? apply_events() : apply_repro_changes();
     const std::int64_t sample = std::max(measurements.next_step(), simulation.steps() + 1);
-    const std::int64_t stop = std::min({target, sample, next_change_step()});
+    const std::int64_t stop = std::min({target, sample, viewing ? next_stop() : next_change_step()});
     const double start = wall_now();
     simulation.step(stop - simulation.steps());
     const double stepped = wall_now();
     spent += stepped - start;
     if (stop != sample && stop != target) continue;
     telemetry = simulation.telemetry();
-    measurements.observe(simulation.time(), simulation.steps(), telemetry);
-    report_explosions(true);
+    if (!viewing || era == head_era) measurements.observe(simulation.time(), simulation.steps(), telemetry);
+    if (!viewing) report_explosions(true);
     measuring_seconds += wall_now() - stepped;
-    if (!playing && steps_left == 0) break;  // stopped by an explosion
+    if (!playing && steps_left == 0 && !viewing) break;  // stopped by an explosion
   }
   stepping_seconds += spent;
   limit_measuring();
-  replay_log.stepped(spent, simulation, *population.robots());
+  if (!viewing) {
+    work += spent;
+    replay_log.stepped(spent, simulation, *population.robots());
+    keep_due_keyframe();
+  }
   const double each = spent / static_cast<double>(count);
   step_seconds = step_seconds > 0 ? 0.8 * step_seconds + 0.2 * each : each;
   dirty = true;

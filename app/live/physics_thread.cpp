@@ -34,7 +34,7 @@ bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
           playing && std::isfinite(speed) ? std::min(pace.next_due(), wall_now() + 1) : 0)));
   std::unique_lock lock(mutex);
   const auto ready = [&] { return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)); };
-  if (steps_left == 0 && !ready()) {
+  if (steps_left == 0 && !seek_target && !ready()) {
     tickets_done = ticket;
     done.notify_all();
     if (playing)
@@ -48,13 +48,14 @@ bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
 }
 
 // A failure of physics must not end the window: reports the error and pauses.
-void Physics::Parts::guarded(auto work) {
+void Physics::Parts::guarded(auto task) {
   try {
-    work();
+    task();
   } catch (const std::exception& error) {
     messages.add(Severity::error, error.what());
     playing = false;
     steps_left = 0;
+    seek_target.reset();
     ++stops;
   }
 }
@@ -63,21 +64,27 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
+  prepare_changes(taken);
   const bool dt_changed = taken.scene && taken.scene->configuration.dt != simulation.configuration().dt;
   const bool robots_changed = taken.scene && set_scene(*taken.scene);
   if (taken.view) view = *taken.view;
   if (taken.view || robots_changed) observe_details();
-  if (taken.reset || (taken.scene && replayed_repro)) restart();
+  if (taken.scene && taken.scene->recording)
+    begin_recording(taken.scene->recording);
+  else if (recording && taken.reset)
+    show_recording(recording->time(0));
+  else if (taken.reset || (taken.scene && replayed_repro))
+    restart();
   if (taken.perturbations) perturbations = std::move(*taken.perturbations);
   if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
-  if (taken.perturbations || taken.scene || taken.reset)
-    replay_log.follow(simulation, *population.robots(), perturbations);
+  if ((taken.perturbations || taken.scene || taken.reset) && !viewing) follow_changes(robots_changed);
   if (taken.bridge) bridge = std::move(*taken.bridge);
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
+  carry_out_seek(taken);
   steps_left += taken.steps;
-  if (taken.playing || taken.speed || taken.reset || robots_changed || dt_changed) begin_pace();
+  if (taken.playing || taken.speed || taken.reset || taken.seek || robots_changed || dt_changed) begin_pace();
 }
 
 // Returns all robots to rest at time 0, or a replay to its start.
@@ -93,6 +100,7 @@ void Physics::Parts::restart() {
     repros.clear();
   }
   if (replayed_repro) begin_replay();
+  restart_timeline();
   telemetry = simulation.telemetry();
   const double time = simulation.time();
   measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration(), telemetry);
@@ -101,7 +109,7 @@ void Physics::Parts::restart() {
 
 // Returns whether the list of robots or the kind of environment changed.
 bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
-  const auto& [robots, configuration, repro] = scene;
+  const auto& [robots, configuration, repro, recorded] = scene;
   replayed_repro = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool dt_changed = configuration.dt != simulation.configuration().dt;
@@ -139,6 +147,8 @@ void Physics::Parts::start_over() {
   exploded.clear();
   replay_log.restart();
   replayed_repro.reset();
+  recording.reset();
+  restart_timeline();
   ++resets;
   measurements.restart(*population.robots(), 0, 0, simulation.configuration(), telemetry);
 }
@@ -192,6 +202,7 @@ void Physics::Parts::publish_snapshot() {
   next->perturbations.clear();
   for (const LivePerturbation& perturbation : perturbations)
     if (!population.perturbations_of({&perturbation, 1}).empty()) next->perturbations.push_back(perturbation);
+  next->timeline = timeline_state();
   next->playing = playing;
   next->speed = speed;
   next->due_at = playing && std::isfinite(speed) ? pace.done_at() : 0;

@@ -107,11 +107,23 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
   for (std::size_t k = 0; k < added.size(); ++k) {
     indices[added[k]] = first + k;
     const auto before = departed_.find(wanted[added[k]].id);
-    if (before == departed_.end()) continue;
+    if (before == departed_.end()) {
+      begin_as(wanted, indices, added[k]);
+      continue;
+    }
     if (before->second.robot == wanted[added[k]].robot) simulation_.set_state(first + k, before->second.state);
     forget(wanted[added[k]].id);
   }
   if (!std::ranges::is_sorted(indices)) simulation_.keep(indices);
+}
+
+// A new robot that is a copy of another takes its state. `indices`: of the wanted robots in the simulation so far.
+void Population::begin_as(const std::vector<LiveRobot>& wanted, const std::vector<std::size_t>& indices,
+                          std::size_t robot) {
+  if (wanted[robot].begins_as == 0) return;
+  for (std::size_t i = 0; i < robot; ++i)
+    if (wanted[i].id == wanted[robot].begins_as && wanted[i].robot == wanted[robot].robot)
+      simulation_.set_state(indices[robot], simulation_.state(indices[i]));
 }
 
 void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arranged) {

@@ -38,6 +38,7 @@ class Population {
   void keep_states(const std::vector<LiveRobot>& wanted);
   void forget(RobotId id);
   void arrange(const std::vector<LiveRobot>& wanted);
+  void begin_as(const std::vector<LiveRobot>& wanted, const std::vector<std::size_t>& indices, std::size_t robot);
   void follow_materials(const std::vector<LiveRobot>& wanted, bool arranged);
 
   Simulation& simulation_;

@@ -2,7 +2,6 @@
 #include "app/live/replay_log.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "app/live/scene_document.h"
 
@@ -27,33 +26,38 @@ bool same(const Perturbation& a, const Perturbation& b) {
 void ReplayLog::restart() {
   tracks_.clear();
   events_.clear();
-  first_event_ = sealed_ = 0;
-  copied_.reset();
   since_ = 0;
 }
 
-// A slider or the mouse makes many changes of one kind between two steps. Only the last one counts.
-void ReplayLog::add(Event event) {
-  copied_.reset();
-  if (!events_.empty() && first_event_ + events_.size() > sealed_) {
-    Event& last = events_.back();
-    const bool same_kind =
-        last.configuration.has_value() == event.configuration.has_value() &&
-        last.perturbations.has_value() == event.perturbations.has_value() &&
-        (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
-    if (last.step == event.step && same_kind && !event.configuration) {
-      last = std::move(event);
-      return;
+// A state that is still to come is none: the one before it is the newest, or else the present.
+void ReplayLog::cut(const Simulation& simulation, const LiveRobots& robots,
+                    const std::vector<LivePerturbation>& perturbations) {
+  configuration_ = simulation.configuration();
+  perturbations_ = perturbations;
+  std::map<RobotId, Track> tracks;
+  const auto is_known = [&](const std::shared_ptr<const Start>& start) {
+    return start && start->clock.step <= simulation.steps() && start->next >= events_.begin() &&
+           start->next <= events_.end();
+  };
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const LiveRobot& robot = robots.robots[i];
+    Track track{.robot = robot.robot, .materials = robot.materials, .older = {}, .newer = {}};
+    if (const auto found = tracks_.find(robot.id); found != tracks_.end() && found->second.robot == robot.robot) {
+      track.older = found->second.older;
+      track.newer = is_known(found->second.newer) ? found->second.newer : track.older;
     }
+    if (!is_known(track.older)) track.older = track.newer = start(simulation, i, robot.materials);
+    tracks[robot.id] = std::move(track);
   }
-  events_.push_back(std::move(event));
+  tracks_ = std::move(tracks);
+  events_.seal();
 }
 
 void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
                        const std::vector<LivePerturbation>& perturbations) {
   const std::int64_t step = simulation.steps();
   if (!tracks_.empty() && simulation.configuration() != configuration_)
-    add({.step = step, .configuration = simulation.configuration()});
+    events_.add({.step = step, .configuration = simulation.configuration()});
   configuration_ = simulation.configuration();
   std::map<RobotId, Track> tracks;
   std::vector<std::size_t> fresh;
@@ -63,7 +67,8 @@ void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
     Track& track = tracks[robot.id];
     if (known != tracks_.end() && known->second.robot == robot.robot) {
       track = std::move(known->second);
-      if (track.materials != robot.materials) add({.step = step, .materials = std::pair{robot.id, robot.materials}});
+      if (track.materials != robot.materials)
+        events_.add({.step = step, .materials = std::pair{robot.id, robot.materials}});
     } else {
       fresh.push_back(i);
     }
@@ -71,14 +76,13 @@ void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
     track.materials = robot.materials;
   }
   tracks_ = std::move(tracks);
-  if (perturbations != perturbations_ && !tracks_.empty()) add({.step = step, .perturbations = perturbations});
+  if (perturbations != perturbations_ && !tracks_.empty()) events_.add({.step = step, .perturbations = perturbations});
   perturbations_ = perturbations;
   for (const std::size_t i : fresh) {
     Track& track = tracks_.at(robots.robots[i].id);
     track.older = track.newer = start(simulation, i, track.materials);
   }
-  if (!fresh.empty()) sealed_ = first_event_ + events_.size();
-  forget_events();
+  if (!fresh.empty()) events_.seal();
 }
 
 std::shared_ptr<const ReplayLog::Start> ReplayLog::start(const Simulation& simulation, std::size_t index,
@@ -88,7 +92,7 @@ std::shared_ptr<const ReplayLog::Start> ReplayLog::start(const Simulation& simul
                                              .materials = materials,
                                              .state = simulation.state(index),
                                              .perturbations = perturbations_,
-                                             .next = first_event_ + events_.size()});
+                                             .next = events_.end()});
 }
 
 void ReplayLog::stepped(double seconds, const Simulation& simulation, const LiveRobots& robots) {
@@ -101,16 +105,13 @@ void ReplayLog::stepped(double seconds, const Simulation& simulation, const Live
     track->second.older = std::move(track->second.newer);
     track->second.newer = start(simulation, i, track->second.materials);
   }
-  sealed_ = first_event_ + events_.size();
-  forget_events();
+  events_.seal();
 }
 
-void ReplayLog::forget_events() {
-  std::uint64_t needed = first_event_ + events_.size();
+std::uint64_t ReplayLog::needed_events() const {
+  std::uint64_t needed = events_.end();
   for (const auto& [id, track] : tracks_) needed = std::min(needed, track.older->next);
-  if (needed > first_event_) copied_.reset();
-  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(needed - first_event_));
-  first_event_ = needed;
+  return needed;
 }
 
 std::function<Repro()> ReplayLog::repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
@@ -118,9 +119,8 @@ std::function<Repro()> ReplayLog::repro(const Simulation& simulation, const Live
   const LiveRobot& robot = robots.robots[index];
   const auto found = tracks_.find(robot.id);
   if (found == tracks_.end() || found->second.robot != robot.robot) return {};
-  if (!copied_) copied_ = std::make_shared<const std::vector<Event>>(events_);
   const auto& start = found->second.older;
-  return [record = Record{robot, start, copied_, start->next - first_event_, telemetry, simulation.steps(),
+  return [record = Record{robot, start, events_.copy(), start->next - events_.begin(), telemetry, simulation.steps(),
                           simulation.device_name()}] { return record.repro(); };
 }
 
@@ -138,7 +138,7 @@ Repro ReplayLog::Record::repro() const {
               .device_name = device_name};
   std::vector<Perturbation> perturbations = repro.perturbations;
   for (std::size_t i = first_event; i < events->size(); ++i) {
-    const Event& event = (*events)[i];
+    const SceneEvent& event = (*events)[i];
     ReproChange change{.step = event.step, .configuration = event.configuration};
     if (event.materials && event.materials->first == robot.id) {
       then.materials = event.materials->second;

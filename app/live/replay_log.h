@@ -8,7 +8,7 @@
 //
 // A repro is the older state and the events after it. Two states are kept per robot, so that a repro always covers
 // between 5 and 10 seconds of stepping, or everything since the robot was added. A newer state replaces the older one
-// every 5 s, and events before all older states are dropped.
+// every 5 s.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,25 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/event_log.h"
 #include "app/live/snapshot.h"
 #include "app/recording/repro.h"
 
 namespace mercury {
 
-// Events are never dropped while a state needs them. If new states would take too much memory, each robot keeps its
-// first one. Not thread-safe; the physics thread owns it.
+// Events are never dropped while a state needs them (needed_events()). If new states would take too much memory, each
+// robot keeps its first one. Not thread-safe; the physics thread owns it.
 class ReplayLog {
  public:
-  // Forgets everything: time starts again at 0.
+  // Adds its events to the log, which others may read and shorten (needed_events()).
+  explicit ReplayLog(EventLog& events) : events_(events) {}
+
+  // Forgets everything, the events too: time starts again at 0.
   void restart();
+  // The robots went back to an earlier moment, and what came later is undone: call it after the events were cut.
+  void cut(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePerturbation>& perturbations);
+  // The number of the first event that a repro may need.
+  std::uint64_t needed_events() const;
   // Records what changed. Call it after parameters, robots, materials or perturbations may have changed, before the
   // next step.
   void follow(const Simulation& simulation, const LiveRobots& robots,
@@ -44,7 +52,7 @@ class ReplayLog {
                                const Telemetry& telemetry);
 
  private:
-  using Materials = std::shared_ptr<const std::vector<Material>>;
+  using Materials = SceneEvent::Materials;
   struct Start {
     Clock clock;
     Configuration configuration;
@@ -58,12 +66,6 @@ class ReplayLog {
     Materials materials;
     std::shared_ptr<const Start> older, newer;
   };
-  struct Event {
-    std::int64_t step = 0;
-    std::optional<Configuration> configuration;
-    std::optional<std::pair<RobotId, Materials>> materials;
-    std::optional<std::vector<LivePerturbation>> perturbations;
-  };
   static constexpr double period = 5;                    // wall time of steps between two states [s]
   static constexpr std::size_t most_masses = 2'000'000;  // of all robots; above it no new states are kept
 
@@ -71,25 +73,20 @@ class ReplayLog {
   struct Record {
     LiveRobot robot;
     std::shared_ptr<const Start> start;
-    std::shared_ptr<const std::vector<Event>> events;
+    std::shared_ptr<const std::vector<SceneEvent>> events;
     std::size_t first_event;  // after the start
     Telemetry telemetry;
     std::int64_t last_step;
     std::string device_name;
     Repro repro() const;
   };
-  void add(Event event);
   std::shared_ptr<const Start> start(const Simulation& simulation, std::size_t index, const Materials& materials) const;
-  void forget_events();
 
+  EventLog& events_;
   std::map<RobotId, Track> tracks_;
-  std::vector<Event> events_;
-  std::uint64_t first_event_ = 0;  // number of events_[0]
-  std::uint64_t sealed_ = 0;       // events before this number must not change: a start follows them
   Configuration configuration_;
   std::vector<LivePerturbation> perturbations_;
-  std::shared_ptr<const std::vector<Event>> copied_;  // a copy of events_, until they change
-  double since_ = 0;                                  // wall time of steps since the last states [s]
+  double since_ = 0;  // wall time of steps since the last states [s]
 };
 
 }  // namespace mercury

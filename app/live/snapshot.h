@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/live/snapshot_positions.h"
+#include "app/live/timeline_state.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"
 #include "mercury/simulation.h"
@@ -30,6 +31,7 @@ struct LiveRobot {
   std::string name;  // replaces the robot's own name
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // replaces its table, same length; or null
+  RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = at rest
 };
 
 // The table in use, indexed by material id.
@@ -65,7 +67,7 @@ struct Snapshot {
   Configuration configuration;
   double time = 0;  // [s]
   std::int64_t steps = 0;
-  std::uint64_t resets = 0;          // number of returns to time 0
+  std::uint64_t resets = 0;          // number of jumps in time, such as returns to time 0
   std::uint64_t stops = 0;           // number of pauses by an explosion or a failure
   SnapshotPositions positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
   std::vector<Vec3> velocities;      // [m/s], as many; empty while robots play, unless requested
@@ -73,6 +75,8 @@ struct Snapshot {
   SceneDetails details;
   const ColorQuantity* color = &material_color();  // the quantity in details.values
   std::vector<LivePerturbation> perturbations;
+
+  TimelineState timeline;
 
   bool playing = false;
   double speed = 1;               // requested, in simulated seconds per second

@@ -112,7 +112,7 @@ RobotSequence RobotOptions::sequence() const {
 
 void RobotOptions::require_robot_files() const {
   if (const auto file = recording())
-    throw InputError(file->string(), "is a recording; mercury render plays it, here give robots");
+    throw InputError(file->string(), "is a recording; mercury view and render play it, here give robots");
   if (const auto file = repro())
     throw InputError(file->string(), "is a repro; mercury run and mercury view show it, here give robots");
 }

@@ -60,6 +60,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
   input_ = context.window.input().taken();
   written_at_ = seconds();
   LiveScene& scene = context.scene;
+  const TimelineState& timeline = scene.snapshot().timeline;
   log.write("frame", {{"number", frames_},
                       {"where", places(scene, picture)},
                       {"distance", context.camera.orbit().distance},
@@ -71,6 +72,15 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"time", scene.snapshot().time},
                       {"shown", picture.time},
                       {"playing", scene.playing()},
+                      {"timeline",
+                       {{"begin", timeline.begin},
+                        {"head", timeline.head},
+                        {"viewing", timeline.viewing},
+                        {"recording", timeline.recording},
+                        {"seeking", timeline.seeking},
+                        {"looping", timeline.looping},
+                        {"bookmarks", scene.bookmarks()},
+                        {"budget", timeline.budget}}},
                       {"selected", scene.selection().size()},
                       {"panels", context.preferences.panels},
                       {"text", context.preferences.text_scale},

@@ -208,7 +208,7 @@ int Viewer::run() {
 double Viewer::wait_after(double spent) const { return options_.paced ? std::max(0.0, frame_time - spent) : 0; }
 
 bool Viewer::anything_moves() const {
-  return redraws_ > 0 || camera_moved_ || scene_.playing() || camera_.gliding() ||
+  return redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking || camera_.gliding() ||
          camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() || recorder_.busy() ||
          screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse();
 }

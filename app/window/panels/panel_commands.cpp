@@ -15,6 +15,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/panels/scene_commands.h"
+#include "app/window/panels/timeline_strip.h"
 #include "app/window/panels/video_recorder.h"
 
 namespace mercury::window {
@@ -29,6 +30,17 @@ void Panels::execute(const Command& command) {
     case Action::fastest:
     case Action::reset:
       change_time(command.action);
+      break;
+    case Action::step_back:
+    case Action::first_moment:
+    case Action::present:
+    case Action::loop:
+    case Action::bookmark:
+    case Action::next_bookmark:
+    case Action::previous_bookmark:
+    case Action::go_on:
+    case Action::fork:
+      change_timeline(context_, command.action);
       break;
     case Action::new_random:
     case Action::duplicate:

@@ -25,6 +25,12 @@ struct RobotCreation {
   MutationRequest mutation;
 };
 
+// A drag along the timeline.
+struct Scrub {
+  bool plays_on = false;  // robots play again when the drag ends
+  double time = 0;        // of the last moment that was asked for [s]
+};
+
 struct PanelContext {
   LiveScene& scene;          // robots, physics, undo, colours
   LiveRun& run;              // the evolution that is open
@@ -39,7 +45,8 @@ struct PanelContext {
   VideoRecorder& recorder;
   FrameHistory& frame_history;
   RobotCreation creation = {};
-  EvolveRequest evolve = {};          // the settings of the last evolution
+  EvolveRequest evolve = {};  // the settings of the last evolution
+  Scrub scrub = {};
   float aspect = 16.0f / 9;           // width / height of the viewport in this frame
   bool screenshot_requested = false;  // set it to take one at the end of the frame
 };

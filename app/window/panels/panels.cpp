@@ -16,9 +16,7 @@ ViewportArea Panels::draw_frame() {
   ViewportArea area{{0, 0}, screen};
   if (context_.preferences.panels) {
     draw_menu();
-    const float top = ImGui::GetFrameHeight(),
-                bar = 1.15f * ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
-    const float bottom = screen.y - bar;
+    const float top = ImGui::GetFrameHeight(), bottom = screen.y - play_bar_height();
     const float left = draw_column(left_, Side::left, top, bottom);
     area = {{left, top}, {screen.x - draw_column(right_, Side::right, top, bottom), bottom}};
     draw_play_bar(context_, {0, area.high.y}, screen);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/window/panels/timeline_strip.h"
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
@@ -15,7 +16,7 @@
 namespace mercury::window {
 namespace {
 
-enum class Icon { play, pause, step, reset };
+enum class Icon { play, pause, step, step_back, reset };
 
 // A button with a drawn icon, since the font has none.
 bool icon_button(const char* id, Icon icon, const char* help, bool lit = false) {
@@ -40,6 +41,10 @@ bool icon_button(const char* id, Icon icon, const char* help, bool lit = false) 
     case Icon::step:
       list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
       list.AddTriangleFilled({c.x - 0.3f * r, c.y - r}, {c.x + 1.1f * r, c.y}, {c.x - 0.3f * r, c.y + r}, color);
+      break;
+    case Icon::step_back:
+      list.AddRectFilled({c.x + 0.55f * r, c.y - r}, {c.x + 1.0f * r, c.y + r}, color);
+      list.AddTriangleFilled({c.x + 0.3f * r, c.y - r}, {c.x - 1.1f * r, c.y}, {c.x + 0.3f * r, c.y + r}, color);
       break;
     case Icon::reset:
       list.AddRectFilled({c.x - 1.0f * r, c.y - r}, {c.x - 0.55f * r, c.y + r}, color);
@@ -106,6 +111,9 @@ void draw_buttons(PanelContext& context) {
   if (icon_button("##reset", Icon::reset, "reset to the start (key R)")) scene.reset();
   context.log.item("reset");
   ImGui::SameLine();
+  if (icon_button("##step_back", Icon::step_back, "one time step back (left arrow or ,)")) scene.step_back();
+  context.log.item("step_back");
+  ImGui::SameLine();
   if (icon_button("##toggle", scene.playing() ? Icon::pause : Icon::play,
                   scene.playing() ? "pause (Space)" : "play (Space)", true))
     scene.toggle();
@@ -142,6 +150,11 @@ void draw_rate(const LiveScene& scene) {
 
 }  // namespace
 
+float play_bar_height() {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  return 2.15f * ImGui::GetFrameHeight() + style.ItemSpacing.y + 2 * style.WindowPadding.y;
+}
+
 void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   ImGui::SetNextWindowPos(low);
   ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
@@ -151,13 +164,15 @@ void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   const float text = ImGui::GetFontSize();
+  draw_timeline_strip(context);
   draw_buttons(context);
   ImGui::SameLine(0, 1.2f * text);
   // Centre the line on the buttons.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   draw_time(context.scene, middle);
   ImGui::SameLine();
-  ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), 17.5f * text), middle - ImGui::GetFrameHeight() / 2});
+  ImGui::SetCursorPos({std::max(ImGui::GetCursorPosX(), (high.x - low.x < 45 * text ? 16 : 20) * text),
+                       middle - ImGui::GetFrameHeight() / 2});
   draw_speed(context);
   ImGui::SameLine();
   draw_rate(context.scene);

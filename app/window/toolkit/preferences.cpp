@@ -49,6 +49,7 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   read(document, "open_folder", preferences.open_folder);
   read(document, "save_folder", preferences.save_folder);
   read(document, "pause_on_explosion", preferences.pause_on_explosion);
+  read(document, "timeline_megabytes", preferences.timeline_megabytes);
   std::string quality;
   read(document, "quality", quality);
   try {
@@ -58,6 +59,8 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   }
   preferences.size.width = std::clamp(preferences.size.width, 640, 16384);
   preferences.size.height = std::clamp(preferences.size.height, 400, 16384);
+  preferences.timeline_megabytes =
+      std::clamp(preferences.timeline_megabytes, Preferences::least_timeline, Preferences::most_timeline);
   preferences.text_scale = std::clamp(preferences.text_scale, 0.6f, 3.0f);
   for (float* width : {&preferences.left_width, &preferences.right_width})
     *width = *width > 0 ? std::clamp(*width, 14.0f, 60.0f) : 0;
@@ -78,7 +81,8 @@ void save(const Preferences& preferences, const std::filesystem::path& file) {
                       {"folder", preferences.folder},
                       {"open_folder", preferences.open_folder},
                       {"save_folder", preferences.save_folder},
-                      {"pause_on_explosion", preferences.pause_on_explosion}};
+                      {"pause_on_explosion", preferences.pause_on_explosion},
+                      {"timeline_megabytes", preferences.timeline_megabytes}};
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);
   const std::filesystem::path temporary = file.string() + ".new";

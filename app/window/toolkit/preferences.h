@@ -23,6 +23,8 @@ struct Preferences {
   std::string open_folder, save_folder;  // last used in the file dialogs
   std::string scene;                     // file that was opened or saved last; not kept for the next start
   bool pause_on_explosion = false;
+  static constexpr int least_timeline = 16, most_timeline = 16384;
+  int timeline_megabytes = 512;  // of memory for the timeline, at most
 };
 
 // The folder of settings: $XDG_CONFIG_HOME/mercury or ~/.config/mercury; empty if neither variable is set.

@@ -86,14 +86,24 @@ TEST_F(LiveFiles, OpensReadableFilesAndReportsTheOthers) {
   EXPECT_THAT(messages[2].text, HasSubstr("run.h5"));
 }
 
-TEST_F(LiveFiles, OpensTheRobotsOfARecordingAtRest) {
+TEST_F(LiveFiles, PlaysARecordingAloneAndOpensItsRobotsAtRestBesideOthers) {
   const test::Outcome run = test::mercury(
       {"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
   ASSERT_EQ(run.status, 0) << run.messages;
   LiveScene scene(test::on_cpu());
   scene.open({path("swim.h5")});
   scene.wait_until_done();
+  EXPECT_TRUE(scene.snapshot().timeline.recording);
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
+  EXPECT_THAT(scene.take_messages().at(0).text, HasSubstr("2 robots, recorded on"));
+  scene.clear();
+  scene.reset();
+  scene.wait_until_done();
+  save_robot(path("other.json"), random_voxel_robot({}, 1, 0));
+  scene.open({path("swim.h5"), path("other.json")});
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().timeline.recording);
+  EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-1-0"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(0), random_voxel_robot({}, 5, 0).masses));
   const auto messages = scene.take_messages();

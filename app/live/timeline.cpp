@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/live/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace mercury {
+namespace {
+
+std::pair<std::int64_t, std::uint64_t> place_of(const Keyframe& keyframe) { return {keyframe.step(), keyframe.era}; }
+
+bool same_base(const Clock& a, const Clock& b) {
+  return a.dt == b.dt && a.base_time == b.base_time && a.base_step == b.base_step;
+}
+
+}  // namespace
+
+std::size_t Keyframe::bytes() const {
+  return sizeof(Keyframe) + (state.positions.capacity() + state.velocities.capacity()) * sizeof(Vec3) +
+         state.explosions.capacity() * sizeof(BatchState::Explosion);
+}
+
+void Timeline::clear() {
+  keyframes_.clear();
+  clocks_.clear();
+  bytes_ = 0;
+}
+
+void Timeline::set_budget(std::size_t bytes) {
+  budget_ = bytes;
+  thin();
+}
+
+void Timeline::add(Keyframe keyframe) {
+  const auto place = std::ranges::lower_bound(keyframes_, place_of(keyframe), {}, place_of);
+  bytes_ += keyframe.bytes();
+  if (place != keyframes_.end() && place_of(*place) == place_of(keyframe)) {
+    bytes_ -= place->bytes();
+    *place = std::move(keyframe);
+  } else {
+    keyframes_.insert(place, std::move(keyframe));
+  }
+  drop_instant_eras();
+  thin();
+}
+
+// An era that ends at the step at which it began shows nothing.
+void Timeline::drop_instant_eras() {
+  for (std::size_t i = keyframes_.size(); i-- > 1;)
+    if (keyframes_[i - 1].step() == keyframes_[i].step()) erase(i - 1);
+}
+
+void Timeline::cut(std::int64_t step, std::uint64_t era) {
+  while (!keyframes_.empty() && (keyframes_.back().step() > step || keyframes_.back().era > era))
+    erase(keyframes_.size() - 1);
+  while (!clocks_.empty() && clocks_.back().base_step >= step) clocks_.pop_back();
+}
+
+const Keyframe* Timeline::before(std::int64_t step) const {
+  const auto after = std::ranges::upper_bound(keyframes_, step, {}, &Keyframe::step);
+  return after == keyframes_.begin() ? nullptr : &*std::prev(after);
+}
+
+const Keyframe* Timeline::next_era(std::uint64_t era) const {
+  const auto next = std::ranges::find_if(keyframes_, [&](const Keyframe& keyframe) { return keyframe.era > era; });
+  return next == keyframes_.end() ? nullptr : &*next;
+}
+
+void Timeline::note(const Clock& clock) {
+  if (!clocks_.empty() && same_base(clocks_.back(), clock)) return;
+  if (!clocks_.empty() && clocks_.back().base_step == clock.base_step) clocks_.pop_back();
+  clocks_.push_back(clock);
+}
+
+std::int64_t Timeline::step_at(double time) const {
+  if (clocks_.empty() || !std::isfinite(time)) return 0;
+  auto clock = std::ranges::upper_bound(clocks_, time, {}, &Clock::base_time);
+  if (clock != clocks_.begin()) --clock;
+  const double steps = std::round((time - clock->base_time) / clock->dt);
+  const auto next = std::next(clock);
+  const std::int64_t last = next == clocks_.end() ? std::numeric_limits<std::int64_t>::max() : next->base_step;
+  if (!(steps < 9e18)) return last;
+  return std::clamp(clock->base_step + static_cast<std::int64_t>(std::max(0.0, steps)), clock->base_step, last);
+}
+
+double Timeline::time_at(std::int64_t step) const {
+  if (clocks_.empty()) return 0;
+  auto clock = std::ranges::upper_bound(clocks_, step, {}, &Clock::base_step);
+  if (clock != clocks_.begin()) --clock;
+  Clock then = *clock;
+  then.step = step;
+  return time_of(then);
+}
+
+void Timeline::erase(std::size_t index) {
+  bytes_ -= keyframes_[index].bytes();
+  keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void Timeline::thin() {
+  while (bytes_ > budget_ && !keyframes_.empty()) {
+    std::size_t cheapest = 0;  // the oldest, if no other may go
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < keyframes_.size(); ++i) {
+      if (keyframes_[i].era != keyframes_[i - 1].era) continue;  // the first of its era
+      const double gap = keyframes_[i + 1].work - keyframes_[i - 1].work;
+      if (gap > most_work) continue;
+      const double age = keyframes_.back().work - keyframes_[i].work;
+      if (const double cost = gap / (age + 0.5); cost < least) {
+        least = cost;
+        cheapest = i;
+      }
+    }
+    erase(cheapest);
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: Apache-2.0
+// The timeline: every earlier moment is shown again bit for bit, and can be gone on from.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <thread>
+
+#include "app/live/timeline.h"
+#include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_setup.h"
+#include "tests/app/program.h"
+#include "tests/app/recording/recording_bodies.h"
+#include "tests/sim/backend.h"
+
+namespace mercury {
+namespace {
+
+// What a picture shows of the robots.
+struct Moment {
+  double time = 0;
+  std::int64_t steps = 0;
+  Configuration configuration;
+  std::vector<RobotId> robots;
+  std::vector<Vec3> positions, velocities;
+  std::vector<LivePerturbation> perturbations;
+};
+
+Moment moment_of(const LiveScene& scene) {
+  const Snapshot& snapshot = scene.snapshot();
+  Moment moment{.time = snapshot.time,
+                .steps = snapshot.steps,
+                .configuration = snapshot.configuration,
+                .robots = {},
+                .positions = {snapshot.positions.host().begin(), snapshot.positions.host().end()},
+                .velocities = snapshot.velocities,
+                .perturbations = snapshot.perturbations};
+  for (const LiveRobot& robot : snapshot.robots->robots) moment.robots.push_back(robot.id);
+  return moment;
+}
+
+bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+// Expects the scene to show that moment, apart from changes that take effect with the next step.
+void expect_shown(const LiveScene& scene, const Moment& moment) {
+  EXPECT_EQ(scene.snapshot().steps, moment.steps);
+  EXPECT_EQ(scene.snapshot().time, moment.time);
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), moment.positions)) << "positions at " << moment.time << " s";
+  EXPECT_TRUE(same_bits(scene.snapshot().velocities, moment.velocities)) << "velocities at " << moment.time << " s";
+}
+
+void make_steps(LiveScene& scene, std::int64_t count) {
+  scene.step(count);
+  scene.wait_until_done();
+}
+
+class TimelineOn : public BackendTest {
+ protected:
+  LiveSceneOptions options(Environment environment = Ocean{}) const {
+    return {.configuration = {.environment = environment, .device = device()}};
+  }
+  // A run with all kinds of changes on its way, and moments of it.
+  void make_history(LiveScene& scene) {
+    const auto keep = [&] { moments_.push_back(moment_of(scene)); };
+    test::make_robots(scene, 3);
+    const std::vector<RobotId> robots = test::ids_of(scene);
+    make_steps(scene, 40);
+    keep();
+    scene.begin_perturbation({.robot = robots[0], .index = 0, .mass = 2}, 30);
+    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.3f, 0, 0));
+    make_steps(scene, 25);
+    keep();
+    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0, 0.4f, 0));
+    make_steps(scene, 10);
+    scene.end_perturbation();
+    Configuration configuration = scene.configuration();
+    configuration.dt = 7e-4;
+    configuration.damping = 0.4;
+    scene.set_configuration(configuration);
+    make_steps(scene, 30);
+    keep();
+    Material stiff = scene.materials(robots[1])[3];
+    stiff.stiffness *= 2;
+    scene.set_material({robots[1]}, 3, stiff);
+    make_steps(scene, 20);
+    keep();
+    make_steps(scene, 5);
+    scene.remove({robots[2]});
+    make_steps(scene, 20);
+    keep();
+    make_steps(scene, 5);
+    scene.undo();
+    scene.duplicate({robots[0]});
+    make_steps(scene, 35);
+    keep();
+  }
+  std::vector<Moment> moments_;
+};
+INSTANTIATE_TEST_SUITE_P(All, TimelineOn, every_device, BackendTest::name);
+
+TEST_P(TimelineOn, EveryMomentIsShownAgainBitForBit) {
+  LiveScene scene(options());
+  make_history(scene);
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+  EXPECT_EQ(scene.snapshot().timeline.begin, 0);
+  for (const std::size_t i : {4u, 0u, 2u, 5u, 1u, 3u, 3u, 0u, 4u}) {
+    scene.seek(moments_[i].time);
+    scene.wait_until_done();
+    EXPECT_EQ(scene.snapshot().timeline.viewing, i != 5);
+    EXPECT_EQ(scene.snapshot().timeline.head, moments_[5].time);
+    expect_shown(scene, moments_[i]);
+    EXPECT_EQ(moment_of(scene).robots, moments_[i].robots);
+    EXPECT_EQ(scene.snapshot().configuration, moments_[i].configuration);
+  }
+}
+
+TEST_P(TimelineOn, PlayingFromThePastRepeatsTheChangesAndReturnsToThePresent) {
+  LiveScene scene(options()), uninterrupted(options());
+  make_history(scene);
+  scene.seek(moments_[0].time);
+  scene.wait_until_done();
+  for (std::size_t i = 1; i < moments_.size(); ++i) {
+    make_steps(scene, moments_[i].steps - moments_[i - 1].steps);
+    expect_shown(scene, moments_[i]);
+  }
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+  make_steps(scene, 50);
+  moments_.clear();
+  make_history(uninterrupted);
+  make_steps(uninterrupted, 50);
+  expect_shown(scene, moment_of(uninterrupted));
+}
+
+TEST_P(TimelineOn, StepsBackAreThoseForward) {
+  LiveScene scene(options(Land{}));
+  test::make_robots(scene, 2);
+  std::map<std::int64_t, Moment> moments;
+  for (int i = 0; i < 20; ++i) {
+    make_steps(scene, 1);
+    moments[scene.snapshot().steps] = moment_of(scene);
+  }
+  for (std::int64_t step = 19; step > 10; --step) {
+    scene.step_back();
+    scene.wait_until_done();
+    expect_shown(scene, moments.at(step));
+  }
+  scene.step_back(5);
+  scene.step_back(2);
+  scene.wait_until_done();
+  expect_shown(scene, moments.at(4));
+  scene.step_back(100);
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 0);
+}
+
+TEST_P(TimelineOn, GoingOnForgetsWhatCameLater) {
+  LiveScene scene(options());
+  make_history(scene);
+  scene.seek(moments_[1].time);
+  scene.wait_until_done();
+  scene.go_on();
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+  EXPECT_EQ(scene.snapshot().timeline.head, moments_[1].time);
+  expect_shown(scene, moments_[1]);
+  EXPECT_EQ(scene.configuration(), moments_[1].configuration) << "the document has the parameters of that moment";
+  EXPECT_EQ(test::ids_of(scene), moments_[1].robots);
+  scene.seek(moments_[5].time);
+  scene.wait_until_done();
+  expect_shown(scene, moments_[1]);
+  EXPECT_EQ(scene.undo_name(), "go back to 0.065 s");
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.configuration(), moments_[5].configuration);
+  EXPECT_EQ(test::ids_of(scene), moments_[5].robots);
+}
+
+TEST_P(TimelineOn, AnEditInThePastGoesOnFromThere) {
+  LiveScene scene(options());
+  make_history(scene);
+  scene.seek(moments_[2].time);
+  scene.wait_until_done();
+  Configuration configuration = scene.configuration();
+  configuration.damping = 2;
+  scene.set_configuration(configuration);
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+  expect_shown(scene, moments_[2]);
+  EXPECT_EQ(scene.configuration().damping, 2);
+  EXPECT_EQ(test::ids_of(scene), moments_[2].robots);
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.configuration(), moments_[2].configuration);
+}
+
+TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
+  LiveScene scene(options());
+  make_history(scene);
+  scene.seek(moments_[1].time);
+  scene.wait_until_done();
+  const RobotId original = test::ids_of(scene)[1];
+  const std::vector<RobotId> copies = scene.fork({original});
+  ASSERT_EQ(copies.size(), 1u);
+  make_steps(scene, 60);
+  const Snapshot& snapshot = scene.snapshot();
+  const auto a = snapshot.robots->index_of(original), b = snapshot.robots->index_of(copies[0]);
+  ASSERT_TRUE(a && b);
+  EXPECT_TRUE(std::ranges::equal(snapshot.positions_of(*a), snapshot.positions_of(*b)));
+  EXPECT_EQ(snapshot.steps, moments_[1].steps + 60);
+  scene.scale_materials(copies, {.stiffness = 0.5f});
+  make_steps(scene, 60);
+  EXPECT_FALSE(std::ranges::equal(scene.snapshot().positions_of(*a), scene.snapshot().positions_of(*b)));
+}
+
+TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
+  LiveScene scene(options());
+  make_history(scene);
+  scene.set_loop(std::pair{moments_[0].time, moments_[1].time});
+  scene.set_speed(unlimited_speed);
+  scene.play();
+  const std::uint64_t before = scene.snapshot().resets;
+  while (scene.snapshot().resets < before + 3) {
+    scene.frame();
+    if (scene.snapshot().resets > before) {
+      EXPECT_LE(scene.snapshot().steps, moments_[1].steps);
+    }
+    std::this_thread::yield();
+  }
+  scene.pause();
+  scene.set_loop({});
+  scene.seek(moments_[5].time);
+  scene.wait_until_done();
+  expect_shown(scene, moments_[5]);
+}
+
+TEST_P(TimelineOn, WithoutMemoryThereIsOnlyThePresent) {
+  LiveScene scene(options());
+  scene.set_timeline_budget(1);
+  make_history(scene);
+  EXPECT_EQ(scene.snapshot().timeline.bytes, 0u);
+  scene.seek(0);
+  scene.step_back();
+  scene.wait_until_done();
+  expect_shown(scene, moments_[5]);
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+}
+
+TEST_P(TimelineOn, ResetBeginsTheTimelineAgain) {
+  LiveScene scene(options());
+  make_history(scene);
+  scene.seek(moments_[2].time);
+  scene.reset();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 0);
+  EXPECT_FALSE(scene.snapshot().timeline.viewing);
+  EXPECT_EQ(scene.snapshot().timeline.head, 0);
+}
+
+// Recordings.
+
+class PlayedRecording : public test::FolderTest, public testing::WithParamInterface<DeviceKind> {
+ protected:
+  void SetUp() override {
+    BackendTest::skip_without(GetParam());
+    if (IsSkipped()) return;
+    for (std::uint64_t i = 0; i < 2; ++i) robots_.push_back(test::small_voxel_robot(i));
+    Simulation simulation({.environment = Land{}, .device = {.kind = GetParam()}}, robots_);
+    test::record(simulation, path("walk.h5"), 100, 10);
+  }
+  void open(LiveScene& scene) {
+    scene.open({path("walk.h5")});
+    scene.wait_until_done();
+  }
+  std::vector<Robot> robots_;
+};
+INSTANTIATE_TEST_SUITE_P(All, PlayedRecording, every_device, BackendTest::name);
+
+TEST_P(PlayedRecording, ShowsItsFramesAndStraightLinesBetween) {
+  LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
+  open(scene);
+  EXPECT_TRUE(scene.snapshot().timeline.recording);
+  EXPECT_NEAR(scene.snapshot().timeline.head, 0.1, 1e-12);
+  EXPECT_TRUE(std::holds_alternative<Land>(scene.configuration().environment));
+  TrajectoryReader reader(path("walk.h5"));
+  for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
+    scene.seek(reader.time(frame));
+    scene.wait_until_done();
+    EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), reader.positions(frame)));
+    EXPECT_EQ(scene.snapshot().steps, reader.step(frame));
+  }
+  scene.seek((reader.time(3) + reader.time(4)) / 2);
+  scene.wait_until_done();
+  const std::vector<Vec3> before(reader.positions(3).begin(), reader.positions(3).end());
+  const auto after = reader.positions(4);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(scene.snapshot().positions.host()[i].x, 0.5f * (before[i].x + after[i].x), 1e-6);
+}
+
+TEST_P(PlayedRecording, GoesOnFromAFrameAsTheRobotsDid) {
+  LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
+  open(scene);
+  scene.seek(0.045);  // between frames 4 and 5
+  scene.go_on();
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().timeline.recording);
+  EXPECT_EQ(scene.snapshot().steps, 40);
+  make_steps(scene, 210);
+  Simulation simulation({.environment = Land{}, .device = {.kind = GetParam()}}, robots_);
+  simulation.step(250);
+  std::vector<Vec3> positions(simulation.mass_count());
+  simulation.read_positions(positions);
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), positions));
+  scene.seek(0.04);
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 40) << "the live run has a timeline of its own";
+}
+
+TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
+  LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
+  open(scene);
+  scene.set_speed(100);
+  scene.play();
+  while (scene.playing()) {
+    scene.frame();
+    std::this_thread::yield();
+  }
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 100);
+  EXPECT_TRUE(scene.snapshot().timeline.recording);
+  scene.reset();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 0);
+  scene.step();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 10) << "a step is a frame";
+  scene.step_back();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().steps, 0);
+}
+
+// The store.
+
+Keyframe keyframe_at(std::int64_t step, double work, std::uint64_t era = 0, std::size_t masses = 100) {
+  return {.state = {.clock = {.step = step},
+                    .positions = std::vector<Vec3>(masses),
+                    .velocities = std::vector<Vec3>(masses),
+                    .explosions = {}},
+          .configuration = {},
+          .robots = {},
+          .perturbations = {},
+          .next_event = 0,
+          .era = era,
+          .work = work};
+}
+
+TEST(Timeline, StaysInItsBudgetAndThinsOutWhatIsOld) {
+  Timeline timeline;
+  timeline.set_budget(12 * keyframe_at(0, 0).bytes());
+  for (std::int64_t i = 0; i < 60; ++i) {
+    timeline.add(keyframe_at(i * 100, 0.25 * static_cast<double>(i)));
+    ASSERT_LE(timeline.bytes(), timeline.budget());
+  }
+  EXPECT_EQ(timeline.size(), 12u);
+  // 15 s of work fit into 12 keyframes with no gap above 8 s.
+  EXPECT_EQ(timeline.front().step(), 0);
+  std::int64_t newer = 0, older = 0;  // keyframes in either half
+  for (std::int64_t step = 0; step < 6000; step += 100)
+    if (timeline.before(step)->step() == step) ++(step < 3000 ? older : newer);
+  EXPECT_GT(newer, older);
+  EXPECT_EQ(timeline.before(5900)->step(), 5900);
+}
+
+TEST(Timeline, LosesTheOldestRatherThanLongGaps) {
+  Timeline timeline;
+  timeline.set_budget(4 * keyframe_at(0, 0).bytes());
+  for (std::int64_t i = 0; i < 40; ++i) timeline.add(keyframe_at(i * 100, 5.0 * static_cast<double>(i)));
+  EXPECT_EQ(timeline.size(), 4u);
+  EXPECT_EQ(timeline.front().step(), 3600);
+  EXPECT_EQ(timeline.before(3500), nullptr);
+}
+
+TEST(Timeline, KnowsTimesAcrossChangesOfTheTimeStep) {
+  Timeline timeline;
+  timeline.note({.dt = 0.01});
+  timeline.note({.dt = 0.02, .base_time = 1, .base_step = 100});
+  EXPECT_EQ(timeline.step_at(0.5), 50);
+  EXPECT_EQ(timeline.step_at(1.5), 125);
+  EXPECT_EQ(timeline.step_at(-3), 0);
+  EXPECT_DOUBLE_EQ(timeline.time_at(50), 0.5);
+  EXPECT_DOUBLE_EQ(timeline.time_at(125), 1.5);
+  timeline.cut(60, 0);
+  timeline.note({.dt = 0.01});
+  EXPECT_EQ(timeline.step_at(1.5), 150);
+}
+
+TEST(Timeline, ACutForgetsLaterKeyframesAndEras) {
+  Timeline timeline;
+  for (std::int64_t i = 0; i < 5; ++i) timeline.add(keyframe_at(i * 10, 0.1 * static_cast<double>(i), i < 3 ? 0 : 1));
+  EXPECT_EQ(timeline.next_era(0)->step(), 30);
+  timeline.cut(25, 0);
+  EXPECT_EQ(timeline.size(), 3u);
+  EXPECT_EQ(timeline.next_era(0), nullptr);
+}
+
+}  // namespace
+}  // namespace mercury
