@@ -156,6 +156,13 @@ void LiveScene::select_all() {
     if (!before.contains(robot.body.id)) parts_->selected.push_back(robot.body.id);
 }
 void LiveScene::clear_selection() { parts_->selected.clear(); }
+void LiveScene::set_selection(const std::vector<RobotId>& robots) {
+  std::unordered_set<RobotId> free;
+  for (const DocumentRobot& robot : parts_->document.robots) free.insert(robot.body.id);
+  parts_->selected.clear();
+  for (const RobotId id : robots)
+    if (free.erase(id) > 0) parts_->selected.push_back(id);
+}
 bool LiveScene::is_selected(RobotId robot) const {
   return std::ranges::find(parts_->selected, robot) != parts_->selected.end();
 }

@@ -139,6 +139,7 @@ class LiveScene {
   void toggle_selected(RobotId robot);
   void select_all();
   void clear_selection();
+  void set_selection(const std::vector<RobotId>& robots);  // these alone, the last one becomes the current robot
   bool is_selected(RobotId robot) const;
   std::vector<RobotId> selection() const;  // in the order of the list
   std::optional<RobotId> current() const;

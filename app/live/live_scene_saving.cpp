@@ -130,8 +130,9 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
 
 std::string LiveScene::ranking_csv() const {
   std::string text =
-      "name,distance [m],mean speed [m/s],speed [m/s],kinetic energy [J],elastic energy [J],largest strain,exploded at "
-      "[s]\n";
+      "name,distance [m],mean speed [m/s],age [s],distance at equal age [m],speed [m/s],kinetic energy [J],elastic "
+      "energy "
+      "[J],largest strain,exploded at [s]\n";
   std::vector<RankingRow> rows = ranking();
   std::ranges::stable_sort(rows,
                            [](const auto& a, const auto& b) { return ranks_before(a, b, a.distance, b.distance); });
@@ -139,8 +140,8 @@ std::string LiveScene::ranking_csv() const {
     const DocumentRobot* robot = parts_->document.find(row.robot);
     if (!robot) continue;
     text += csv_field(robot->body.name);
-    for (const double figure :
-         {row.distance, row.mean_speed, row.speed, row.kinetic_energy, row.elastic_energy, row.largest_strain})
+    for (const double figure : {row.distance, row.mean_speed, row.age, row.distance_at_equal_age, row.speed,
+                                row.kinetic_energy, row.elastic_energy, row.largest_strain})
       text.append(1, ',').append(row.counts() ? csv_number(figure) : "");
     text.append(1, ',').append(row.exploded ? csv_number(row.exploded_at) : "").append(1, '\n');
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mercury/distance.h"
 
@@ -116,7 +117,8 @@ void Measurements::note(Track& track, const Telemetry& telemetry, double time) c
   row.exploded = telemetry.exploded;
   row.exploded_at = telemetry.exploded_at;
   row.distance = finite(distance_between(track.start, telemetry.center_of_mass, environment_));
-  row.mean_speed = time > track.start_time ? row.distance / (time - track.start_time) : 0;
+  row.age = std::max(0.0, time - track.start_time);
+  row.mean_speed = row.age > 0 ? row.distance / row.age : 0;
   row.speed = telemetry.exploded ? 0 : finite(length(telemetry.velocity));
   row.kinetic_energy = telemetry.exploded ? 0 : finite(telemetry.kinetic_energy);
   row.elastic_energy = telemetry.exploded ? 0 : finite(telemetry.elastic_energy);
@@ -175,9 +177,30 @@ Series Measurements::series(RobotId robot) const {
 
 std::vector<RankingRow> Measurements::ranking() const {
   const std::lock_guard lock(mutex_);
+  double youngest = std::numeric_limits<double>::infinity();
+  for (const auto& [id, track] : tracks_)
+    if (track.row.counts()) youngest = std::min(youngest, track.row.age);
   std::vector<RankingRow> rows;
-  for (const RobotId id : order_) rows.push_back(tracks_.at(id).row);
+  rows.reserve(order_.size());
+  for (const RobotId id : order_) {
+    const Track& track = tracks_.at(id);
+    rows.push_back(track.row);
+    rows.back().distance_at_equal_age = distance_at(track, youngest);
+  }
   return rows;
+}
+
+double Measurements::distance_at(const Track& track, double age) const {
+  if (age >= track.row.age) return track.row.distance;
+  const double time = track.start_time + age;
+  const std::span times(times_.begin() + static_cast<std::ptrdiff_t>(track.missing), track.samples.size());
+  const auto next = static_cast<std::size_t>(std::ranges::upper_bound(times, time) - times.begin());
+  // Before the first sample is the start, and after the last one the present.
+  const double before = next > 0 ? times[next - 1] : track.start_time;
+  const double after = next < times.size() ? times[next] : track.start_time + track.row.age;
+  const double low = next > 0 ? static_cast<double>(track.samples[next - 1].distance) : 0;
+  const double high = next < times.size() ? static_cast<double>(track.samples[next].distance) : track.row.distance;
+  return after > before ? low + (high - low) * (time - before) / (after - before) : low;
 }
 
 }  // namespace mercury

@@ -43,7 +43,9 @@ struct Series {
 struct RankingRow {
   RobotId robot = 0;
   double distance = 0;                            // of the centre of mass from its start, distance_between() [m]
-  double mean_speed = 0;                          // distance divided by the time since the start [m/s]
+  double mean_speed = 0;                          // distance divided by the age [m/s]
+  double age = 0;                                 // time since it was added, or since the last reset [s]
+  double distance_at_equal_age = 0;               // the distance when it was as old as the youngest robot is now [m]
   double speed = 0;                               // now [m/s]
   double kinetic_energy = 0, elastic_energy = 0;  // now [J]
   double largest_strain = 0;                      // so far [1]
@@ -91,7 +93,8 @@ class Measurements {
   // The series of one robot; empty if it is unknown.
   Series series(RobotId robot) const;
   // One row per robot, in the order of the robots, from the last observe(). Distances are those of the environment of
-  // the last restart() or set_robots().
+  // the last restart() or set_robots(). Distances at equal age are interpolated between samples; exploded robots do not
+  // count as the youngest.
   std::vector<RankingRow> ranking() const;
 
  private:
@@ -103,6 +106,8 @@ class Measurements {
     std::vector<Sample> samples;
     RankingRow row;
   };
+  // The distance at that age, between samples [m].
+  double distance_at(const Track& track, double age) const;
   void note(Track& track, const Telemetry& telemetry, double time) const;
   void thin();
 

@@ -267,6 +267,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   mouse_.draw(area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
+  context_.gestures = mouse_.used();
   if (skips_picture()) {
     imgui_.discard_frame();
     return;
@@ -367,6 +368,9 @@ void Viewer::present() {
   imgui_.end_frame();
   recorder_.capture_frame(context_, pixels);
   update_screenshot();
+  // After both, so that neither shows it.
+  if (recorder_.recording() && !recorder_.ending())
+    imgui_.draw_on_top([&](ImDrawList& list) { draw_recording_sign(list, context_, area_); });
   window_.swap_buffers();
 }
 

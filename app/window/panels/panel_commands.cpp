@@ -15,6 +15,7 @@
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/panels/scene_commands.h"
+#include "app/window/panels/text_size.h"
 #include "app/window/panels/timeline_strip.h"
 #include "app/window/panels/video_recorder.h"
 
@@ -88,10 +89,10 @@ void Panels::execute(const Command& command) {
       break;
     }
     case Action::larger_text:
-      change_text(0.1f);
+      change_text_size(context_, 1);
       break;
     case Action::smaller_text:
-      change_text(-0.1f);
+      change_text_size(context_, -1);
       break;
     case Action::messages:
       show("Messages");
@@ -118,11 +119,6 @@ void Panels::execute(const Command& command) {
       quit();
       break;
   }
-}
-
-void Panels::change_text(float factor) {
-  float& scale = context_.preferences.text_scale;
-  scale = std::clamp(std::round(10 * (scale + factor)) / 10, Preferences::least_text, Preferences::most_text);
 }
 
 void Panels::change_time(Action action) {

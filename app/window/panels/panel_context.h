@@ -11,6 +11,7 @@
 #include "app/window/toolkit/preferences.h"
 #include "app/window/toolkit/toasts.h"
 #include "app/window/toolkit/window.h"
+#include "app/window/viewport/mouse_controller.h"
 #include "app/window/viewport/orbit_controller.h"
 #include "app/window/viewport/viewport.h"
 
@@ -47,6 +48,7 @@ struct PanelContext {
   RobotCreation creation = {};
   EvolveRequest evolve = {};  // the settings of the last evolution
   Scrub scrub = {};
+  UsedGestures gestures = {};         // of this session
   float aspect = 16.0f / 9;           // width / height of the viewport in this frame
   bool screenshot_requested = false;  // set it to take one at the end of the frame
 };

@@ -62,6 +62,7 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   draw_axes(context_, area, camera, context_.scene.view().shown.scale_bar ? 2.6f * ImGui::GetFontSize() : 0);
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
+  first_steps_.draw(context_, area, dt);
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw(area.low, area.high, dt, context_.log);
   if (context_.toasts.take_click()) show("Messages");

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "app/window/panels/explosion_card.h"
+#include "app/window/panels/first_steps.h"
 #include "app/window/panels/panel_column.h"
 #include "app/window/panels/panel_context.h"
 #include "app/window/toolkit/key_bindings.h"
@@ -40,7 +41,7 @@ class Panels {
   void show(const std::string& panel);
   // Background work of panels, for about `seconds` (panel.h).
   void work(double seconds);
-  bool busy() const { return left_.busy() || right_.busy(); }
+  bool busy() const { return left_.busy() || right_.busy() || first_steps_.fading(); }
 
   // Quits, after asking the user if changes would be lost.
   void quit();
@@ -58,7 +59,6 @@ class Panels {
   void change_robots(Action action);
   void change_view(Action action, int number);
   void change_camera(Action action);
-  void change_text(float factor);
   bool is_narrow() const;
   bool column_open(Side side) const;
   void open_column(Side side, bool open);
@@ -67,6 +67,7 @@ class Panels {
 
   PanelContext& context_;
   ExplosionCard explosions_;
+  FirstSteps first_steps_;
   PanelColumn left_, right_;
   bool help_open_ = false, quit_confirmed_ = false;
   std::optional<Side> narrow_open_;  // the column that is open in a narrow window

@@ -84,9 +84,7 @@ void draw_speed(PanelContext& context) {
   auto speed = static_cast<float>(unlimited ? 100 : scene.speed());
   const std::string shown = unlimited ? "-" : "\xc3\x97 " + factor_text(static_cast<double>(speed));
   ImGui::BeginDisabled(unlimited);
-  if (ImGui::SliderFloat("##speed", &speed, 0.001f, 100, shown.c_str(),
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat) &&
-      std::isfinite(speed))
+  if (number_slider("##speed", speed, 0.001f, 100, shown.c_str(), true) && std::isfinite(speed))
     scene.set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
   context.log.item("speed");

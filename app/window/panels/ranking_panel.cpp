@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 #include <utility>
 
 #include "app/window/panels/robot_commands.h"
@@ -15,10 +16,27 @@
 namespace mercury::window {
 namespace {
 
+struct Column {
+  const char* name;
+  const char* help;
+  double (*figure)(const RankingRow& row);
+};
+
 // The columns after the name.
-std::array<double, 5> numbers_of(const RankingRow& row) {
-  return {row.distance, row.mean_speed, row.speed, row.kinetic_energy + row.elastic_energy, row.largest_strain};
-}
+constexpr std::array columns{
+    Column{"distance", "of the centre of mass since birth: since the robot was added, or the last reset [m]",
+           [](const RankingRow& row) { return row.distance; }},
+    Column{"mean speed", "distance divided by age [m/s]", [](const RankingRow& row) { return row.mean_speed; }},
+    Column{"age", "time since birth: since the robot was added, or the last reset [s]",
+           [](const RankingRow& row) { return row.age; }},
+    Column{"at equal age", "distance when it was as old as the youngest robot is now: fair to young robots [m]",
+           [](const RankingRow& row) { return row.distance_at_equal_age; }},
+    Column{"speed", "of the centre of mass, now [m/s]", [](const RankingRow& row) { return row.speed; }},
+    Column{"energy", "kinetic and elastic, now [J]",
+           [](const RankingRow& row) { return row.kinetic_energy + row.elastic_energy; }},
+    Column{"largest strain", "of any spring, so far", [](const RankingRow& row) { return row.largest_strain; }}};
+
+constexpr const char* help_of_robot = "its place in this order, and its name";
 
 }  // namespace
 
@@ -29,10 +47,14 @@ void RankingPanel::draw(PanelContext& context) {
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
   const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
-  if (ImGui::BeginTable("ranking", 6, flags, {0, std::max(height, 6 * ImGui::GetFrameHeight())})) {
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const ImVec2 size{0, std::max(height, 6 * ImGui::GetFrameHeight())};
+  held_ = ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
+          ImGui::IsMouseHoveringRect(low, {low.x + ImGui::GetContentRegionAvail().x, low.y + size.y});
+  if (ImGui::BeginTable("ranking", 1 + static_cast<int>(columns.size()), flags, size)) {
     draw_headings(context);
     read_sort_order();
-    sort(rows);
+    arrange(rows);
     log_order(context, rows);
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(rows.size()));
@@ -41,9 +63,14 @@ void RankingPanel::draw(PanelContext& context) {
         draw_row(context, i, rows[static_cast<std::size_t>(i)]);
     ImGui::EndTable();
   }
+  draw_notes(context, rows);
+}
+
+void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& rows) {
   const bool any_exploded = std::ranges::any_of(rows, [](const Row& row) { return row.values.exploded; });
-  note(any_exploded ? "distance in m, speeds in m/s, energy in J; - = exploded; click a heading to sort"
-                    : "distance in m, speeds in m/s, energy in J; click a heading to sort");
+  note(held_          ? "the order stays as it is while the mouse is over the table"
+       : any_exploded ? "m, m/s, s, J; - = exploded; click a heading to sort"
+                      : "m, m/s, s, J; click a heading to sort");
   if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
     save_csv(context, "ranking", [&context] { return context.scene.ranking_csv(); });
   context.log.item("ranking.csv");
@@ -52,32 +79,51 @@ void RankingPanel::draw(PanelContext& context) {
 void RankingPanel::draw_headings(PanelContext& context) {
   ImGui::TableSetupScrollFreeze(1, 1);
   ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 6 * ImGui::GetFontSize());
-  ImGui::TableSetupColumn("distance", ImGuiTableColumnFlags_DefaultSort | ImGuiTableColumnFlags_PreferSortDescending);
-  ImGui::TableSetupColumn("mean speed", ImGuiTableColumnFlags_PreferSortDescending);
-  ImGui::TableSetupColumn("speed", ImGuiTableColumnFlags_PreferSortDescending);
-  ImGui::TableSetupColumn("energy", ImGuiTableColumnFlags_PreferSortDescending);
-  ImGui::TableSetupColumn("largest strain", ImGuiTableColumnFlags_PreferSortDescending);
+  for (const Column& column : columns)
+    ImGui::TableSetupColumn(column.name, ImGuiTableColumnFlags_PreferSortDescending |
+                                             (&column == columns.data() ? ImGuiTableColumnFlags_DefaultSort : 0));
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (int column = 0; column < ImGui::TableGetColumnCount(); ++column) {
     if (!ImGui::TableSetColumnIndex(column)) continue;
     ImGui::TableHeader(ImGui::TableGetColumnName(column));
     context.log.item(std::string("ranking.by.") + ImGui::TableGetColumnName(column));
+    tooltip(column == 0 ? help_of_robot : columns[static_cast<std::size_t>(column) - 1].help);
   }
 }
 
 void RankingPanel::read_sort_order() {
   ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
   if (!specs || specs->SpecsCount == 0) return;
-  if (std::exchange(specs->SpecsDirty, false)) logged_ = false;
+  if (std::exchange(specs->SpecsDirty, false)) {
+    logged_ = false;
+    order_.clear();  // a click on a heading sorts, wherever the mouse is
+  }
   column_ = specs->Specs[0].ColumnIndex;
   ascending_ = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
+}
+
+// Sorts, or keeps the order under the mouse; robots that came meanwhile follow at the end.
+void RankingPanel::arrange(std::vector<Row>& rows) {
+  if (!held_ || order_.empty()) {
+    sort(rows);
+  } else {
+    std::unordered_map<RobotId, std::size_t> places;
+    for (const RobotId robot : order_) places.emplace(robot, places.size());
+    const auto place = [&](const Row& row) {
+      const auto found = places.find(row.values.robot);
+      return found == places.end() ? places.size() : found->second;
+    };
+    std::ranges::stable_sort(rows, {}, place);
+  }
+  order_.clear();
+  for (const Row& row : rows) order_.push_back(row.values.robot);
 }
 
 void RankingPanel::sort(std::vector<Row>& rows) const {
   std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) {
     if (column_ == 0) return ascending_ ? a.name < b.name : b.name < a.name;
-    const auto index = static_cast<std::size_t>(std::clamp(column_, 1, 5) - 1);
-    return ranks_before(a.values, b.values, numbers_of(a.values)[index], numbers_of(b.values)[index], ascending_);
+    const auto& figure = columns[std::min(static_cast<std::size_t>(column_), columns.size()) - 1].figure;
+    return ranks_before(a.values, b.values, figure(a.values), figure(b.values), ascending_);
   });
 }
 
@@ -96,13 +142,16 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   ImGui::TableNextColumn();
   if (ImGui::Selectable(fmt::format("{}. {}", index + 1, row.name).c_str(), context.scene.is_selected(robot),
                         ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
-    context.scene.select(robot, !ImGui::GetIO().KeyCtrl && !ImGui::GetIO().KeyShift);
-    if (ImGui::IsMouseDoubleClicked(0)) frame_robots(context, {robot});
+    if (ImGui::IsMouseDoubleClicked(0))
+      frame_robots(context, {robot});
+    else
+      selection_.click(context.scene, robot, order_);
+    context.log.write("row", {{"robot", row.name}, {"place", index}, {"selected", context.scene.selection().size()}});
   }
   if (index < 20) context.log.item(fmt::format("ranking.{}", index));
-  for (const double number : numbers_of(row.values)) {
+  for (const Column& column : columns) {
     ImGui::TableNextColumn();
-    right_aligned(row.values.counts() ? fmt::format("{:.3g}", number) : "-");
+    right_aligned(row.values.counts() ? fmt::format("{:.3g}", column.figure(row.values)) : "-");
   }
   ImGui::PopID();
 }

@@ -25,6 +25,9 @@ std::vector<RobotId> selected_or_all(const LiveScene& scene) {
 }
 
 std::string name_of_robot(const LiveScene& scene, RobotId robot) {
+  // The list of the snapshot has an index, which counts with a thousand robots; the document knows the newest ones.
+  const LiveRobots& robots = *scene.snapshot().robots;
+  if (const auto index = robots.index_of(robot)) return robots.robots[*index].name;
   const DocumentRobot* found = scene.document().find(robot);
   return found ? found->body.name : "?";
 }

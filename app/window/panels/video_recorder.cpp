@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/video_recorder.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/screenshot.h"
+#include "app/window/toolkit/theme.h"
 
 namespace mercury::window {
 namespace {
@@ -84,6 +87,20 @@ void VideoRecorder::start_group_video(PanelContext& context) {
   options.quality = context.preferences.quality;
   with_window_camera(context, [&] { group_ = context.scene.export_video(options); });
   context.log.write("filming", {{"file", options.output}});
+}
+
+void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area) {
+  const auto seconds = static_cast<long>(context.recorder.seconds());
+  const std::string time = fmt::format("{}:{:02}", seconds / 60, seconds % 60);
+  const float text = ImGui::GetFontSize();
+  const ImVec2 low{area.low.x + 1.2f * text, area.low.y + 0.8f * text};
+  const ImVec2 high{low.x + 1.9f * text + ImGui::CalcTextSize(time.c_str()).x, low.y + 1.5f * text};
+  const float middle = (low.y + high.y) / 2;
+  list.AddRectFilled(low, high, palette().on_picture, 0.4f * text);
+  list.AddCircleFilled({low.x + 0.8f * text, middle}, 0.4f * text, IM_COL32(235, 40, 40, 255));
+  list.AddText(ImGui::GetFont(), text, {low.x + 1.5f * text, middle - 0.5f * text}, ImGui::GetColorU32(ImGuiCol_Text),
+               time.c_str());
+  context.log.item("recording.sign", low, high);
 }
 
 }  // namespace mercury::window

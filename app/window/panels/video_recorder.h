@@ -10,6 +10,7 @@
 #include "app/live/group_video.h"
 #include "app/live/screen_recording.h"
 #include "app/window/panels/panel_context.h"
+#include "app/window/viewport/viewport_area.h"
 
 namespace mercury::window {
 
@@ -57,5 +58,8 @@ class VideoRecorder {
 
 // The folder for videos and screenshots: the last one saved to, or the working directory.
 std::filesystem::path picture_folder(const PanelContext& context);
+
+// Draws a red dot and the time of the recording in the upper left corner of the picture.
+void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area);
 
 }  // namespace mercury::window

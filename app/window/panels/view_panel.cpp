@@ -177,7 +177,7 @@ bool draw_layout(ViewSettings& view, int robots, EventLog& log) {
   return changed;
 }
 
-bool draw_appearance_section(PanelContext& context, ViewSettings& view) {
+bool draw_appearance_section(PanelContext& context, ViewSettings& view, TextSizeRow& text_size) {
   heading("Layout and appearance");
   EventLog& log = context.log;
   Preferences& preferences = context.preferences;
@@ -192,14 +192,7 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view) {
   if (combo("quality", "of the picture; higher is slower", quality, {"automatic", "low", "medium", "high"}))
     preferences.quality = static_cast<render::Quality>(quality);
   log.item("quality");
-  row("text size", "of the panels");
-  if (ImGui::Button("-##text", {1.8f * ImGui::GetFontSize(), 0}))
-    preferences.text_scale = std::max(0.7f, preferences.text_scale - 0.1f);
-  ImGui::SameLine();
-  if (ImGui::Button("+##text", {1.8f * ImGui::GetFontSize(), 0}))
-    preferences.text_scale = std::min(2.5f, preferences.text_scale + 0.1f);
-  ImGui::SameLine();
-  ImGui::Text("%.0f %%", 100 * static_cast<double>(preferences.text_scale));
+  text_size.draw(context);
   return changed;
 }
 
@@ -214,7 +207,7 @@ void ViewPanel::draw(PanelContext& context) {
   changed |= draw_arrow_section(view, environment, context.log);
   draw_camera_section(context.camera, context.log);
   draw_bookmarks(context);
-  changed |= draw_appearance_section(context, view);
+  changed |= draw_appearance_section(context, view, text_size_);
   changed |= draw_cut_section(view, context.log);
   if (changed) context.scene.set_view(view);
 }

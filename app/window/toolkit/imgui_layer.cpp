@@ -138,6 +138,21 @@ void ImGuiLayer::end_frame() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
+void ImGuiLayer::draw_on_top(const std::function<void(ImDrawList& list)>& draw) {
+  ImDrawList list(ImGui::GetDrawListSharedData());
+  list._ResetForNewFrame();
+  list.PushTextureID(ImGui::GetIO().Fonts->TexID);
+  list.PushClipRectFullScreen();
+  draw(list);
+  ImDrawList* lists = &list;
+  ImDrawData data = *ImGui::GetDrawData();  // for the size of the display
+  data.CmdLists = &lists;
+  data.CmdListsCount = 1;
+  data.TotalVtxCount = list.VtxBuffer.Size;
+  data.TotalIdxCount = list.IdxBuffer.Size;
+  ImGui_ImplOpenGL3_RenderDrawData(&data);
+}
+
 void ImGuiLayer::discard_frame() { ImGui::EndFrame(); }
 
 ImFont* large_font() { return ImGui::GetIO().Fonts->Fonts[1]; }

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "app/window/toolkit/window.h"
 #include "render/scene.h"
 
+struct ImDrawList;
 struct ImFont;
 
 namespace mercury::window {
@@ -29,6 +31,8 @@ class ImGuiLayer {
   // Starts a frame that receives these events.
   void begin_frame(const std::vector<InputEvent>& events);
   void end_frame();  // draws the frame over the window's framebuffer
+  // Draws something more over the window's framebuffer, after end_frame().
+  void draw_on_top(const std::function<void(ImDrawList& list)>& draw);
   // Ends the frame without drawing it.
   void discard_frame();
 

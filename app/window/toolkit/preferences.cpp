@@ -50,6 +50,7 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   read(document, "save_folder", preferences.save_folder);
   read(document, "pause_on_explosion", preferences.pause_on_explosion);
   read(document, "timeline_megabytes", preferences.timeline_megabytes);
+  read(document, "gestures_used", preferences.gestures_used);
   std::string quality;
   read(document, "quality", quality);
   try {
@@ -82,7 +83,8 @@ void save(const Preferences& preferences, const std::filesystem::path& file) {
                       {"open_folder", preferences.open_folder},
                       {"save_folder", preferences.save_folder},
                       {"pause_on_explosion", preferences.pause_on_explosion},
-                      {"timeline_megabytes", preferences.timeline_megabytes}};
+                      {"timeline_megabytes", preferences.timeline_megabytes},
+                      {"gestures_used", preferences.gestures_used}};
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);
   const std::filesystem::path temporary = file.string() + ".new";

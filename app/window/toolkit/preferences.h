@@ -2,6 +2,7 @@
 // The window settings that are kept for the next start. Settings of the scene are in app/live/session_settings.h.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -25,6 +26,7 @@ struct Preferences {
   bool pause_on_explosion = false;
   static constexpr int least_timeline = 16, most_timeline = 16384;
   int timeline_megabytes = 512;  // of memory for the timeline, at most
+  std::array<bool, 4> gestures_used{};  // turn, move, zoom, pull; the window explains the others
 };
 
 // The folder of settings: $XDG_CONFIG_HOME/mercury or ~/.config/mercury; empty if neither variable is set.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/toolkit/widgets.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,7 +44,62 @@ bool row_with_reset(const char* name, const char* text, bool differs) {
   return clicked;
 }
 
+// Where the knob is: 0 = left, 1 = right.
+float knob_place(float value, float low, float high, bool logarithmic) {
+  if (!(high > low)) return 0;
+  if (!logarithmic) return std::clamp((value - low) / (high - low), 0.0f, 1.0f);
+  const float least = std::max(low, 1e-3f);  // ImGui's logarithmic sliders come near 0 in the same way
+  return std::clamp(std::log(std::max(value, least) / least) / std::log(high / least), 0.0f, 1.0f);
+}
+
+// Draws the number of the slider that was just drawn: in the middle, or beside the knob if that is there.
+void draw_number(const char* text, float place) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const float grab = ImGui::GetStyle().GrabMinSize, width = ImGui::CalcTextSize(text).x;
+  const float knob = low.x + 2 + grab / 2 + place * (high.x - low.x - 4 - grab);
+  const float gap = grab / 2 + 0.3f * ImGui::GetFontSize();
+  float x = (low.x + high.x - width) / 2;
+  if (knob + gap > x && knob - gap < x + width) x = place < 0.5f ? knob + gap : knob - gap - width;
+  ImGui::PushClipRect(low, high, true);
+  ImGui::GetWindowDrawList()->AddText({x, (low.y + high.y - ImGui::GetFontSize()) / 2},
+                                      ImGui::GetColorU32(ImGuiCol_Text), text);
+  ImGui::PopClipRect();
+}
+
+// Draws a slider without its number, and the number where it can be read.
+bool slider_with_number(const char* id, auto draw, auto number) {
+  const ImGuiID item = ImGui::GetID(id);
+  const bool typing = ImGui::TempInputIsActive(item);
+  if (!typing) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
+  const bool changed = draw();
+  if (!typing) ImGui::PopStyleColor();
+  if (!ImGui::TempInputIsActive(item)) number();
+  return changed;
+}
+
 }  // namespace
+
+bool number_slider(const char* id, float& value, float low, float high, const char* format, bool logarithmic) {
+  const auto flags = ImGuiSliderFlags_NoRoundToFormat | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  return slider_with_number(
+      id, [&] { return ImGui::SliderFloat(id, &value, low, high, format, flags); },
+      [&] {
+        std::array<char, 64> text{};
+        std::snprintf(text.data(), text.size(), format, static_cast<double>(value));
+        draw_number(text.data(), knob_place(value, low, high, logarithmic));
+      });
+}
+
+bool number_slider(const char* id, int& value, int low, int high, const char* format) {
+  return slider_with_number(
+      id, [&] { return ImGui::SliderInt(id, &value, low, high, format); },
+      [&] {
+        std::array<char, 64> text{};
+        std::snprintf(text.data(), text.size(), format, value);
+        draw_number(text.data(),
+                    knob_place(static_cast<float>(value), static_cast<float>(low), static_cast<float>(high), false));
+      });
+}
 
 void heading(const char* text) {
   ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
@@ -106,10 +163,8 @@ bool toggle_button(const char* text, bool on) {
 bool slider(const char* name, const char* text, float& value, float default_value, const SliderRange& range) {
   ImGui::PushID(name);
   const bool reset = row_with_reset(name, text, value != default_value);
-  ImGuiSliderFlags flags = ImGuiSliderFlags_NoRoundToFormat;
-  if (range.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   float edited = value;
-  bool changed = ImGui::SliderFloat("##value", &edited, range.low, range.high, range.format, flags);
+  bool changed = number_slider("##value", edited, range.low, range.high, range.format, range.logarithmic);
   tooltip("drag, or Ctrl-click to type");
   if (reset) {
     edited = default_value;

@@ -35,6 +35,11 @@ void right_aligned(const std::string& text);
 // A button that is highlighted while `on`. Returns true when it was clicked.
 bool toggle_button(const char* text, bool on);
 
+// Sliders as ImGui's, whose number steps aside when the knob reaches it. Ctrl-click types a value. They return true
+// when the value changed.
+bool number_slider(const char* id, float& value, float low, float high, const char* format, bool logarithmic = false);
+bool number_slider(const char* id, int& value, int low, int high, const char* format = "%d");
+
 struct SliderRange {
   float low, high;
   const char* format;  // as "%.2f s"

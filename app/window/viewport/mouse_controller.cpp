@@ -56,7 +56,10 @@ void MouseController::update(const ViewportArea& area, const render::Camera& cam
     drag(area, camera);
     if (!ImGui::IsMouseDown(button_)) release(area, camera);
   }
-  if (free && io.MouseWheel != 0) camera_.zoom(std::pow(wheel_factor, io.MouseWheel));
+  if (free && io.MouseWheel != 0) {
+    camera_.zoom(std::pow(wheel_factor, io.MouseWheel));
+    used_.zoomed = true;
+  }
   if (drag_ == Drag::none && free)
     hover(area, camera);
   else
@@ -95,10 +98,12 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
     const render::Ray ray = ray_at(area, camera, io.MousePos);
     const float along = pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera)));
     scene_.move_perturbation(ray.origin + along * ray.direction);
+    used_.pulled = used_.pulled || dragged_;
     return;
   }
   if (!dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
   const float right = io.MouseDelta.x / area.height(), up = -io.MouseDelta.y / area.height();
+  (drag_ == Drag::turn ? used_.turned : used_.moved) = true;
   if (drag_ == Drag::turn) camera_.turn(right, up);
   if (drag_ == Drag::pan) camera_.pan(right, up);
 }

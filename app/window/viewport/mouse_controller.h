@@ -13,6 +13,11 @@
 
 namespace mercury::window {
 
+// The gestures that the user has made.
+struct UsedGestures {
+  bool turned = false, moved = false, zoomed = false, pulled = false;
+};
+
 class MouseController {
  public:
   MouseController(LiveScene& scene, OrbitController& camera, EventLog& log, Toasts& toasts)
@@ -27,6 +32,7 @@ class MouseController {
   std::optional<std::size_t> hovered() const;
   // True while a button is held.
   bool busy() const { return drag_ != Drag::none; }
+  const UsedGestures& used() const { return used_; }
 
  private:
   enum class Drag { none, turn, pan, pull };
@@ -42,6 +48,7 @@ class MouseController {
   OrbitController& camera_;
   EventLog& log_;
   Toasts& toasts_;
+  UsedGestures used_;
   Drag drag_ = Drag::none;
   int button_ = 0;
   bool dragged_ = false;

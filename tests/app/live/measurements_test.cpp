@@ -133,6 +133,28 @@ TEST(Measurements, DistancesOnLandAreAlongTheGround) {
   }
 }
 
+// Robot 9 starts 1 s after robot 4; both move steadily.
+TEST(Measurements, DistancesAtEqualAgeAreThoseAtTheAgeOfTheYoungest) {
+  Measurements measurements(64);
+  const LiveRobots both = two_robots();
+  const LiveRobots first{.robots = {both.robots[0]}, .mass_offsets = {0, 1}};
+  measurements.restart(first, 0, 0, {}, first_of(moving(0)));
+  std::int64_t step = 0;
+  const auto time = [&] { return 1e-3 * static_cast<double>(step); };
+  for (; step < 1000; step = measurements.next_step()) measurements.observe(time(), step, first_of(moving(time())));
+  const double came = time();
+  measurements.set_robots(both, came, Ocean{}, moving(came));
+  for (; step < 2500; step = measurements.next_step()) measurements.observe(time(), step, moving(time()));
+  measurements.observe(2.51, 2510, moving(2.51));
+  const auto rows = measurements.ranking();
+  EXPECT_NEAR(rows[0].age, 2.51, 1e-9);
+  EXPECT_NEAR(rows[1].age, 2.51 - came, 1e-9);
+  EXPECT_NEAR(rows[0].distance, 2.51, 1e-5);
+  EXPECT_NEAR(rows[0].distance_at_equal_age, rows[1].age, 1e-5);
+  EXPECT_NEAR(rows[1].distance_at_equal_age, rows[1].distance, 1e-9);
+  EXPECT_NEAR(rows[1].distance, 2 * rows[1].age, 1e-5);
+}
+
 // Whatever the figure and the direction of the order.
 TEST(Measurements, ExplodedRobotsRankLast) {
   const RankingRow slow{.distance = 1}, fast{.distance = 2}, exploded{.distance = 8.1, .exploded = true};

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/first_steps.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "app/window/toolkit/theme.h"
+
+namespace mercury::window {
+namespace {
+
+struct Gesture {
+  const char* hand;
+  const char* effect;
+};
+constexpr std::array<Gesture, 4> gestures{
+    {{"drag", "turn"}, {"right drag", "move"}, {"wheel", "zoom"}, {"Ctrl drag", "pull a mass"}}};
+constexpr float fade_time = 0.8f;  // [s]
+
+ImU32 faded(ImU32 color, float opacity) {
+  ImVec4 parts = ImGui::ColorConvertU32ToFloat4(color);
+  parts.w *= opacity;
+  return ImGui::ColorConvertFloat4ToU32(parts);
+}
+
+float width_of(const Gesture& gesture) {
+  return ImGui::CalcTextSize(gesture.hand).x + ImGui::CalcTextSize(gesture.effect).x + 1.6f * ImGui::GetFontSize();
+}
+
+void draw_chip(const Gesture& gesture, ImVec2 at, float opacity) {
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled(at, {at.x + width_of(gesture), at.y + 1.7f * text}, faded(palette().on_picture, 0.85f * opacity),
+                     0.4f * text);
+  list.AddText({at.x + margin, at.y + 0.35f * text}, faded(palette().accent, opacity), gesture.hand);
+  list.AddText({at.x + margin + ImGui::CalcTextSize(gesture.hand).x + 0.6f * text, at.y + 0.35f * text},
+               faded(ImGui::GetColorU32(ImGuiCol_Text), opacity), gesture.effect);
+}
+
+}  // namespace
+
+void FirstSteps::draw(PanelContext& context, const ViewportArea& area, double dt) {
+  Preferences& preferences = context.preferences;
+  const UsedGestures& used = context.gestures;
+  const std::array now{used.turned, used.moved, used.zoomed, used.pulled};
+  std::vector<std::size_t> shown;
+  fading_ = false;
+  for (std::size_t i = 0; i < gestures.size(); ++i) {
+    preferences.gestures_used[i] = preferences.gestures_used[i] || now[i];
+    if (preferences.gestures_used[i]) opacity_[i] -= static_cast<float>(dt) / fade_time;
+    // One that was used in an earlier session does not appear at all.
+    if (preferences.gestures_used[i] && !now[i]) opacity_[i] = 0;
+    fading_ = fading_ || (preferences.gestures_used[i] && opacity_[i] > 0);
+    if (opacity_[i] > 0) shown.push_back(i);
+  }
+  if (!context.preferences.panels) return;
+  // As many rows as the width of the picture needs.
+  const float text = ImGui::GetFontSize(), spacing = 0.5f * text, room = area.width() - 2 * text;
+  float y = area.high.y - 2.6f * text;
+  while (!shown.empty()) {
+    float width = -spacing;
+    std::size_t count = 0;
+    while (count < shown.size() && (count == 0 || width + spacing + width_of(gestures[shown[count]]) <= room))
+      width += spacing + width_of(gestures[shown[count++]]);
+    float x = (area.low.x + area.high.x - width) / 2;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Gesture& gesture = gestures[shown[k]];
+      draw_chip(gesture, {x, y}, std::clamp(opacity_[shown[k]], 0.0f, 1.0f));
+      context.log.item(std::string("gesture.") + gesture.effect, {x, y}, {x + width_of(gesture), y + 1.7f * text});
+      x += width_of(gesture) + spacing;
+    }
+    shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(count));
+    y -= 2.1f * text;
+  }
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The four gestures of the mouse, shown quietly over the picture until each has been used once.
+#pragma once
+
+#include <array>
+
+#include "app/window/panels/panel_context.h"
+#include "app/window/viewport/viewport_area.h"
+
+namespace mercury::window {
+
+class FirstSteps {
+ public:
+  // Draws the gestures that are new to the user at the bottom of the picture. Never takes the mouse. `dt`: time since
+  // the last frame [s].
+  void draw(PanelContext& context, const ViewportArea& area, double dt);
+  bool fading() const { return fading_; }
+
+ private:
+  std::array<float, 4> opacity_{1, 1, 1, 1};
+  bool fading_ = false;
+};
+
+}  // namespace mercury::window
