@@ -46,6 +46,7 @@ void LiveScene::frame(float aspect) {
     std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
   }
   if (parts.perturbation && !parts.document.find(parts.perturbation->robot)) end_perturbation();
+  parts.update_attachments();
   ViewSettings shown = parts.view;
   if (parts.from_above) shown.camera.mode = *parts.from_above ? CameraMode::top : CameraMode::group;
   if (parts.facing) {
@@ -88,7 +89,14 @@ void LiveScene::step(std::int64_t count) {
   parts_->playing = false;
   parts_->physics.step(count);
 }
-void LiveScene::reset() { parts_->physics.reset(); }
+void LiveScene::reset() {
+  const bool pins = std::ranges::any_of(parts_->attachments, &Parts::Attachment::pin);
+  if (pins) {
+    parts_->pins_wait = parts_->snapshot->resets;
+    parts_->send_perturbation();
+  }
+  parts_->physics.reset();
+}
 
 void LiveScene::set_speed(double speed) {
   if (std::isnan(speed)) return;
@@ -135,6 +143,8 @@ std::vector<RobotEntry> LiveScene::entries() const {
   }
   return entries;
 }
+
+std::size_t LiveScene::robot_count() const { return parts_->document.robots.size(); }
 
 const SceneDocument& LiveScene::document() const { return parts_->document; }
 
@@ -185,6 +195,8 @@ void LiveScene::set_hidden(RobotId robot, bool hidden) {
   else
     parts_->hidden.erase(robot);
 }
+
+bool LiveScene::is_hidden(RobotId robot) const { return parts_->hidden.contains(robot); }
 
 std::vector<Work> LiveScene::work() const { return parts_->background.work(); }
 void LiveScene::cancel_work(std::uint64_t work) { parts_->background.cancel(work); }

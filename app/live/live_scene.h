@@ -24,6 +24,7 @@
 #include "app/live/picking.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
+#include "app/live/voxel_edit.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -111,6 +112,7 @@ class LiveScene {
 
   // Robots.
   std::vector<RobotEntry> entries() const;
+  std::size_t robot_count() const;
   const SceneDocument& document() const;
   // Returns the ids of those that can be used. `unsaved`: they are in no file.
   std::vector<RobotId> add(std::vector<Robot> robots, bool unsaved = true);
@@ -126,9 +128,16 @@ class LiveScene {
   // Makes a child of each robot in the background, beside its parent or in its place. Only robots with a known
   // generator can have children.
   void mutate(const std::vector<RobotId>& robots, const MutationRequest& mutation, bool replace = false);
+  // Makes a child of two robots in the background. Both must be of one generator.
+  void breed(RobotId a, RobotId b, std::uint64_t seed);
   void clear();
   void rename(RobotId robot, const std::string& name);
   bool can_mutate(RobotId robot) const;
+  // Edits of a voxel robot's body. The robot goes on where it is, and what is attached to it comes off. edit_voxel()
+  // returns false, with a message, if the edit cannot be made.
+  bool has_voxels(RobotId robot) const;
+  std::optional<VoxelSide> voxel_side(const Hit& hit) const;
+  bool edit_voxel(RobotId robot, const VoxelSide& side, const VoxelEdit& edit);
   std::vector<Work> work() const;  // running and waiting background tasks, for progress bars
   void cancel_work(std::uint64_t work);
   void wait_for_work();    // until all background tasks have ended and their results are in the scene
@@ -144,6 +153,7 @@ class LiveScene {
   std::vector<RobotId> selection() const;  // in the order of the list
   std::optional<RobotId> current() const;
   void set_hidden(RobotId robot, bool hidden);
+  bool is_hidden(RobotId robot) const;
 
   // Undo and redo. Successive changes of one kind, such as those of a slider, are one edit until end_edit().
   bool can_undo() const;
@@ -154,7 +164,9 @@ class LiveScene {
   void redo();
   void end_edit();
 
-  // Parameters. An invalid value changes nothing: it is reported and the result is false.
+  // Parameters. An invalid value changes nothing: it is reported and the result is false. A change of the environment
+  // is an edit of its own. Robots that come to land are set down at rest; undo takes every robot back to where and how
+  // it was before the change.
   const Configuration& configuration() const;
   bool set_configuration(const Configuration& configuration);  // keeps the device
   void reset_configuration();                                  // to the defaults of the environment; keeps the device
@@ -175,6 +187,13 @@ class LiveScene {
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
   std::optional<PerturbationDetails> perturbation() const;
+  // Springs that stay until they are removed or their robot goes. attach_perturbation() ends the perturbation and
+  // leaves its spring; pin() holds a mass where it is, and after a reset where it starts.
+  void attach_perturbation();
+  void pin(const Hit& hit);
+  bool has_attachments(const std::vector<RobotId>& robots) const;
+  void remove_attachments(const std::vector<RobotId>& robots);
+  std::vector<PerturbationDetails> attachments() const;
 
   // Files. An existing file is replaced only with `overwrite`.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);

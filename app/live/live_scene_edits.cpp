@@ -151,9 +151,15 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
     parts_->report(Severity::warning, error.what());
     return false;
   }
-  parts_->edit("change parameters", "parameters");
+  if (wanted.environment.index() != parts_->document.configuration.environment.index()) {
+    parts_->edit(fmt::format("move to {}", name_of(wanted.environment)));
+    parts_->document.surroundings = ++parts_->last_surroundings;
+  } else {
+    parts_->edit("change parameters", "parameters");
+  }
   parts_->document.configuration = wanted;
   parts_->apply_document();
+  if (!parts_->attachments.empty()) parts_->send_perturbation();
   return true;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes robots for the window's scene in the background: random robots and children of others.
 #include <algorithm>
+#include <array>
 
 #include "app/live/live_scene_parts.h"
 #include "app/options/robot_output.h"
@@ -105,6 +106,30 @@ void LiveScene::mutate(const std::vector<RobotId>& robots, const MutationRequest
   };
   parts.background.begin("mutating " + robot_count_text(parents->size()), static_cast<std::int64_t>(parents->size()),
                          task);
+}
+
+void LiveScene::breed(RobotId a, RobotId b, std::uint64_t seed) {
+  Parts& parts = *parts_;
+  const DocumentRobot *first = parts.document.find(a), *second = parts.document.find(b);
+  if (!first || !second) return;
+  const auto parents =
+      std::make_shared<const std::array<Robot, 2>>(std::array<Robot, 2>{whole_robot(*first), whole_robot(*second)});
+  const auto task = [&parts, parents, a, seed](WorkControl&) -> Background::Finish {
+    std::shared_ptr<Robot> child;
+    try {
+      const auto& [mother, father] = *parents;
+      child = std::make_shared<Robot>(cross_robots(mother, father, seed, mother.name + "-x"));
+    } catch (const InputError& error) {
+      parts.messages.add(Severity::warning, error.what());
+    }
+    return [&parts, a, child] {
+      if (!child) return;
+      parts.edit("breed a robot");
+      parts.place_child(a, std::move(*child), false);
+      parts.apply_document();
+    };
+  };
+  parts.background.begin("breeding a robot", 1, task);
 }
 
 // Adds a child at the end of the list, or in its parent's place.

@@ -46,7 +46,14 @@ struct LiveScene::Parts {
   std::vector<double> bookmarks;     // ascending [s]
   std::optional<double> loop_begin;  // of a loop that is not closed yet [s]
   bool goes_on = false;              // the moment shown becomes the present; physics has not done so yet
-  mutable int described = 0;         // frames until snapshots stop reading velocities for describe()
+  struct Attachment {
+    LivePerturbation spring;
+    bool pin = false;  // stiff, and its target follows resets
+  };
+  std::vector<Attachment> attachments;
+  std::optional<std::uint64_t> pins_wait;  // pins are off until a snapshot has more resets than this
+  std::uint64_t last_surroundings = 0;
+  mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
   Background background;  // last: its tasks end before the members that they use
 
@@ -54,7 +61,7 @@ struct LiveScene::Parts {
   void apply_document() {
     std::vector<LiveRobot> bodies;
     for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
-    physics.set_scene(std::move(bodies), document.configuration);
+    physics.set_scene(std::move(bodies), document.configuration, document.surroundings);
   }
   // Call it before the document changes: records the edit, to be undone later.
   void edit(std::string name, std::string key = {}) {
@@ -91,10 +98,11 @@ struct LiveScene::Parts {
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void place_child(RobotId parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
-  void send_perturbation() {
-    physics.set_perturbations(perturbation ? std::vector<LivePerturbation>{*perturbation}
-                                           : std::vector<LivePerturbation>{});
-  }
+  std::optional<PerturbationDetails> details_of(const LivePerturbation& pull);
+  // Sends the perturbation of the mouse and what is attached.
+  void send_perturbation();
+  // Forgets attachments of robots that are gone, and moves pins after a reset.
+  void update_attachments();
 };
 
 // "1 robot", "2 robots".

@@ -35,9 +35,9 @@ void request(auto& parts, Change change) {
 
 }  // namespace
 
-void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration) {
+void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings) {
   request(*parts_, [&](PendingCommands& pending) {
-    pending.scene = {std::move(robots), configuration, nullptr, nullptr};
+    pending.scene = {std::move(robots), configuration, nullptr, nullptr, surroundings};
   });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,

@@ -71,7 +71,9 @@ class Physics {
   // from its last state, unless reset() was called in between. A new robot starts at rest at the present time. If the
   // robots cannot be simulated, for example for lack of memory, a message says so and no robot is simulated until the
   // next call.
-  void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration);
+  // `surroundings` names what the robots live in. With a new number, robots that come to land are set down at rest;
+  // with a number that was in use before, they continue from the states that they had when it changed.
+  void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings = 0);
   // Replays a repro: simulates its robot from its start and applies its changes at their steps. reset() returns to the
   // start. Pending steps are dropped. The next set_scene() ends the replay, and later changes of the repro are not
   // applied. `configuration` is the repro's.

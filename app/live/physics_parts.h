@@ -29,6 +29,7 @@ struct PendingCommands {
     Configuration configuration;
     std::shared_ptr<const Repro> repro;           // to replay, or nothing
     std::shared_ptr<TrajectoryReader> recording;  // to play, or nothing
+    std::uint64_t surroundings = 0;
   };
   using Loop = std::optional<std::pair<double, double>>;
   std::optional<Scene> scene;
@@ -90,6 +91,7 @@ struct Physics::Parts {
   std::set<RobotId> exploded;
   EventLog events;
   ReplayLog replay_log{events};
+  std::uint64_t surroundings = 0;  // of the scene
   std::shared_ptr<const Repro> replayed_repro;  // or nothing
   std::size_t next_change = 0;                  // index in replayed_repro->changes
   Timeline timeline;
@@ -121,6 +123,7 @@ struct Physics::Parts {
   void carry_out(PendingCommands& taken);
   void guarded(auto work);
   bool set_scene(const PendingCommands::Scene& scene);
+  void enter_surroundings(std::uint64_t next, bool to_land);
   void start_over();
   void restart();
   void begin_replay();

@@ -109,11 +109,13 @@ void Physics::Parts::restart() {
 
 // Returns whether the list of robots or the kind of environment changed.
 bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
-  const auto& [robots, configuration, repro, recorded] = scene;
+  const auto& [robots, configuration, repro, recorded, next_surroundings] = scene;
   replayed_repro = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool dt_changed = configuration.dt != simulation.configuration().dt;
   const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
+  const bool to_land = moved && std::holds_alternative<Land>(configuration.environment);
+  if (next_surroundings != surroundings) population.keep_surroundings(surroundings);
   if (configuration != simulation.configuration()) simulation.configure(configuration);
   simulation.set_perturbations({});
   bool changed = false;
@@ -123,6 +125,7 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
     start_over();
     throw;
   }
+  if (next_surroundings != surroundings) enter_surroundings(next_surroundings, to_land);
   telemetry = simulation.telemetry();
   if (first || (dt_changed && simulation.steps() == 0))
     measurements.restart(*population.robots(), simulation.time(), simulation.steps(), configuration, telemetry);
@@ -135,6 +138,21 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   for (const std::string& note : simulation.notes())
     if (reported_notes.insert(note).second) messages.add(Severity::note, note);
   return true;
+}
+
+// Gives robots the states that they had in these surroundings, or sets them down.
+void Physics::Parts::enter_surroundings(std::uint64_t next, bool to_land) {
+  surroundings = next;
+  if (!population.restore_surroundings(next) && to_land) population.settle();
+  replay_log.forget_states();  // the steps before do not lead to these
+  const std::vector<Telemetry> now = simulation.telemetry();
+  const auto is_whole = [&](RobotId id) {
+    const auto index = population.robots()->index_of(id);
+    return !index || !now[*index].exploded;
+  };
+  std::erase_if(exploded, is_whole);
+  const std::lock_guard lock(mutex);
+  std::erase_if(repros, [&](const auto& one) { return is_whole(one.first); });
 }
 
 // If a simulation cannot take its robots, for example for lack of memory, it is left half changed. Replaces it by an

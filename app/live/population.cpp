@@ -4,8 +4,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <unordered_map>
+
+#include "app/live/carried_state.h"
 
 namespace mercury {
 namespace {
@@ -80,6 +83,42 @@ void Population::forget(RobotId id) {
 void Population::forget_departed() {
   departed_.clear();
   departed_masses_ = 0;
+  surroundings_.clear();
+}
+
+void Population::keep_surroundings(std::uint64_t number) {
+  constexpr std::size_t most = 8;  // numbers
+  std::map<RobotId, Departed>& states = surroundings_[number];
+  states.clear();
+  std::size_t masses = 0;
+  for (std::size_t i = 0; i < robots_->size(); ++i) {
+    const LiveRobot& robot = robots_->robots[i];
+    states[robot.id] = {robot.robot, simulation_.state(i)};
+    masses += robot.robot->masses.size();
+  }
+  const std::size_t fitting = masses > 0 ? std::max<std::size_t>(1, most_departed / masses) : most;
+  while (surroundings_.size() > std::min(most, fitting))
+    surroundings_.erase(surroundings_.begin()->first == number ? std::next(surroundings_.begin())
+                                                               : surroundings_.begin());
+}
+
+bool Population::restore_surroundings(std::uint64_t number) {
+  const auto found = surroundings_.find(number);
+  if (found == surroundings_.end()) return false;
+  for (const auto& [id, kept] : found->second)
+    if (const auto index = robots_->index_of(id); index && robots_->robots[*index].robot == kept.robot)
+      simulation_.set_state(*index, kept.state);
+  surroundings_.erase(found);
+  return true;
+}
+
+void Population::settle() {
+  for (std::size_t i = 0; i < robots_->size(); ++i) {
+    State state = simulation_.state(i);
+    if (state.exploded) continue;
+    std::ranges::fill(state.velocities, Vec3{});
+    simulation_.set_state(i, state);
+  }
 }
 
 void Population::start_over() {
@@ -111,7 +150,11 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
       begin_as(wanted, indices, added[k]);
       continue;
     }
-    if (before->second.robot == wanted[added[k]].robot) simulation_.set_state(first + k, before->second.state);
+    const Robot &then = *before->second.robot, &now = *wanted[added[k]].robot;
+    if (&then == &now)
+      simulation_.set_state(first + k, before->second.state);
+    else if (const auto carried = carried_state(then, before->second.state, now))
+      simulation_.set_state(first + k, *carried);
     forget(wanted[added[k]].id);
   }
   if (!std::ranges::is_sorted(indices)) simulation_.keep(indices);

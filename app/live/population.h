@@ -20,7 +20,15 @@ class Population {
   // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials. Returns whether the
   // list changed; materials alone do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
-  // Forgets the states of removed robots: time starts again at 0.
+  // Keeps the states of all robots under a number, in place of those that it had. The oldest numbers are forgotten if
+  // the states fill the memory.
+  void keep_surroundings(std::uint64_t number);
+  // Gives robots the states kept under a number, and forgets the number. Robots without one stay as they are. Returns
+  // whether there were any.
+  bool restore_surroundings(std::uint64_t number);
+  // Stops all robots that have not exploded where they are.
+  void settle();
+  // Forgets the states of removed robots and of other surroundings: time starts again at 0.
   void forget_departed();
   // Call it after the simulation was replaced by an empty one.
   void start_over();
@@ -44,6 +52,7 @@ class Population {
   Simulation& simulation_;
   std::shared_ptr<const LiveRobots> robots_ = std::make_shared<LiveRobots>(LiveRobots{.mass_offsets = {0}});
   std::map<RobotId, Departed> departed_;
+  std::map<std::uint64_t, std::map<RobotId, Departed>> surroundings_;
   std::size_t departed_masses_ = 0;
 };
 

@@ -24,8 +24,12 @@ bool same(const Perturbation& a, const Perturbation& b) {
 }  // namespace
 
 void ReplayLog::restart() {
-  tracks_.clear();
+  forget_states();
   events_.clear();
+}
+
+void ReplayLog::forget_states() {
+  tracks_.clear();
   since_ = 0;
 }
 

@@ -35,6 +35,8 @@ class ReplayLog {
 
   // Forgets everything, the events too: time starts again at 0.
   void restart();
+  // The robots were put into states to which the steps so far do not lead. Events stay.
+  void forget_states();
   // The robots went back to an earlier moment, and what came later is undone: call it after the events were cut.
   void cut(const Simulation& simulation, const LiveRobots& robots, const std::vector<LivePerturbation>& perturbations);
   // The number of the first event that a repro may need.

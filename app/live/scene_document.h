@@ -34,6 +34,8 @@ struct DocumentRobot {
 struct SceneDocument {
   std::vector<DocumentRobot> robots;
   Configuration configuration;
+  // Grows with each change of environment; an undo brings the old number back, and with it the states that robots had.
+  std::uint64_t surroundings = 0;
 
   const DocumentRobot* find(RobotId id) const;  // null if it is unknown
 };

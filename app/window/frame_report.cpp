@@ -39,11 +39,10 @@ void FrameReport::write_gl_messages(PanelContext& context) {
 }
 
 void FrameReport::write_robots(PanelContext& context) {
-  const std::vector<RobotEntry> entries = context.scene.entries();
-  if (entries.size() == robots_) return;
-  robots_ = entries.size();
+  if (context.scene.robot_count() == robots_) return;
+  robots_ = context.scene.robot_count();
   std::vector<std::string> names;
-  for (const RobotEntry& entry : entries) names.push_back(entry.name);
+  for (const DocumentRobot& robot : context.scene.document().robots) names.push_back(robot.body.name);
   context.log.write("robots", {{"count", robots_}, {"names", names}});
 }
 
@@ -82,6 +81,8 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                         {"bookmarks", scene.bookmarks()},
                         {"budget", timeline.budget}}},
                       {"selected", scene.selection().size()},
+                      {"attached", scene.attachments().size()},
+                      {"panel_seconds", cost.panels},
                       {"panels", context.preferences.panels},
                       {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},

@@ -18,8 +18,10 @@
 #include "app/live/session_settings.h"
 #include "app/scene/camera_controller.h"
 #include "app/window/frame_report.h"
+#include "app/window/panels/body_editor.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/robot_menu.h"
 #include "app/window/panels/video_recorder.h"
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/screenshot.h"
@@ -141,6 +143,8 @@ Viewer::Viewer(ViewerOptions options)
       scene_({.configuration = options_.configuration, .view = options_.view}) {
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
     scene_.set_bridge(std::move(chosen.bridge));
+  mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
+                    .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
   load_settings();
   fill_scene();
 }
@@ -228,6 +232,7 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
         dialogs_.press(press);
       continue;
     }
+    if (panels_.press_in_palette(press, command)) continue;
     if (!command) continue;
     if (!typing || !is_text_edit(press, command->action)) panels_.execute(*command);
   }

@@ -44,12 +44,17 @@ void show_details(const RobotFolderEntry& entry) {
   ImGui::EndTooltip();
 }
 
+// A picture, and the name and two lines of figures below it.
+float card_height(float width) {
+  return width * Thumbnails::height / Thumbnails::width + 3.5f * ImGui::GetTextLineHeight();
+}
+
 }  // namespace
 
 void BrowserPanel::show_folder(const std::filesystem::path& folder) {
   entries_.clear();
   thumbnails_.clear();
-  pending_ = 0;
+  wanted_.clear();
   folder_text_ = folder.string();
   reader_.reset();
   if (!folder.empty()) {
@@ -123,20 +128,30 @@ void BrowserPanel::draw(PanelContext& context) {
   ImGui::EndDisabled();
   const float text = ImGui::GetFontSize(), spacing = ImGui::GetStyle().ItemSpacing.x;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
-  const int columns = std::max(1, static_cast<int>((room + spacing) / (8.2f * text + spacing)));
+  const int columns = std::max(1, static_cast<int>((room + spacing) / (7.2f * text + spacing)));
   const float width = (room - static_cast<float>(columns - 1) * spacing) / static_cast<float>(columns);
-  if (ImGui::BeginChild("cards", {0, 0}))
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine();
-      draw_card(context, i, width);
-    }
+  wanted_.clear();
+  if (ImGui::BeginChild("cards", {0, 0})) {
+    const auto in_row = static_cast<std::size_t>(columns);
+    const float height = card_height(width) + ImGui::GetStyle().ItemSpacing.y;
+    ImGuiListClipper rows;
+    rows.Begin(static_cast<int>((entries_.size() + in_row - 1) / in_row), height);
+    while (rows.Step())
+      for (auto row = static_cast<std::size_t>(rows.DisplayStart); row < static_cast<std::size_t>(rows.DisplayEnd);
+           ++row)
+        for (std::size_t i = row * in_row; i < std::min((row + 1) * in_row, entries_.size()); ++i) {
+          if (i > row * in_row) ImGui::SameLine();
+          draw_card(context, i, width);
+        }
+  }
   ImGui::EndChild();
+  std::ranges::reverse(wanted_);  // the upper cards come first
 }
 
 void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float width) {
   const RobotFolderEntry& entry = entries_[index];
   const float line = ImGui::GetTextLineHeight(), picture = width * Thumbnails::height / Thumbnails::width;
-  const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, picture + 3.5f * line};
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, card_height(width)};
   ImGui::PushID(static_cast<int>(index));
   const bool clicked = ImGui::InvisibleButton("card", size);
   const bool hovered = ImGui::IsItemHovered();
@@ -150,9 +165,11 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
   // OpenGL textures start with the lowest row.
   if (const ImTextureID texture = thumbnails_.find(entry.path.string()))
     list.AddImageRounded(texture, corner, below, {0, 1}, {1, 0}, IM_COL32_WHITE, rounding, ImDrawFlags_RoundCornersTop);
-  else
+  else {
+    if (entry.robot && ImGui::IsRectVisible(corner, end)) wanted_.push_back(index);
     list.AddText({corner.x + 0.4f * line, corner.y + 0.4f * line}, entry.robot ? palette().faint : palette().bad,
                  entry.robot ? "..." : "cannot be read");
+  }
   const float margin = 0.35f * line;
   const std::string name =
       entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
@@ -170,11 +187,15 @@ void BrowserPanel::work(PanelContext& context, double seconds) {
     std::vector<RobotFolderEntry> fresh = reader_->take();
     entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
   }
+  // Only what is on the screen needs pictures: a folder may have thousands of robots.
   const auto begin = std::chrono::steady_clock::now();
-  while (pending_ < entries_.size()) {
-    const RobotFolderEntry& entry = entries_[pending_++];
+  while (!wanted_.empty()) {
+    const std::size_t index = wanted_.back();
+    wanted_.pop_back();
+    if (index >= entries_.size()) continue;
+    const RobotFolderEntry& entry = entries_[index];
     if (entry.robot) thumbnails_.draw(entry.path.string(), *entry.robot, theme);
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) return;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) break;
   }
 }
 

@@ -15,9 +15,9 @@ class BrowserPanel : public Panel {
  public:
   explicit BrowserPanel(PanelContext& context) : thumbnails_(context.window.gl_context()) {}
   void draw(PanelContext& context) override;
-  // Draws missing thumbnails.
+  // Draws missing thumbnails of cards on the screen.
   void work(PanelContext& context, double seconds) override;
-  bool busy() const override { return pending_ < entries_.size(); }
+  bool busy() const override { return !wanted_.empty(); }
 
  private:
   void show_folder(const std::filesystem::path& folder);
@@ -27,7 +27,7 @@ class BrowserPanel : public Panel {
   Thumbnails thumbnails_;
   std::unique_ptr<RobotFolderReader> reader_;
   std::vector<RobotFolderEntry> entries_;
-  std::size_t pending_ = 0;  // index of the first entry without a picture
+  std::vector<std::size_t> wanted_;  // entries on the screen that lack a picture, the next one last
   std::string folder_text_;
 };
 

@@ -57,21 +57,29 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& area, double dt
   if (!context.preferences.panels) return;
   // As many rows as the width of the picture needs.
   const float text = ImGui::GetFontSize(), spacing = 0.5f * text, room = area.width() - 2 * text;
-  float y = area.high.y - 2.6f * text;
-  while (!shown.empty()) {
+  std::vector<std::vector<std::size_t>> rows;
+  float filled = room;
+  for (const std::size_t i : shown) {
+    const float width = width_of(gestures[i]);
+    if (rows.empty() || filled + spacing + width > room) {
+      rows.emplace_back();
+      filled = -spacing;
+    }
+    rows.back().push_back(i);
+    filled += spacing + width;
+  }
+  float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
+  for (const std::vector<std::size_t>& row : rows) {
     float width = -spacing;
-    std::size_t count = 0;
-    while (count < shown.size() && (count == 0 || width + spacing + width_of(gestures[shown[count]]) <= room))
-      width += spacing + width_of(gestures[shown[count++]]);
+    for (const std::size_t i : row) width += spacing + width_of(gestures[i]);
     float x = (area.low.x + area.high.x - width) / 2;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Gesture& gesture = gestures[shown[k]];
-      draw_chip(gesture, {x, y}, std::clamp(opacity_[shown[k]], 0.0f, 1.0f));
+    for (const std::size_t i : row) {
+      const Gesture& gesture = gestures[i];
+      draw_chip(gesture, {x, y}, std::clamp(opacity_[i], 0.0f, 1.0f));
       context.log.item(std::string("gesture.") + gesture.effect, {x, y}, {x + width_of(gesture), y + 1.7f * text});
       x += width_of(gesture) + spacing;
     }
-    shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(count));
-    y -= 2.1f * text;
+    y += 2.1f * text;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/export_commands.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/robot_commands.h"
 #include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/theme.h"
 
@@ -21,6 +22,7 @@ void Panels::draw_menu() {
   draw_edit_menu();
   draw_view_menu();
   if (ImGui::BeginMenu("Help")) {
+    menu_item("Search everything...", Action::palette);
     menu_item("Keys and mouse", Action::help);
     if (ImGui::MenuItem("Change keys...")) show_keys_file();
     context_.log.item("menu.keys");
@@ -58,10 +60,10 @@ void Panels::draw_file_menu() {
     const LiveScene& scene = context_.scene;
     menu_item("Open...", Action::open);
     if (ImGui::MenuItem("Open a run...")) choose_run(context_);
-    menu_item("Save the scene...", Action::save_scene, !scene.entries().empty());
+    menu_item("Save the scene...", Action::save_scene, scene.robot_count() > 0);
     menu_item(scene.selection().empty() ? "Save all robots..." : "Save selected robots...", Action::save,
-              !scene.entries().empty());
-    const bool robots = !scene.entries().empty();
+              scene.robot_count() > 0);
+    const bool robots = scene.robot_count() > 0;
     if (ImGui::MenuItem("Export the pose...", nullptr, false, robots)) export_pose(context_);
     context_.log.item("menu.export_pose");
     if (ImGui::MenuItem("Export the motion...", nullptr, false, robots)) export_motion(context_);
@@ -85,10 +87,18 @@ void Panels::draw_edit_menu() {
     ImGui::Separator();
     menu_item("New random robots", Action::new_random);
     menu_item("Duplicate", Action::duplicate, selected);
+    menu_item("Rename...", Action::rename, selected);
+    menu_item("Edit the body", Action::edit_body, selected, context_.body_edit.robot != 0);
     menu_item("Mutate", Action::mutate, selected);
+    menu_item("Breed from two", Action::breed, scene.selection().size() == 2);
     menu_item("Evolve...", Action::evolve, selected);
     menu_item("Remove", Action::remove, selected);
-    menu_item("Select all", Action::select_all, !scene.entries().empty());
+    menu_item("Keep only the selected", Action::keep_selected, selected);
+    menu_item("Keep the best...", Action::keep_best, scene.robot_count() > 1);
+    menu_item("Remove pins and springs", Action::detach, scene.has_attachments(selected_or_all(scene)));
+    ImGui::Separator();
+    menu_item("Select all", Action::select_all, scene.robot_count() > 0);
+    menu_item("Invert the selection", Action::invert_selection, scene.robot_count() > 0);
     ImGui::EndMenu();
   }
   context_.log.item("menu.Edit");
@@ -99,7 +109,7 @@ void Panels::draw_view_menu() {
     for (const PanelEntry& panel : panel_table())
       if (ImGui::MenuItem(panel.title, panel.tooltip)) show(panel.title);
     ImGui::Separator();
-    menu_item("Frame", Action::frame, !context_.scene.entries().empty());
+    menu_item("Frame", Action::frame, context_.scene.robot_count() > 0);
     menu_item("Drag arrows", Action::drag_arrows, true, context_.scene.view().shown.arrows.drag);
     menu_item("Dark or light", Action::theme);
     menu_item("Left panels", Action::left_panels, true, column_open(Side::left));

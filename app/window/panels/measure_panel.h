@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots over time.
+// Plots of speed, distance, energies and strain over time, for the selected robots or all.
 #pragma once
 
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "app/window/panels/panel.h"
+#include "app/window/toolkit/plot.h"
 
 namespace mercury::window {
 
@@ -13,10 +16,15 @@ class MeasurePanel : public Panel {
   void draw(PanelContext& context) override;
 
  private:
-  void draw_plots(PanelContext& context);
-  void draw_exports(PanelContext& context);
+  void draw_window(PanelContext& context);
+  void draw_plots(PanelContext& context, float height);
+  void draw_buttons(PanelContext& context);
+  void log_view(PanelContext& context);
 
-  std::array<bool, 5> shown_{true, true, false, false, false};  // by Measure
+  std::array<bool, 5> shown_{true, true, false, false, false};  // one per measure of measures()
+  PlotView view_;
+  bool large_ = false;  // in a window of their own
+  std::optional<std::pair<double, double>> logged_;
 };
 
 }  // namespace mercury::window

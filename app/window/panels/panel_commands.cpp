@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/window/panels/body_editor.h"
 #include "app/window/panels/camera_commands.h"
 #include "app/window/panels/color_section.h"
 #include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/export_commands.h"
 #include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_commands.h"
@@ -47,8 +49,15 @@ void Panels::execute(const Command& command) {
     case Action::duplicate:
     case Action::remove:
     case Action::mutate:
+    case Action::breed:
     case Action::evolve:
+    case Action::edit_body:
+    case Action::rename:
+    case Action::keep_selected:
+    case Action::keep_best:
+    case Action::detach:
     case Action::select_all:
+    case Action::invert_selection:
     case Action::undo:
     case Action::redo:
     case Action::open:
@@ -94,6 +103,9 @@ void Panels::execute(const Command& command) {
     case Action::smaller_text:
       change_text_size(context_, -1);
       break;
+    case Action::palette:
+      open_palette();
+      break;
     case Action::messages:
       show("Messages");
       break;
@@ -138,8 +150,15 @@ void Panels::change_robots(Action action) {
   if (action == Action::duplicate) scene.duplicate(scene.selection());
   if (action == Action::remove) scene.remove(scene.selection());
   if (action == Action::mutate) mutate_selected(context_);
+  if (action == Action::breed) breed_selected(context_);
   if (action == Action::evolve) evolve_selected(context_);
+  if (action == Action::edit_body) toggle_body_editor(context_);
+  if (action == Action::rename) rename_selected(context_);
+  if (action == Action::keep_selected) keep_only(context_, scene.selection());
+  if (action == Action::keep_best) ask_for_best(context_);
+  if (action == Action::detach) scene.remove_attachments(selected_or_all(scene));
   if (action == Action::select_all) scene.select_all();
+  if (action == Action::invert_selection) invert_selection(context_);
   if (action == Action::open) open_robots(context_);
   if (action == Action::save_scene) save_scene(context_);
   if (action == Action::save) save_robots(context_);
@@ -209,6 +228,39 @@ void Panels::change_camera(Action action) {
   camera.follow(current ? context_.scene.snapshot().robots->index_of(*current) : std::nullopt);
 }
 
+// Commands that only menus have, and those with keys.
+std::vector<PaletteEntry> Panels::palette_entries() {
+  std::vector<PaletteEntry> entries;
+  for (const KeyBinding& binding : key_bindings()) {
+    const Action action = binding.action;
+    if (action == Action::color || action == Action::deselect || action == Action::palette) continue;
+    entries.push_back(
+        {binding.meaning, binding.group, context_.keys.keys_of(action), [this, action] { execute({action}); }});
+  }
+  entries.push_back({"open a run of an evolution", "File", "", [this] { choose_run(context_); }});
+  entries.push_back({"export the pose for other programs", "File", "", [this] { export_pose(context_); }});
+  entries.push_back({"export the motion for other programs", "File", "", [this] { export_motion(context_); }});
+  entries.push_back({"copy as command", "File", "", [this] { copy_as_command(context_, "view"); }});
+  entries.push_back({"copy as command for a video", "File", "", [this] { copy_as_command(context_, "render"); }});
+  entries.push_back({"change keys", "Help", "", [this] { show_keys_file(); }});
+  for (PaletteEntry& entry : settings_for_palette(context_, [this](const char* panel) { show(panel); }))
+    entries.push_back(std::move(entry));
+  return entries;
+}
+
+void Panels::open_palette() {
+  palette_.open([this] { return palette_entries(); });
+}
+
+bool Panels::press_in_palette(const KeyPress& press, const std::optional<Command>& command) {
+  if (!palette_.is_open()) return false;
+  if (command && (command->action == Action::deselect || command->action == Action::palette))
+    palette_.close();
+  else
+    palette_.press(press);
+  return true;
+}
+
 void Panels::quit() {
   quit_with_confirmation(context_, [this] { quit_confirmed_ = true; });
 }
@@ -216,10 +268,14 @@ void Panels::quit() {
 void Panels::escape() {
   if (context_.dialogs.open())
     context_.dialogs.close();
+  else if (palette_.is_open())
+    palette_.close();
   else if (help_open_)
     help_open_ = false;
   else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
     ImGui::SetWindowFocus(nullptr);  // closes menus and lists
+  else if (context_.body_edit.robot != 0)
+    context_.body_edit.robot = 0;
   else
     context_.scene.clear_selection();
 }

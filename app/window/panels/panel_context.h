@@ -5,6 +5,7 @@
 #include "app/live/live_run.h"
 #include "app/live/live_scene.h"
 #include "app/window/dialogs/dialogs.h"
+#include "app/window/panels/body_edit.h"
 #include "app/window/panels/frame_history.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/key_map.h"
@@ -48,6 +49,8 @@ struct PanelContext {
   RobotCreation creation = {};
   EvolveRequest evolve = {};  // the settings of the last evolution
   Scrub scrub = {};
+  BodyEdit body_edit = {};
+  RobotMenu robot_menu = {};
   UsedGestures gestures = {};         // of this session
   float aspect = 16.0f / 9;           // width / height of the viewport in this frame
   bool screenshot_requested = false;  // set it to take one at the end of the frame

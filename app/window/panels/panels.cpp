@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/window/panels/body_editor.h"
 #include "app/window/panels/camera_commands.h"
 #include "app/window/panels/help_window.h"
 #include "app/window/panels/play_bar.h"
+#include "app/window/panels/robot_menu.h"
 
 namespace mercury::window {
 
@@ -63,8 +65,12 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
   first_steps_.draw(context_, area, dt);
+  draw_body_editor(context_, area);
+  draw_robot_menu(context_, [this](const Command& command) { execute(command); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw(area.low, area.high, dt, context_.log);
+  if (context_.dialogs.open()) palette_.close();
+  palette_.draw(context_);
   if (context_.toasts.take_click()) show("Messages");
 }
 

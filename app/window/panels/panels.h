@@ -14,7 +14,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/window/panels/command_palette.h"
 #include "app/window/panels/explosion_card.h"
 #include "app/window/panels/first_steps.h"
 #include "app/window/panels/panel_column.h"
@@ -37,6 +39,8 @@ class Panels {
   void draw_dialogs();
   // Executes a command of a key or menu.
   void execute(const Command& command);
+  // Hands a key press to the command palette. Returns false if it is not open.
+  bool press_in_palette(const KeyPress& press, const std::optional<Command>& command);
   // Opens a panel by its title.
   void show(const std::string& panel);
   // Background work of panels, for about `seconds` (panel.h).
@@ -50,6 +54,8 @@ class Panels {
  private:
   void draw_menu();
   void draw_menu_hint();
+  void open_palette();
+  std::vector<PaletteEntry> palette_entries();
   void show_keys_file();
   void draw_file_menu();
   void draw_edit_menu();
@@ -68,6 +74,7 @@ class Panels {
   PanelContext& context_;
   ExplosionCard explosions_;
   FirstSteps first_steps_;
+  CommandPalette palette_;
   PanelColumn left_, right_;
   bool help_open_ = false, quit_confirmed_ = false;
   std::optional<Side> narrow_open_;  // the column that is open in a narrow window

@@ -67,8 +67,11 @@ std::string factor_text(double factor) {
 void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
   const double achieved = scene.snapshot().achieved_speed;
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
+  const std::string shown = scene.playing() ? "achieved \xc3\x97 " + factor_text(achieved) : "paused";
+  // A narrow window has no room for all of it.
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(shown.c_str()).x) return;
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
-  ImGui::TextUnformatted(scene.playing() ? ("achieved \xc3\x97 " + factor_text(achieved)).c_str() : "paused");
+  ImGui::TextUnformatted(shown.c_str());
   ImGui::PopStyleColor();
   tooltip(late ? "the computer is too slow for this speed" : "the speed over the last second");
 }

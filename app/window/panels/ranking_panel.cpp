@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/window/panels/robot_commands.h"
+#include "app/window/panels/robot_menu.h"
 #include "app/window/panels/saving.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -49,7 +50,7 @@ void RankingPanel::draw(PanelContext& context) {
   const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const ImVec2 size{0, std::max(height, 6 * ImGui::GetFrameHeight())};
-  held_ = ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
+  held_ = ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) &&
           ImGui::IsMouseHoveringRect(low, {low.x + ImGui::GetContentRegionAvail().x, low.y + size.y});
   if (ImGui::BeginTable("ranking", 1 + static_cast<int>(columns.size()), flags, size)) {
     draw_headings(context);
@@ -71,7 +72,14 @@ void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& row
   note(held_          ? "the order stays as it is while the mouse is over the table"
        : any_exploded ? "m, m/s, s, J; - = exploded; click a heading to sort"
                       : "m, m/s, s, J; click a heading to sort");
-  if (ImGui::Button("Save as CSV...##ranking", {-1, 0}))
+  const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  ImGui::BeginDisabled(order_.size() < 2);
+  if (ImGui::Button("Keep the best...", {half, 0})) ask_for_best(context, order_);
+  context.log.item("ranking.keep");
+  tooltip("remove all but the first robots of this order");
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  if (ImGui::Button("Save as CSV...##ranking", {half, 0}))
     save_csv(context, "ranking", [&context] { return context.scene.ranking_csv(); });
   context.log.item("ranking.csv");
 }
@@ -148,7 +156,12 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
       selection_.click(context.scene, robot, order_);
     context.log.write("row", {{"robot", row.name}, {"place", index}, {"selected", context.scene.selection().size()}});
   }
-  if (index < 20) context.log.item(fmt::format("ranking.{}", index));
+  // The row is as wide as the table, of which a part may show.
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  if (index < 20)
+    context.log.item(fmt::format("ranking.{}", index), low,
+                     {std::min(high.x, ImGui::GetWindowPos().x + ImGui::GetWindowWidth()), high.y});
+  robot_menu_of_row(context, robot);
   for (const Column& column : columns) {
     ImGui::TableNextColumn();
     right_aligned(row.values.counts() ? fmt::format("{:.3g}", column.figure(row.values)) : "-");

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/robot_commands.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <unordered_set>
+
 namespace mercury::window {
 namespace {
 
@@ -51,6 +57,72 @@ void mutate_selected(PanelContext& context) {
   }
   context.scene.mutate(context.scene.selection(), context.creation.mutation);
   ++context.creation.mutation.seed;
+}
+
+void breed_selected(PanelContext& context) {
+  const std::vector<RobotId> parents = context.scene.selection();
+  if (parents.size() != 2) {
+    context.toasts.show(Tone::info, "select the two robots to breed from first");
+    return;
+  }
+  context.scene.breed(parents[0], parents[1], context.creation.mutation.seed);
+  ++context.creation.mutation.seed;
+}
+
+void rename_selected(PanelContext& context) {
+  const std::optional<RobotId> robot = context.scene.current();
+  if (!robot) {
+    context.toasts.show(Tone::info, "select the robot to rename first");
+    return;
+  }
+  const std::string name = name_of_robot(context.scene, *robot);
+  context.dialogs.ask_text("Rename", fmt::format("A new name for {}:", name), name, "Rename",
+                           [&context, id = *robot](const std::string& text) { context.scene.rename(id, text); });
+}
+
+void invert_selection(PanelContext& context) {
+  std::vector<RobotId> others;
+  for (const RobotEntry& entry : context.scene.entries())
+    if (!entry.selected) others.push_back(entry.id);
+  context.scene.set_selection(others);
+}
+
+void keep_only(PanelContext& context, const std::vector<RobotId>& robots) {
+  if (robots.empty()) {
+    context.toasts.show(Tone::info, "select the robots to keep first");
+    return;
+  }
+  const std::unordered_set<RobotId> kept(robots.begin(), robots.end());
+  std::vector<RobotId> removed;
+  for (const RobotEntry& entry : context.scene.entries())
+    if (!kept.contains(entry.id)) removed.push_back(entry.id);
+  context.scene.remove(removed);
+}
+
+void ask_for_best(PanelContext& context, std::vector<RobotId> order) {
+  const bool given = !order.empty();
+  if (!given) {
+    std::vector<RankingRow> rows = context.scene.ranking();
+    std::ranges::stable_sort(rows, [](const RankingRow& a, const RankingRow& b) {
+      return ranks_before(a, b, a.distance_at_equal_age, b.distance_at_equal_age);
+    });
+    for (const RankingRow& row : rows) order.push_back(row.robot);
+  }
+  if (order.size() < 2) return;
+  context.dialogs.ask_text(
+      "Keep the best",
+      given ? "How many robots to keep, from the top of the ranking? The others are removed (undo brings them back)."
+            : "How many robots to keep, of those that went farthest at equal age? The others are removed (undo brings "
+              "them back).",
+      std::to_string((order.size() + 1) / 2), "Keep", [&context, order](const std::string& text) {
+        std::size_t count = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+        if (error != std::errc() || end != text.data() + text.size() || count == 0 || count > order.size()) {
+          context.toasts.show(Tone::warning, fmt::format("\"{}\" is not accepted; give 1 to {}", text, order.size()));
+          return;
+        }
+        keep_only(context, {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)});
+      });
 }
 
 }  // namespace mercury::window

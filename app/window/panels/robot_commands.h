@@ -23,5 +23,14 @@ void generate_robots(PanelContext& context);
 
 // Adds a mutated copy of each selected robot.
 void mutate_selected(PanelContext& context);
+// Adds a child of the two selected robots.
+void breed_selected(PanelContext& context);
+// Asks for a new name of the current robot.
+void rename_selected(PanelContext& context);
+void invert_selection(PanelContext& context);
+// Removes all robots but these, as one edit. Nothing happens if the list is empty.
+void keep_only(PanelContext& context, const std::vector<RobotId>& robots);
+// Asks how many robots to keep. `order`: the best first; empty = those that went farthest at equal age.
+void ask_for_best(PanelContext& context, std::vector<RobotId> order = {});
 
 }  // namespace mercury::window

@@ -4,6 +4,7 @@
 
 #include "app/window/panels/panel.h"
 #include "app/window/panels/random_section.h"
+#include "app/window/panels/robot_list.h"
 
 namespace mercury::window {
 
@@ -12,13 +13,11 @@ class RobotsPanel : public Panel {
   void draw(PanelContext& context) override;
 
  private:
-  void draw_list(PanelContext& context);
-  void draw_row(PanelContext& context, const RobotEntry& entry);
-  void select(PanelContext& context, const RobotEntry& entry);
   void draw_commands(PanelContext& context);
+  void draw_strengths(PanelContext& context);
 
+  RobotList list_;
   RandomSection random_;
-  RobotId anchor_ = 0;  // the robot at which a Shift-click range starts; 0 = none
 };
 
 }  // namespace mercury::window

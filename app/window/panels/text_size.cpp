@@ -24,8 +24,9 @@ void TextSizeRow::draw(PanelContext& context) {
   }
   const float before = context.preferences.text_scale;
   draw_buttons(context, width, height);
-  if (context.preferences.text_scale != before)
-    pinned_ = {low, {low.x + 2 * width + ImGui::GetStyle().ItemSpacing.x, low.y + height}, font};
+  if (context.preferences.text_scale == before) return;
+  pinned_ = {low, {low.x + 2 * width + ImGui::GetStyle().ItemSpacing.x, low.y + height}, font};
+  draw_pinned(context);  // at once, so that the next click finds it
 }
 
 void TextSizeRow::draw_buttons(PanelContext& context, float width, float height) {
@@ -44,13 +45,14 @@ void TextSizeRow::draw_pinned(PanelContext& context) {
   const float scale = pinned.font / ImGui::GetFontSize(), height = pinned.high.y - pinned.low.y;
   const float spacing = 0.5f * pinned.font, width = (pinned.high.x - pinned.low.x - spacing) / 2;
   ImGui::SetNextWindowPos(pinned.low);
+  ImGui::SetNextWindowSize({pinned.high.x - pinned.low.x + 4 * pinned.font, height});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {spacing, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
   ImGui::Begin("##textsize", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+                   ImGuiWindowFlags_NoNav);
   ImGui::SetWindowFontScale(scale);
   draw_buttons(context, width, height);
   ImGui::End();

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/widgets.h"
@@ -95,32 +94,19 @@ bool solver_section(Configuration& configuration, EventLog& log) {
   return changed;
 }
 
-bool environment_section(Configuration& configuration, EventLog& log) {
+bool environment_section(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
   heading("Environment");
-  bool changed = false;
-  std::vector<const char*> names;
-  std::vector<Environment> defaults;
-  std::string hint;
-  for_each_environment([&](const auto& kind) {
-    names.push_back(kind.name.data());
-    defaults.emplace_back(kind);
-    hint.append(hint.empty() ? "" : ". ").append(kind.name).append(": ").append(kind.help);
-  });
-  auto kind = static_cast<int>(configuration.environment.index());
-  if (combo("where", hint.c_str(), kind, names)) {
-    configuration.environment = defaults[static_cast<std::size_t>(kind)];
-    changed = true;
-  }
-  log.item("tune.environment");
+  bool changed = choice.draw(context, configuration);
   changed |= std::visit([](auto& environment) { return edit_parameters(environment); }, configuration.environment);
   return changed;
 }
 
 // Returns true when the configuration changed. It stays one that validate() accepts.
-bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
+bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
+  EventLog& log = context.log;
   Configuration edited = configuration;
   bool changed = solver_section(edited, log);
-  changed |= environment_section(edited, log);
+  changed |= environment_section(context, choice, edited);
   ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
   if (ImGui::Button("Reset all to defaults")) {
     const Device device = edited.device;
@@ -144,7 +130,7 @@ bool draw_physics_sliders(Configuration& configuration, EventLog& log) {
 
 void TunePanel::draw(PanelContext& context) {
   Configuration configuration = context.scene.configuration();
-  if (draw_physics_sliders(configuration, context.log)) context.scene.set_configuration(configuration);
+  if (draw_physics_sliders(context, environment_, configuration)) context.scene.set_configuration(configuration);
   ImGui::SameLine();
   if (ImGui::Button("Copy as command")) copy_as_command(context, "view");
   context.log.item("tune.copy");

@@ -2,6 +2,7 @@
 // Solver, environment and materials, as sliders that act at once.
 #pragma once
 
+#include "app/window/panels/environment_choice.h"
 #include "app/window/panels/materials_section.h"
 #include "app/window/panels/panel.h"
 
@@ -12,6 +13,7 @@ class TunePanel : public Panel {
   void draw(PanelContext& context) override;
 
  private:
+  EnvironmentChoice environment_;
   MaterialsSection materials_;
 };
 

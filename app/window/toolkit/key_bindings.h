@@ -47,8 +47,15 @@ enum class Action {
   duplicate,
   remove,
   mutate,
+  breed,
   evolve,
+  edit_body,
+  rename,
+  keep_selected,
+  keep_best,
+  detach,  // pins and attached springs
   select_all,
+  invert_selection,
   deselect,
   undo,
   redo,
@@ -71,6 +78,7 @@ enum class Action {
   screenshot,
   record,
   messages,
+  palette,
   help,
   quit,
 };

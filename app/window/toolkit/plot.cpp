@@ -2,6 +2,7 @@
 #include "app/window/toolkit/plot.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,8 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
   const std::string title = axes.unit.empty() ? axes.title : fmt::format("{} [{}]", axes.title, axes.unit);
   list.AddText({frame.low.x, frame.low.y - 1.25f * text}, ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
   const float width = ImGui::CalcTextSize(axes.x_title.c_str()).x;
-  list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
+  if (frame.low.x + ImGui::CalcTextSize(title.c_str()).x + text < frame.high.x - width)
+    list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
 }
 
 void draw_line(const Frame& frame, const PlotLine& line) {
@@ -100,10 +102,32 @@ void draw_line(const Frame& frame, const PlotLine& line) {
   flush();
 }
 
+double x_at(const Frame& frame, float pixel) {
+  const double share = static_cast<double>((pixel - frame.low.x) / (frame.high.x - frame.low.x));
+  return frame.x.low + share * (frame.x.high - frame.x.low);
+}
+
+void draw_upright(const Frame& frame, double x, ImU32 color) {
+  if (x < frame.x.low || x > frame.x.high) return;
+  const float pixel = frame.at(x, frame.y.low).x;
+  ImGui::GetWindowDrawList()->AddLine({pixel, frame.low.y}, {pixel, frame.high.y}, color);
+}
+
+// Wheel, drag and double click over the plot, whose item was just drawn. `all`: everything there is along x.
+void handle_mouse(const Frame& frame, const Range& all, PlotView& view) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetItemUsingMouseWheel();
+    if (io.MouseWheel != 0) view.zoom(x_at(frame, io.MousePos.x), std::pow(0.8, io.MouseWheel), all.low, all.high);
+    if (ImGui::IsMouseDoubleClicked(0)) view.range.reset();
+  }
+  if (ImGui::IsItemActive() && io.MouseDelta.x != 0)
+    view.pan(x_at(frame, frame.low.x) - x_at(frame, frame.low.x + io.MouseDelta.x), all.low, all.high);
+}
+
 void show_values(const Frame& frame, const PlotAxes& axes, std::span<const PlotLine> lines) {
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const double x = frame.x.low + (mouse.x - frame.low.x) / (frame.high.x - frame.low.x) * (frame.x.high - frame.x.low);
-  ImGui::GetWindowDrawList()->AddLine({mouse.x, frame.low.y}, {mouse.x, frame.high.y}, palette().faint);
+  const double x = x_at(frame, ImGui::GetIO().MousePos.x);
+  draw_upright(frame, x, palette().faint);
   ImGui::BeginTooltip();
   ImGui::Text("%s %s", short_number(x).c_str(), axes.x_unit.c_str());
   for (const PlotLine& line : lines) {
@@ -153,27 +177,55 @@ void plot_legend(std::span<const PlotLine> lines) {
   }
 }
 
-void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines) {
+void PlotView::zoom(double at, double factor, double low, double high) {
+  const auto [from, to] = range.value_or(std::pair(low, high));
+  const double least = 1e-6 * std::max(1e-9, high - low);  // a plot of less has no digits left
+  const double length = std::max(least, factor * (to - from));
+  if (length >= high - low) {
+    range.reset();
+    return;
+  }
+  const double share = to > from ? std::clamp((at - from) / (to - from), 0.0, 1.0) : 0.5;
+  range = {at - share * length, at + (1 - share) * length};
+  pan(0, low, high);
+}
+
+void PlotView::pan(double distance, double low, double high) {
+  if (!range) return;
+  const double length = range->second - range->first;
+  const double from = std::clamp(range->first + distance, low, std::max(low, high - length));
+  range = {from, from + length};
+}
+
+void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines, PlotView* view) {
   const float text = ImGui::GetFontSize();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = std::max(8 * text, ImGui::GetContentRegionAvail().x);
-  ImGui::InvisibleButton(id, {width, axes.height});
+  ImGui::InvisibleButton(id, {width, std::max(4 * text, axes.height)});
   Frame frame{.low = {corner.x + 3.2f * text, corner.y + 1.4f * text},
               .high = {corner.x + width - 0.3f * text, corner.y + axes.height - 1.3f * text}};
-  Range y;
-  for (const PlotLine& line : lines) {
-    for (const double value : line.x) frame.x.extend(value);
-    for (const double value : line.y) y.extend(value);
-  }
-  if (frame.x.empty()) frame.x = {0, 1};
-  if (frame.x.high - frame.x.low < 1e-9) frame.x.high = frame.x.low + 1;
+  Range all, y;
+  for (const PlotLine& line : lines)
+    for (const double value : line.x) all.extend(value);
+  if (all.empty()) all = {0, 1};
+  if (all.high - all.low < 1e-9) all.high = all.low + 1;
+  frame.x = all;
+  if (view && view->range) frame.x = {view->range->first, view->range->second};
+  for (const PlotLine& line : lines)
+    for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i)
+      if (line.x[i] >= frame.x.low && line.x[i] <= frame.x.high) y.extend(line.y[i]);
   frame.y = rounded(y);
+  if (view) handle_mouse(frame, all, *view);
   draw_axes(frame, axes);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(frame.low, frame.high, true);
   for (const PlotLine& line : lines) draw_line(frame, line);
   list.PopClipRect();
-  if (ImGui::IsItemHovered() && ImGui::IsMouseHoveringRect(frame.low, frame.high)) show_values(frame, axes, lines);
+  if (view && view->mark) draw_upright(frame, *view->mark, palette().accent);
+  const bool hovered = ImGui::IsItemHovered() && ImGui::IsMouseHoveringRect(frame.low, frame.high);
+  if (hovered) show_values(frame, axes, lines);
+  if (view && !hovered && view->cursor) draw_upright(frame, *view->cursor, palette().faint);
+  if (view && hovered) view->next_cursor = x_at(frame, ImGui::GetIO().MousePos.x);
 }
 
 }  // namespace mercury::window

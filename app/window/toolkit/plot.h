@@ -4,8 +4,10 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/colormap.h"
@@ -27,8 +29,25 @@ struct PlotAxes {
   bool x_whole = false;  // x are whole numbers
 };
 
-// Draws a plot over the remaining width. Hovering shows the values under the cursor.
-void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines);
+// What the plots of a panel share along x: the part that is shown, the cursor, and a mark.
+struct PlotView {
+  std::optional<std::pair<double, double>> range;  // none = everything
+  std::optional<double> cursor;                    // where the mouse was over one of the plots in the last frame
+  std::optional<double> next_cursor;               // where it is in this one
+  std::optional<double> mark;                      // such as the time of the picture
+
+  // Keeps `factor` of the range around a point, within [low, high], all there is. Everything is shown again when the
+  // range would be larger.
+  void zoom(double at, double factor, double low, double high);
+  // Moves the range by `distance`, within [low, high].
+  void pan(double distance, double low, double high);
+  // Call it before the plots of a frame.
+  void begin_frame() { cursor = std::exchange(next_cursor, std::nullopt); }
+};
+
+// Draws a plot over the remaining width. Hovering shows the values under the cursor. With a `view`, the wheel zooms
+// along x, a drag moves the part that is shown, and a double click shows everything.
+void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines, PlotView* view = nullptr);
 
 // The legend: colour and name of each line, in rows.
 void plot_legend(std::span<const PlotLine> lines);

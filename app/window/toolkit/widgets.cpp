@@ -59,7 +59,9 @@ void draw_number(const char* text, float place) {
   const float knob = low.x + 2 + grab / 2 + place * (high.x - low.x - 4 - grab);
   const float gap = grab / 2 + 0.3f * ImGui::GetFontSize();
   float x = (low.x + high.x - width) / 2;
-  if (knob + gap > x && knob - gap < x + width) x = place < 0.5f ? knob + gap : knob - gap - width;
+  const bool left_fits = knob - gap - width > low.x, right_fits = knob + gap + width < high.x;
+  if (knob + gap > x && knob - gap < x + width && (left_fits || right_fits))
+    x = right_fits && (place < 0.5f || !left_fits) ? knob + gap : knob - gap - width;
   ImGui::PushClipRect(low, high, true);
   ImGui::GetWindowDrawList()->AddText({x, (low.y + high.y - ImGui::GetFontSize()) / 2},
                                       ImGui::GetColorU32(ImGuiCol_Text), text);

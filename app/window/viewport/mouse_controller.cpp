@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,7 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
     dragged_ = false;
     pressed_at_ = io.MousePos;
     follows_ = button == 0 && ImGui::IsMouseDoubleClicked(0);
-    drag_ = button == 0 ? Drag::turn : Drag::pan;
+    drag_ = button == 0 ? (io.KeyShift && !io.KeyCtrl ? Drag::box : Drag::turn) : Drag::pan;
     if (button != 0 || !io.KeyCtrl) return;
     drag_ = Drag::pull;
     if (const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos))) {
@@ -101,7 +102,7 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
     used_.pulled = used_.pulled || dragged_;
     return;
   }
-  if (!dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  if (drag_ == Drag::box || !dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
   const float right = io.MouseDelta.x / area.height(), up = -io.MouseDelta.y / area.height();
   (drag_ == Drag::turn ? used_.turned : used_.moved) = true;
   if (drag_ == Drag::turn) camera_.turn(right, up);
@@ -111,23 +112,56 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
 void MouseController::release(const ViewportArea& area, const render::Camera& camera) {
   if (drag_ == Drag::pull) {
     if (const auto pull = scene_.perturbation())
-      log_.write("pulled", {{"force", pull->force}, {"at", {pull->at.x(), pull->at.y(), pull->at.z()}}});
-    scene_.end_perturbation();
-  } else if (drag_ == Drag::turn && !dragged_) {
-    const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
-    const bool add = ImGui::GetIO().KeyShift;
-    if (!hit && !add) scene_.clear_selection();
-    pinned_ = hit;
-    if (hit) log_.write("pinned", {{"robot", hit->robot}, {"mass", hit->mass}});
-    if (hit && add) scene_.toggle_selected(hit->robot);
-    if (hit && !add) scene_.select(hit->robot);
-    if (hit && follows_) {
-      camera_.follow(scene_.snapshot().robots->index_of(hit->robot));
-      const DocumentRobot* robot = scene_.document().find(hit->robot);
-      toasts_.show(Tone::info, fmt::format("following {} (G to stop)", robot ? robot->body.name : "it"));
-    }
+      log_.write("pulled", {{"force", pull->force},
+                            {"at", {pull->at.x(), pull->at.y(), pull->at.z()}},
+                            {"stays", ImGui::GetIO().KeyShift}});
+    if (ImGui::GetIO().KeyShift)
+      scene_.attach_perturbation();
+    else
+      scene_.end_perturbation();
+  } else if (drag_ == Drag::box && dragged_) {
+    select_box(area, camera);
+  } else if (!dragged_) {
+    click(area, camera);
   }
   drag_ = Drag::none;
+}
+
+void MouseController::click(const ViewportArea& area, const render::Camera& camera) {
+  const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
+  if (drag_ == Drag::pan) {
+    if (hit && button_ == 1 && actions_.menu) actions_.menu(*hit);
+    return;
+  }
+  if (hit && actions_.click && actions_.click(*hit)) return;
+  const bool add = ImGui::GetIO().KeyShift;
+  if (!hit && !add) scene_.clear_selection();
+  pinned_ = hit;
+  if (hit) log_.write("pinned", {{"robot", hit->robot}, {"mass", hit->mass}});
+  if (hit && add) scene_.toggle_selected(hit->robot);
+  if (hit && !add) scene_.select(hit->robot);
+  if (hit && follows_) {
+    camera_.follow(scene_.snapshot().robots->index_of(hit->robot));
+    const DocumentRobot* robot = scene_.document().find(hit->robot);
+    toasts_.show(Tone::info, fmt::format("following {} (G to stop)", robot ? robot->body.name : "it"));
+  }
+}
+
+// Adds the robots whose middle is in the box.
+void MouseController::select_box(const ViewportArea& area, const render::Camera& camera) {
+  const ImVec2 end = ImGui::GetIO().MousePos;
+  const ImVec2 low{std::min(pressed_at_.x, end.x), std::min(pressed_at_.y, end.y)};
+  const ImVec2 high{std::max(pressed_at_.x, end.x), std::max(pressed_at_.y, end.y)};
+  const std::span<const render::Bounds> bounds = scene_.picture().bounds();
+  const LiveRobots& robots = *scene_.snapshot().robots;
+  std::vector<RobotId> selected = scene_.selection();
+  for (std::size_t i = 0; i < std::min(bounds.size(), robots.size()); ++i) {
+    if (bounds[i].empty() || (bounds[i].center() - camera.eye).dot(forward_of(camera)) <= 0) continue;
+    const ImVec2 at = on_screen(area, camera, bounds[i].center());
+    if (at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y) selected.push_back(robots.robots[i].id);
+  }
+  scene_.set_selection(selected);
+  log_.write("box", {{"selected", scene_.selection().size()}});
 }
 
 void MouseController::hover(const ViewportArea& area, const render::Camera& camera) {
@@ -143,7 +177,9 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
+  draw_springs(area, camera);
   draw_pull(area, camera);
+  draw_box();
   if (pinned_ && !scene_.is_selected(pinned_->robot)) pinned_.reset();
   if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera)) pinned_.reset();
   if (!hovered_) return;
@@ -165,6 +201,33 @@ void MouseController::draw_pull(const ViewportArea& area, const render::Camera& 
     list.AddCircle(target, 0.4f * text, palette().warning, 0, 0.12f * text);
     label({target.x + text, target.y - 0.5f * text}, force_text(pull->force));
   }
+}
+
+// Springs that stay attached, and pins.
+void MouseController::draw_springs(const ViewportArea& area, const render::Camera& camera) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize();
+  list.PushClipRect(area.low, area.high);
+  for (const PerturbationDetails& spring : scene_.attachments()) {
+    const ImVec2 at = on_screen(area, camera, spring.at), target = on_screen(area, camera, spring.target);
+    list.AddLine(at, target, palette().warning, 0.1f * text);
+    list.AddCircleFilled(at, 0.2f * text, palette().warning);
+    list.AddNgonFilled(target, 0.35f * text, palette().mark_outline, 4);
+    list.AddNgonFilled(target, 0.25f * text, palette().warning, 4);
+  }
+  list.PopClipRect();
+}
+
+void MouseController::draw_box() const {
+  if (drag_ != Drag::box || !dragged_) return;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 end = ImGui::GetIO().MousePos;
+  const ImVec2 low{std::min(pressed_at_.x, end.x), std::min(pressed_at_.y, end.y)};
+  const ImVec2 high{std::max(pressed_at_.x, end.x), std::max(pressed_at_.y, end.y)};
+  ImVec4 inside = ImGui::ColorConvertU32ToFloat4(palette().accent);
+  inside.w = 0.15f;
+  list.AddRectFilled(low, high, ImGui::ColorConvertFloat4ToU32(inside));
+  list.AddRect(low, high, palette().accent);
 }
 
 void MouseController::draw_details(const ViewportArea& area) const {

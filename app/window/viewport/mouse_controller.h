@@ -3,6 +3,7 @@
 // under the pointer.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "app/live/live_scene.h"
@@ -18,11 +19,18 @@ struct UsedGestures {
   bool turned = false, moved = false, zoomed = false, pulled = false;
 };
 
+// What happens to clicks beside selecting and turning.
+struct MouseActions {
+  std::function<bool(const Hit& hit)> click;  // on a robot; returns true if that is all
+  std::function<void(const Hit& hit)> menu;   // a right click on a robot
+};
+
 class MouseController {
  public:
   MouseController(LiveScene& scene, OrbitController& camera, EventLog& log, Toasts& toasts)
       : scene_(scene), camera_(camera), log_(log), toasts_(toasts) {}
 
+  void set_actions(MouseActions actions) { actions_ = std::move(actions); }
   // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
   // one the last picture was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
@@ -35,12 +43,16 @@ class MouseController {
   const UsedGestures& used() const { return used_; }
 
  private:
-  enum class Drag { none, turn, pan, pull };
+  enum class Drag { none, turn, pan, pull, box };
   void press(const ViewportArea& area, const render::Camera& camera);
   void drag(const ViewportArea& area, const render::Camera& camera);
   void release(const ViewportArea& area, const render::Camera& camera);
   void hover(const ViewportArea& area, const render::Camera& camera);
 
+  void click(const ViewportArea& area, const render::Camera& camera);
+  void select_box(const ViewportArea& area, const render::Camera& camera);
+  void draw_springs(const ViewportArea& area, const render::Camera& camera) const;
+  void draw_box() const;
   void draw_pull(const ViewportArea& area, const render::Camera& camera) const;
   void draw_details(const ViewportArea& area) const;
 
@@ -48,6 +60,7 @@ class MouseController {
   OrbitController& camera_;
   EventLog& log_;
   Toasts& toasts_;
+  MouseActions actions_;
   UsedGestures used_;
   Drag drag_ = Drag::none;
   int button_ = 0;

@@ -164,6 +164,11 @@ class Window:
         subprocess.run([sys.executable, "-B", str(Path(__file__).with_name("drop_files.py")), found[-1], str(x), str(y),
                         *map(str, paths)], env=self.environment, check=True)
 
+    def pixels(self):
+        """What the display shows now: height x width x 3, values 0 to 255. Unlike screenshot(), with signs over the picture."""
+        from screen_pixels import screen_pixels
+        return screen_pixels(self.environment["DISPLAY"])
+
     def screenshot(self):
         """An array of the window's pixels: height x width x 3, values 0 to 1."""
         import matplotlib.image

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages, columns, keys and other tools of the real window: window_tools_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
-from window_case import PROGRAM, SAMPLES, WindowCase, main
+import shutil
+import subprocess
+
+from window_case import PROGRAM, SAMPLES, WindowCase, main, numpy
 from window_driver import Window, scratch
 
 
@@ -57,6 +60,106 @@ class ToolsTest(WindowCase):
         window.key("bracketright")
         window.until("no column", lambda: width() == 640)
         self.finish(window)
+
+    def test_the_ranking_holds_still_under_the_mouse(self):
+        window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("fish", "eel", "paddler", "wriggler")))
+        window.frame(lambda frame: frame["time"] > 0.5)
+        window.click("tab.Ranking")
+        window.click("ranking.by.speed")  # changes all the time
+        window.do("mousemove", *window.place("ranking.0"))
+        window.frame()
+
+        def row(place):
+            since = window.mark()
+            window.click(f"ranking.{place}")
+            return window.wait("row", since)
+
+        before = [row(place)["robot"] for place in range(4)]
+        time = window.frame()["time"]
+        window.frame(lambda frame: frame["time"] > time + 1)
+        self.assertEqual([row(place)["robot"] for place in range(4)], before)
+        self.assertEqual(sorted(before), ["eel", "fish", "paddler", "wriggler"])
+        row(0)
+        window.do("keydown", "Shift_L")
+        self.assertEqual(row(2)["selected"], 3)
+        window.do("keyup", "Shift_L")
+        window.do("keydown", "Control_L")
+        self.assertEqual(row(1)["selected"], 2)
+        self.assertEqual(row(1)["selected"], 3)
+        window.do("keyup", "Control_L")
+        self.assertEqual(row(3)["selected"], 1)
+        self.finish(window)
+
+    def test_the_text_size_buttons_stay_under_the_mouse(self):
+        window = self.small("--paused")
+        window.click("tab.View")
+        x, y = window.place("picture")
+        panel = window.items["panel.View"]
+        window.do("mousemove", panel["x"], panel["y"])
+        for _ in range(40):
+            if "text.larger" in window.items and abs(window.items["text.larger"]["y"] - panel["y"]) < panel["height"] / 2 - 30:
+                break
+            window.do("click", 5)
+            window.frame()
+        since = window.mark()
+        window.click("text.larger")
+        place = window.place("text.larger")
+        for _ in range(3):
+            window.do("click", 1)
+        window.frame(lambda frame: abs(frame["text"] - 1.4) < 0.01, since)
+        self.assertEqual(window.place("text.larger"), place)
+        window.key("ctrl+minus")
+        window.frame(lambda frame: abs(frame["text"] - 1.3) < 0.01)
+        window.key("ctrl+shift+equal")
+        window.frame(lambda frame: abs(frame["text"] - 1.4) < 0.01)
+        self.finish(window)
+
+    def test_a_recording_shows_a_sign_that_is_not_in_the_film(self):
+        if shutil.which("ffmpeg") is None:
+            self.skipTest("this machine has no ffmpeg")
+        window = self.small("--paused")
+        window.click("tab.Video")
+        since = window.mark()
+        window.click("video.record")
+        file = window.wait("recording", since)["file"]
+        sign = window.until("a sign", lambda: window.items.get("recording.sign"))
+        rows, columns = (slice(int(sign[at] - sign[size] / 2), int(sign[at] + sign[size] / 2))
+                         for at, size in (("y", "height"), ("x", "width")))
+
+        def red(pixels):
+            part = pixels[rows, columns].astype(int)
+            return int(((part[:, :, 0] > 180) & (part[:, :, 1] < 90) & (part[:, :, 2] < 90)).sum())
+
+        window.frame()
+        self.assertGreater(red(window.pixels()), 30)
+        self.assertEqual(red(window.screenshot() * 255), 0)
+        since = window.mark()
+        window.key("v")
+        window.wait("recorded", since)
+        window.until("no sign", lambda: "recording.sign" not in window.items)
+        film = subprocess.run(["ffmpeg", "-v", "error", "-i", file, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                              capture_output=True, check=True).stdout
+        self.assertEqual(red(numpy.frombuffer(film, numpy.uint8).reshape(720, 1280, 3)), 0)
+        self.finish(window)
+
+    def test_the_first_gestures_fade_after_use(self):
+        folder = scratch()
+        window = self.window_in(folder, str(SAMPLES / "eel.json"), "--paused")
+        for gesture in ("turn", "move", "zoom", "pull a mass"):
+            window.place(f"gesture.{gesture}")
+        x, y = window.place("picture")
+        window.do("mousemove", x, y - 150, "click", 4)
+        window.until("zoom known", lambda: "gesture.zoom" not in window.items)
+        window.script([f"mousemove {x} {y - 150}", "mousedown 1", "sleep 0.1", f"mousemove {x + 60} {y - 150}", "sleep 0.1", "mouseup 1"])
+        window.until("turn known", lambda: "gesture.turn" not in window.items)
+        self.assertIn("gesture.pull a mass", window.items)
+        self.finish(window)
+        again = self.window_in(folder, str(SAMPLES / "eel.json"), "--paused")
+        again.place("gesture.move")
+        again.frame()
+        self.assertNotIn("gesture.turn", again.items)
+        self.assertNotIn("gesture.zoom", again.items)
+        self.finish(again)
 
     def test_keys_are_remapped_by_a_file(self):
         folder = scratch()

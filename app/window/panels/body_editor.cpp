@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/body_editor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "app/window/panels/robot_commands.h"
+#include "app/window/toolkit/widgets.h"
+#include "mercury/material.h"
+
+namespace mercury::window {
+namespace {
+
+constexpr MaterialId base_materials = 22;
+
+std::string name_of(const Robot& robot, MaterialId id) {
+  return id < robot.material_names.size() ? robot.material_names[id] : default_material_name(id);
+}
+
+void draw_material(VoxelEdit& edit, const Robot& robot, EventLog& log) {
+  ImGui::SetNextItemWidth(8 * ImGui::GetFontSize());
+  if (ImGui::BeginCombo("##material", name_of(robot, edit.material).c_str())) {
+    const std::size_t known = robot.materials.empty() ? base_materials + 1u : robot.materials.size();
+    for (MaterialId id = 1; id <= base_materials && id < known; ++id)
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of(robot, id), id).c_str(), id == edit.material))
+        edit.material = id;
+    ImGui::EndCombo();
+  }
+  log.item("edit.material");
+  tooltip("what is added or painted");
+}
+
+}  // namespace
+
+void toggle_body_editor(PanelContext& context) {
+  if (context.body_edit.robot != 0) {
+    context.body_edit.robot = 0;
+    return;
+  }
+  const std::optional<RobotId> current = context.scene.current();
+  if (!current) {
+    context.toasts.show(Tone::info, "select the robot to edit first");
+    return;
+  }
+  if (!context.scene.has_voxels(*current)) {
+    context.toasts.show(Tone::info, fmt::format("{} has no grid of voxels; only voxel robots can be edited",
+                                                name_of_robot(context.scene, *current)));
+    return;
+  }
+  context.body_edit.robot = *current;
+  context.scene.pause();  // a body that holds still is easier to hit
+}
+
+void draw_body_editor(PanelContext& context, const ViewportArea& area) {
+  BodyEdit& body = context.body_edit;
+  const DocumentRobot* robot = body.robot ? context.scene.document().find(body.robot) : nullptr;
+  if (!robot) {
+    body.robot = 0;
+    return;
+  }
+  const float text = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({(area.low.x + area.high.x) / 2, area.low.y + 0.6f * text}, ImGuiCond_Always, {0.5f, 0});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(10 * text, area.width() - text), 20 * text});
+  ImGui::Begin("##bodyedit", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shortened(robot->body.name, 8 * text).c_str());
+  struct Tool {
+    VoxelTool tool;
+    const char* name;
+    const char* help;
+  };
+  for (const Tool& tool : {Tool{VoxelTool::add, "Add", "a click on the skin puts a voxel there"},
+                           {VoxelTool::remove, "Take away", "a click removes the voxel; loose parts go with it"},
+                           {VoxelTool::paint, "Paint", "a click gives the voxel another material"}}) {
+    ImGui::SameLine();
+    if (toggle_button(tool.name, body.edit.tool == tool.tool)) body.edit.tool = tool.tool;
+    context.log.item(fmt::format("edit.{}", tool.name));
+    tooltip(tool.help);
+  }
+  const bool narrow = area.width() < 42 * text;
+  if (!narrow) ImGui::SameLine();
+  draw_material(body.edit, *robot->body.robot, context.log);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(7 * text);
+  int mirror = static_cast<int>(body.edit.mirror);
+  if (ImGui::Combo("##mirror", &mirror, "no mirror\0mirror x\0mirror y\0mirror z\0"))
+    body.edit.mirror = static_cast<Mirror>(mirror);
+  context.log.item("edit.mirror");
+  tooltip("do the same on the other side of the body's middle");
+  ImGui::SameLine();
+  if (ImGui::Button("Done")) body.robot = 0;
+  context.log.item("edit.done");
+  context.log.item(
+      "panel.BodyEdit", ImGui::GetWindowPos(),
+      {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+  ImGui::End();
+}
+
+bool edit_body_at(PanelContext& context, const Hit& hit) {
+  const BodyEdit& body = context.body_edit;
+  if (body.robot == 0 || body.robot != hit.robot) return false;
+  const std::optional<VoxelSide> side = context.scene.voxel_side(hit);
+  if (!side) return true;
+  if (context.scene.edit_voxel(hit.robot, *side, body.edit)) {
+    const Robot& robot = *context.scene.document().find(hit.robot)->body.robot;
+    context.log.write("edited", {{"masses", robot.masses.size()}, {"springs", robot.springs.size()}});
+  }
+  return true;
+}
+
+}  // namespace mercury::window

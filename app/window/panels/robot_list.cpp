@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/panels/robot_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/robot_menu.h"
+#include "app/window/toolkit/fuzzy_match.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+
+namespace mercury::window {
+namespace {
+
+void show_details(const RobotEntry& entry) {
+  ImGui::BeginTooltip();
+  ImGui::TextUnformatted(entry.name.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::Text("%zu masses, %zu springs, %zu faces", entry.masses, entry.springs, entry.faces);
+  ImGui::TextUnformatted(entry.file.empty() ? "not saved yet" : entry.file.c_str());
+  if (entry.tuned) ImGui::TextUnformatted("materials changed");
+  if (entry.exploded) ImGui::Text("exploded at %.3f s", entry.exploded_at);
+  ImGui::PopStyleColor();
+  ImGui::EndTooltip();
+}
+
+constexpr std::size_t searchable = 8;  // robots from which on a field to search them is shown
+
+}  // namespace
+
+void RobotList::draw(PanelContext& context, float room) {
+  std::vector<RobotEntry> all = context.scene.entries();
+  const auto selected = std::ranges::count_if(all, &RobotEntry::selected);
+  const std::size_t count = all.size();
+  heading(
+      fmt::format("{} robot{}{}", count, count == 1 ? "" : "s", selected ? fmt::format(", {} selected", selected) : "")
+          .c_str());
+  const bool search = count >= searchable || !search_.empty();
+  if (search) {
+    ImGui::SetNextItemWidth(-1);
+    text_field("##search", search_, "search");
+    context.log.item("robots.search");
+  }
+  const std::vector<RobotEntry> entries = listed(std::move(all));
+  if (!search_.empty()) note(fmt::format("{} of {}", entries.size(), count).c_str());
+  // As many whole rows as fit, and the heading.
+  const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+  const float used = (search ? 2.0f : 1.0f) * ImGui::GetFrameHeightWithSpacing();
+  const float most = std::max(5.0f, std::floor((room - used) / line) - 1);
+  draw_table(context, entries, (std::clamp(static_cast<float>(entries.size()), 3.0f, most) + 1) * line + 2);
+}
+
+// The robots whose names fit the search, in the order of the column that was clicked.
+std::vector<RobotEntry> RobotList::listed(std::vector<RobotEntry> entries) const {
+  std::erase_if(entries, [&](const RobotEntry& entry) { return !fuzzy_match(search_, entry.name); });
+  if (column_ == 0) std::ranges::stable_sort(entries, {}, &RobotEntry::name);
+  if (column_ == 1) std::ranges::stable_sort(entries, {}, &RobotEntry::springs);
+  if (!ascending_ && column_ >= 0) std::ranges::reverse(entries);
+  return entries;
+}
+
+void RobotList::draw_table(PanelContext& context, const std::vector<RobotEntry>& entries, float height) {
+  if (!ImGui::BeginTable("list", 3,
+                         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter |
+                             ImGuiTableFlags_Sortable | ImGuiTableFlags_SortTristate,
+                         {0, height}))
+    return;
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("springs", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending);
+  ImGui::TableSetupColumn("shown", ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_NoSort);
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (int column = 0; column < 3; ++column) {
+    if (!ImGui::TableSetColumnIndex(column)) continue;
+    ImGui::TableHeader(ImGui::TableGetColumnName(column));
+    context.log.item(fmt::format("robots.by.{}", ImGui::TableGetColumnName(column)));
+  }
+  if (const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs()) {
+    column_ = specs->SpecsCount > 0 ? specs->Specs[0].ColumnIndex : -1;
+    ascending_ = specs->SpecsCount == 0 || specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
+  }
+  order_.clear();
+  for (const RobotEntry& entry : entries) order_.push_back(entry.id);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(entries.size()));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const RobotEntry& entry = entries[static_cast<std::size_t>(i)];
+      ImGui::PushID(static_cast<int>(entry.id));
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      draw_row(context, entry, i);
+      ImGui::PopID();
+    }
+  ImGui::EndTable();
+}
+
+void RobotList::draw_row(PanelContext& context, const RobotEntry& entry, int index) {
+  if (entry.selected) ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg1, ImGui::GetColorU32(ImGuiCol_Header));
+  const bool changed = entry.unsaved && (entry.tuned || !entry.file.empty());
+  if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+  const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
+  if (entry.selected)
+    ImGui::PushStyleColor(ImGuiCol_Header, IM_COL32_BLACK_TRANS);  // the whole row has the colour already
+  const bool clicked = ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick);
+  if (entry.selected) ImGui::PopStyleColor();
+  if (clicked && ImGui::IsMouseDoubleClicked(0))
+    frame_robots(context, {entry.id});
+  else if (clicked)
+    selection_.click(context.scene, entry.id, order_);
+  if (entry.exploded) ImGui::PopStyleColor();
+  if (index < 100) context.log.item(fmt::format("robot.{}", index));
+  robot_menu_of_row(context, entry.id);
+  if (ImGui::IsItemHovered() && pointer_rests()) show_details(entry);
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  right_aligned(fmt::format("{}", entry.springs));
+  ImGui::PopStyleColor();
+  ImGui::TableNextColumn();
+  bool shown = !entry.hidden;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
+  if (ImGui::Checkbox("##shown", &shown)) context.scene.set_hidden(entry.id, !shown);
+  ImGui::PopStyleVar();
+  tooltip("draw this robot; physics goes on either way");
+}
+
+}  // namespace mercury::window

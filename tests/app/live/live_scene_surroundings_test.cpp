@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots that are put into another environment, springs that stay attached, and children of two.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "mercury/generator.h"
+#include "tests/app/live/live_scene_setup.h"
+
+namespace mercury {
+namespace {
+
+using test::ids_of;
+
+float lowest(const Snapshot& snapshot, std::size_t robot) {
+  float z = 1e30f;
+  for (const Vec3 position : snapshot.positions_of(robot)) z = std::min(z, position.z);
+  return z;
+}
+
+Configuration on_land(const LiveScene& scene, Solver solver) {
+  Configuration configuration = scene.configuration();
+  configuration.environment = Land{};
+  configuration.solver = solver;
+  return configuration;
+}
+
+TEST(LiveScene, RobotsThatComeToLandAreSetDownAtRestAndUndoTakesThemBack) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 3);
+  scene.step(400);
+  scene.wait_until_done();
+  const auto swimming = scene.hold_snapshot();
+  EXPECT_TRUE(scene.set_configuration(on_land(scene, Solver::xpbd)));
+  EXPECT_EQ(scene.undo_name(), "move to land");
+  scene.wait_until_done();
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(lowest(scene.snapshot(), i), 0, 1e-5);
+  for (const Vec3 velocity : scene.snapshot().velocities) EXPECT_EQ(velocity, Vec3{});
+  scene.step(200);
+  scene.wait_until_done();
+  const auto crawling = scene.hold_snapshot();
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.configuration().solver, Solver::force);
+  EXPECT_EQ(scene.snapshot().positions, swimming->positions);
+  EXPECT_EQ(scene.snapshot().velocities, swimming->velocities);
+  scene.redo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().positions, crawling->positions);
+  EXPECT_EQ(scene.snapshot().velocities, crawling->velocities);
+}
+
+// Springs of 5,000 N/m and more explode on land, where they are 200 times as stiff: dt must stay below 2 / sqrt(k n).
+TEST(LiveScene, UndoOfAMoveToLandMakesExplodedRobotsWhole) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.scale_materials(ids_of(scene), {.stiffness = 100});
+  scene.end_edit();
+  scene.step(100);
+  scene.wait_until_done();
+  const auto swimming = scene.hold_snapshot();
+  ASSERT_FALSE(scene.entries()[0].exploded);
+  scene.set_configuration(on_land(scene, Solver::force));
+  scene.step(100);
+  scene.wait_until_done();
+  ASSERT_TRUE(scene.entries()[0].exploded);
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.entries()[0].exploded);
+  EXPECT_THAT(scene.exploded(), testing::IsEmpty());
+  EXPECT_EQ(scene.snapshot().positions, swimming->positions);
+  // With XPBD they survive, and an explosion after that is seen again.
+  scene.set_configuration(on_land(scene, Solver::xpbd));
+  scene.step(500);
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.entries()[0].exploded);
+}
+
+TEST(LiveScene, APinHoldsAMassAndFollowsAReset) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  const RobotId id = ids_of(scene).front();
+  scene.step(500);
+  scene.wait_until_done();
+  const Vec3 place = scene.snapshot().positions[4];
+  scene.pin({.robot = id, .index = 0, .mass = 4});
+  EXPECT_TRUE(scene.has_attachments({id}));
+  scene.step(1500);
+  scene.wait_until_done();
+  // Forces on a mass are some 10 N, the pin is 0.2 / dt^2 = 200 kN/m.
+  EXPECT_LT(length(scene.snapshot().positions[4] - place), 1e-3f);
+  scene.reset();
+  scene.wait_until_done();
+  scene.frame();
+  scene.step(1500);
+  scene.wait_until_done();
+  EXPECT_LT(length(scene.snapshot().positions[4] - scene.document().robots[0].body.robot->masses[4]), 1e-3f);
+  scene.remove_attachments({id});
+  EXPECT_FALSE(scene.has_attachments({id}));
+  EXPECT_THAT(scene.attachments(), testing::IsEmpty());
+}
+
+TEST(LiveScene, AnAttachedSpringGoesOnPulling) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  const RobotId id = ids_of(scene).front();
+  const Vec3 start = scene.snapshot().telemetry[0].center_of_mass;
+  scene.begin_perturbation({.robot = id, .index = 0, .mass = 4});
+  const PerturbationDetails pull = scene.perturbation().value();
+  scene.move_perturbation(pull.at + Eigen::Vector3f(2, 0, 0));
+  scene.attach_perturbation();
+  EXPECT_FALSE(scene.perturbation());
+  ASSERT_THAT(scene.attachments(), testing::SizeIs(1));
+  scene.step(3000);
+  scene.wait_until_done();
+  // Drag opposes it, and a spring of rest length 0 that is not in the way ends at its target.
+  EXPECT_GT(scene.snapshot().telemetry[0].center_of_mass.x - start.x, 0.5f);
+  scene.remove({id});
+  scene.wait_until_done();
+  EXPECT_THAT(scene.attachments(), testing::IsEmpty());
+}
+
+TEST(LiveScene, AChildOfTwoIsTheCrossoverOfItsSeed) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  const std::vector<RobotId> parents = ids_of(scene);
+  scene.breed(parents[0], parents[1], 9);
+  scene.wait_until_done();
+  ASSERT_THAT(scene.entries(), testing::SizeIs(3));
+  const Robot child =
+      cross_robots(*scene.document().robots[0].body.robot, *scene.document().robots[1].body.robot, 9, "voxel-5-0-x");
+  EXPECT_EQ(scene.entries()[2].name, "voxel-5-0-x");
+  EXPECT_EQ(scene.document().robots[2].body.robot->masses, child.masses);
+  EXPECT_EQ(scene.document().robots[2].body.robot->springs, child.springs);
+  scene.undo();
+  EXPECT_THAT(scene.entries(), testing::SizeIs(2));
+}
+
+}  // namespace
+}  // namespace mercury
