@@ -13,7 +13,7 @@ namespace mercury {
 
 using Cell = std::array<int, 3>;
 
-// The voxel behind a face of the skin, and the empty place before it, which may lie one step outside of the grid.
+// The voxel behind a face of the skin, and the air before it, which may lie one step outside of the grid.
 struct VoxelSide {
   Cell voxel{}, beside{};
 };
@@ -30,7 +30,7 @@ struct VoxelEdit {
 
 // The robot with one voxel more, fewer, or of another material. A voxel beside the grid makes the grid larger on both
 // sides, so that its middle, and with it every mass, stays where it is. Name, environment, table of materials and
-// actuators stay; seed and ancestry go, since they no longer tell how the robot was made. Voxels that lose their
+// actuators stay; seed and ancestry go, since the robot is no longer made that way. Voxels that lose their
 // connection to the largest body go too. Throws InputError if the robot has no grid, would have no voxel left or too
 // many masses, or for a material that is no base material.
 Robot with_voxel(const Robot& robot, const VoxelSide& side, const VoxelEdit& edit);

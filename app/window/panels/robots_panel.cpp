@@ -42,7 +42,7 @@ void RobotsPanel::draw_strengths(PanelContext& context) {
   if (slider("mutation", "how much mutants differ in their bodies; 1 = a little", body, 1, {0, 10, "%.1f"}))
     mutation.strength = std::max(0.0, static_cast<double>(body));
   context.log.item("mutation.strength");
-  if (slider("of muscles", "how much mutants differ in the laws of their muscles", muscles, 0, {0, 10, "%.1f"}))
+  if (slider("of muscles", "how much mutants differ in their muscles", muscles, 0, {0, 10, "%.1f"}))
     mutation.muscles = std::max(0.0, static_cast<double>(muscles));
 }
 

@@ -143,13 +143,14 @@ TEST(LiveScene, AnEditedBodyGoesOnWhereItIsAndUndoBringsTheOldOneBack) {
     const auto same =
         std::ranges::find_if(edited.masses, [&](Vec3 mass) { return length(mass - robot.masses[i]) < 1e-5f; });
     ASSERT_NE(same, edited.masses.end());
-    EXPECT_EQ(scene.snapshot().positions[static_cast<std::size_t>(same - edited.masses.begin())], before->positions[i]);
+    EXPECT_EQ(scene.snapshot().positions_of(0)[static_cast<std::size_t>(same - edited.masses.begin())],
+              before->positions_of(0)[i]);
   }
   scene.undo();
   scene.wait_until_done();
   EXPECT_EQ(*scene.document().robots[0].body.robot, robot);
   for (std::size_t i = 0; i < robot.masses.size(); ++i)
-    EXPECT_LT(length(scene.snapshot().positions[i] - before->positions[i]), 1e-5f);
+    EXPECT_LT(length(scene.snapshot().positions_of(0)[i] - before->positions_of(0)[i]), 1e-5f);
 }
 
 }  // namespace
