@@ -45,8 +45,8 @@ struct PendingCommands {
   std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
-    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first || loop ||
-           timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit || ticket > 0;
+    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first ||
+           loop || timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit || ticket > 0;
   }
   // Forgets the moments that were asked for.
   void drop_timeline() {
@@ -91,7 +91,7 @@ struct Physics::Parts {
   std::set<RobotId> exploded;
   EventLog events;
   ReplayLog replay_log{events};
-  std::uint64_t surroundings = 0;  // of the scene
+  std::uint64_t surroundings = 0;               // of the scene
   std::shared_ptr<const Repro> replayed_repro;  // or nothing
   std::size_t next_change = 0;                  // index in replayed_repro->changes
   Timeline timeline;

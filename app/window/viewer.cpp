@@ -144,7 +144,7 @@ Viewer::Viewer(ViewerOptions options)
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
     scene_.set_bridge(std::move(chosen.bridge));
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
-                    .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
+                      .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
   load_settings();
   fill_scene();
 }

@@ -44,7 +44,7 @@ constexpr KeyBinding table[] = {
 
     {Action::new_random, "new_random", "N", "new random robots", "Robots"},
     {Action::mutate, "mutate", "M", "mutate: a changed copy of each selected robot", "Robots"},
-    {Action::breed, "breed", "X", "breed: a child of the two selected robots", "Robots"},
+    {Action::breed, "breed", "J", "breed: a child of the two selected robots", "Robots"},
     {Action::evolve, "evolve", "E", "evolve the selected robots, in the background", "Robots"},
     {Action::edit_body, "edit_body", "Ctrl E", "edit the body of the selected robot, or stop", "Robots"},
     {Action::rename, "rename", "Ctrl R", "rename the selected robot", "Robots"},
@@ -52,7 +52,7 @@ constexpr KeyBinding table[] = {
     {Action::remove, "remove", "Delete", "remove the selected robots", "Robots"},
     {Action::keep_selected, "keep_selected", "", "remove all robots but the selected ones", "Robots"},
     {Action::keep_best, "keep_best", "", "keep the best robots and remove the others", "Robots"},
-    {Action::detach, "detach", "U", "remove pins and springs that stay attached", "Robots"},
+    {Action::detach, "detach", "W", "remove pins and springs that stay attached", "Robots"},
     {Action::select_all, "select_all", "Ctrl A", "select all", "Robots"},
     {Action::invert_selection, "invert_selection", "Ctrl I", "select the robots that are not selected", "Robots"},
     {Action::deselect, "deselect", "Esc", "close a dialog, or clear the selection", "Robots"},

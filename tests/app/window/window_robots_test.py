@@ -189,7 +189,7 @@ class RobotsTest(WindowCase):
                        "keydown Shift_L", "mouseup 1", "sleep 0.1", "keyup Shift_L", "keyup Control_L"])
         self.assertTrue(window.wait("pulled", since)["stays"])
         window.frame(lambda frame: frame["attached"] == 1)
-        window.key("u")
+        window.key("w")
         window.frame(lambda frame: frame["attached"] == 0)
         self.finish(window)
 
