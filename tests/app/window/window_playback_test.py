@@ -104,14 +104,19 @@ class PlaybackTest(WindowCase):
         window.place("panel.Explosion")
         window.frame()  # the card has its final position
         area, ends = window.items["picture"], ("explosion.a", "explosion.b")
-        for _ in range(2):  # for each robot
+
+        def show():
             window.click("explosion.show")
             window.until("the spring in the picture", lambda: all(
                 abs(window.items[end]["x"] - area["x"]) < area["width"] / 2 and
                 abs(window.items[end]["y"] - area["y"]) < area["height"] / 2 for end in ends))
+
+        for _ in range(2):  # for each robot
+            show()
             for end in ends:
                 self.assertGreater(marked(yellow, end, 10), 60)
             window.click("explosion.next")
+        show()
         window.key("b")
         window.frame()
         self.assertGreater(marked(magenta, "explosion.a", 10), 60)
