@@ -75,7 +75,10 @@ bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const 
   const auto at = draw_hit_mark(scene, hit, area, camera);
   const float text = ImGui::GetFontSize(), width = 18 * text, height = 11 * text, gap = 2 * text;
   const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));
-  const float x = mass.x + gap + width < area.high.x ? mass.x + gap : mass.x - gap - width;
+  // Beside the point that was clicked, too, so that a second click there reaches the robot.
+  const ImVec2 clicked = on_screen(area, camera, hit.point).value_or(mass);
+  const float right = std::max(mass.x, clicked.x) + gap, left = std::min(mass.x, clicked.x) - gap - width;
+  const float x = right + width < area.high.x ? right : left;
   const ImVec2 corner{std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - width)),
                       std::clamp(mass.y - height - gap, area.low.y, std::max(area.low.y, area.high.y - height))};
   if (at)
