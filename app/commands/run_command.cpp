@@ -40,7 +40,9 @@ struct RunOptions {
   SimulationOptions simulation;
   TrialSettings trials;
   OutputOptions output;
-  std::string csv, record, checkpoint, resume;
+  std::string csv, record, checkpoint;
+  std::string resume;    // the checkpoint to go on from; empty = none
+  bool goes_on = false;  // --resume
   std::optional<std::int64_t> every;
   std::optional<double> checkpoint_every;
   bool compress = false;
@@ -344,7 +346,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
            "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
   add_number(*command, "--checkpoint-every", options->checkpoint_every,
              "Wall time between two checkpoints (default 60)", "S");
-  add_text(*command, "--resume", options->resume, "Go on with the run of a checkpoint, bit for bit", "FILE.h5");
+  command->add_flag("--resume", options->goes_on, "Go on with the run that --checkpoint has saved, bit for bit");
   options->output.add_to(*command);
   command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
@@ -362,10 +364,17 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"
       "  mercury run my-robots --seconds 3600 --checkpoint long.h5\n"
-      "  mercury run --resume long.h5 --checkpoint long.h5        (goes on after a crash)\n"
+      "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
-  command->callback([options, choose] { choose([options] { return options->robots.status(run(*options)); }); });
+  command->callback([options, choose] {
+    choose([options] {
+      if (options->goes_on && options->checkpoint.empty())
+        throw InputError("--resume", "goes on from the file of --checkpoint; give that, too");
+      if (options->goes_on) options->resume = options->checkpoint;
+      return options->robots.status(run(*options));
+    });
+  });
 }
 
 }  // namespace mercury

@@ -66,8 +66,8 @@ TEST_F(OnGpu, WithoutRoomSaysWhatIsNeededAndWhatIsFreeAndGoesOnAfterwards) {
 // Reads a mask from where no memory is: all that the process still wants from the GPU fails.
 void lose(Simulation& simulation) { simulation.reset_in_stream(reinterpret_cast<const std::uint8_t*>(8), nullptr); }
 
-// In a process of its own, since it can use the GPU no more. Only on request: after such a fault OpenGL drew nothing but
-// black on a headless H100, in every later process.
+// In a process of its own, since it can use the GPU no more. Only on request: after such a fault OpenGL drew nothing
+// but black on a headless H100, in every later process.
 TEST_F(OnGpu, ThatFailsEndsInADeviceError) {
   if (!std::getenv("MERCURY_TEST_GPU_FAULT")) GTEST_SKIP() << "set MERCURY_TEST_GPU_FAULT=1 to let the GPU fail";
   GTEST_FLAG_SET(death_test_style, "threadsafe");

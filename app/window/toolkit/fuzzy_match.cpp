@@ -25,6 +25,7 @@ std::optional<int> fuzzy_match(std::string_view query, std::string_view text) {
   std::vector<int> best, next(text.size());
   for (const char letter : query.substr(0, most)) {
     if (letter == ' ') continue;
+    if (text.empty()) return std::nullopt;
     int reachable = best.empty() ? 0 : none;  // the best score that ends before text[i - 1]
     const bool first = best.empty();
     for (std::size_t i = 0; i < text.size(); ++i) {

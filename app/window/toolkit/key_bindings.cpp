@@ -12,7 +12,7 @@ namespace {
 constexpr KeyBinding table[] = {
     {Action::play_pause, "play_pause", "Space", "play or pause", "Time"},
     {Action::step, "step", "Right or .", "one step", "Time", true},
-    {Action::step_back, "step_back", "Left or ,", "one step back", "Time", true},
+    {Action::step_back, "step_back", "Left or Comma", "one step back", "Time", true},
     {Action::first_moment, "first_moment", "Home", "the first moment of the timeline", "Time"},
     {Action::present, "present", "End", "the present, or the end of a recording", "Time"},
     {Action::loop, "loop", "O", "begin a loop here, close it, end it", "Time"},

@@ -40,7 +40,7 @@ class Checkpoint : public FolderTest {
     while (!std::filesystem::exists(path("c.h5")) && child.running()) std::this_thread::yield();
     child.kill();
   }
-  const Arguments resume_{"run", "--resume", path("c.h5"), "--json", "--quiet"};
+  const Arguments resume_{"run", "--resume", "--checkpoint", path("c.h5"), "--json", "--quiet"};
   Outcome refused(const Arguments& arguments) {
     const Outcome outcome = mercury(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.messages;
@@ -127,14 +127,16 @@ TEST_F(Checkpoint, OptionsThatItHasAreRefused) {
 
 TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
   write("text.h5", "nothing");
-  EXPECT_THAT(refused({"run", "--resume", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
-  EXPECT_THAT(refused({"run", "--resume", path("missing.h5")}).messages, HasSubstr("missing.h5"));
+  EXPECT_THAT(refused({"run", "--resume"}).messages, HasSubstr("goes on from the file of --checkpoint"));
+  EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
+  EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("missing.h5")}).messages, HasSubstr("missing.h5"));
   ASSERT_EQ(mercury(run_ + Arguments{"--record", path("r.h5")}).status, 0);
-  EXPECT_THAT(refused({"run", "--resume", path("r.h5")}).messages, HasSubstr("is a recording, not a checkpoint"));
+  EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("r.h5")}).messages,
+              HasSubstr("is a recording, not a checkpoint"));
   ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
   const std::string whole = read("c.h5");
   write("half.h5", whole.substr(0, whole.size() / 2));
-  refused({"run", "--resume", path("half.h5")});
+  refused({"run", "--resume", "--checkpoint", path("half.h5")});
   const hid_t file = H5Fopen(path("c.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t group = H5Gopen2(file, "checkpoint", H5P_DEFAULT);
   H5Adelete(group, "version");
