@@ -184,7 +184,8 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
   if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera)) pinned_.reset();
   if (!hovered_) return;
   draw_hit_mark(scene_, *hovered_, area, camera);
-  if (rest_time_ >= details_delay) draw_details(area);
+  const bool is_pinned = pinned_ && pinned_->robot == hovered_->robot && pinned_->mass == hovered_->mass;
+  if (rest_time_ >= details_delay && !is_pinned) draw_details(area);
 }
 
 std::optional<std::size_t> MouseController::hovered() const {
