@@ -12,7 +12,7 @@ class FilesTest(WindowCase):
     def test_a_generated_robot_is_saved_and_loaded_again(self):
         window = self.small("--paused")
         since = window.mark()
-        window.click("generate")
+        window.key("n")
         robots = window.wait("robots", since, lambda event: all(name.startswith("voxel") for name in event["names"]))
         window.click("robot.1")
         window.frame(lambda frame: frame["selected"] == 1)
