@@ -4,7 +4,6 @@ import itertools
 import os
 import random
 import shutil
-import subprocess
 
 from fast_input import FastInput
 from window_case import PROGRAM, SAMPLES, WindowCase, main
@@ -45,10 +44,8 @@ class RandomUser:
     KEYS = ["space", "period", "Right", "plus", "minus", "asterisk", "0", "f", "r", "n", "d", "h", "s", "l", "k", "b", "t", "z",
             "g", "m", "p", "v", "1", "2", "3", "4", "5", "6", "7", "8", "9", "F1", "question", "Escape", "Escape", "Delete",
             "BackSpace", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+o", "ctrl+s", "Tab", "Return", "Up", "Down", "Left", "Home",
-            "Next", "e", "l", "bracketleft", "bracketright", "ctrl+k", "ctrl+i", "ctrl+e", "ctrl+r", "ctrl+plus", "ctrl+minus", "x", "u"]  # no slash: a path could leave the scratch folder
-    MODAL = ["ctrl+o", "ctrl+s", "ctrl+q", "ctrl+k", "F1", "e", "Escape"]
+            "Next", "e", "l"]  # no slash: a path could leave the scratch folder
     SIZE = (640, 400)
-    SIZES = [(640, 400), (320, 200), (1100, 600), (640, 90), (200, 400)]  # larger than the display: for both columns
     AHEAD = 100  # presses that may wait in the window's queue
 
     def __init__(self, test, seed):
@@ -58,7 +55,6 @@ class RandomUser:
         self.input = FastInput(self.display)
 
     def open(self):
-        self.now = self.SIZE
         # Many folders deep, so that files stay in the scratch folder however often "Up" is pressed.
         self.top = scratch()
         folder = self.top.joinpath(*["down"] * 400)
@@ -119,26 +115,12 @@ class RandomUser:
             self.note("to", *self.go())
             device.button(1, False)
             device.hold(held, False)
-        elif kind < 0.72:
-            self.note("rest", *self.go(), "then", key := chance.choice(self.MODAL))  # a tooltip is about to open
-            device.key(key, after=chance.randrange(200, 330))
-        elif kind < 0.73:
-            self.resize()
         else:
             self.note("key", key := chance.choice(self.KEYS))
             device.key(key)
 
-    def resize(self):
-        size = self.chance.choice(self.SIZES)
-        self.note("resize", *size)
-        self.input.flush()
-        subprocess.run(["xdotool", "search", "--class", "mercury", "windowsize", *map(str, size)], check=False,
-                       env=dict(os.environ, DISPLAY=self.display.name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.now = tuple(map(min, size, self.SIZE))
-        self.go()  # keys go to the window under the pointer
-
     def go(self):
-        x, y = self.chance.randrange(self.now[0]), self.chance.randrange(self.now[1])
+        x, y = self.chance.randrange(self.SIZE[0]), self.chance.randrange(self.SIZE[1])
         self.input.move(x, y)
         return x, y
 
