@@ -38,4 +38,15 @@ void Bodies::write_rest() {
   rest_to_write_.reset();
 }
 
+void attach_corners(GLuint array, const Bodies& bodies) {
+  glVertexArrayVertexBuffer(array, 0, bodies.positions.get(), 0, 12);
+  glVertexArrayVertexBuffer(array, 1, bodies.mass_bodies.get(), 0, 4);
+  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribIFormat(array, 1, 1, GL_UNSIGNED_INT, 0);
+  for (GLuint i = 0; i < 2; ++i) {
+    glVertexArrayAttribBinding(array, i, i);
+    glEnableVertexArrayAttrib(array, i);
+  }
+}
+
 }  // namespace mercury::render

@@ -52,4 +52,7 @@ class Bodies {
   float typical_spring_ = 0.1f;
 };
 
+// Makes a vertex array read the corners of skins: attribute 0 is the position of a mass, attribute 1 its body.
+void attach_corners(GLuint array, const Bodies& bodies);
+
 }  // namespace mercury::render

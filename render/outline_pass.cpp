@@ -46,16 +46,8 @@ void OutlinePass::resize(int width, int height) {
 }
 
 void OutlinePass::attach(const Bodies& bodies) {
-  const GLuint array = corners_.get();
-  glVertexArrayVertexBuffer(array, 0, bodies.positions.get(), 0, 12);
-  glVertexArrayVertexBuffer(array, 1, bodies.mass_bodies.get(), 0, 4);
-  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
-  glVertexArrayAttribIFormat(array, 1, 1, GL_UNSIGNED_INT, 0);
-  for (GLuint i = 0; i < 2; ++i) {
-    glVertexArrayAttribBinding(array, i, i);
-    glEnableVertexArrayAttrib(array, i);
-  }
-  glVertexArrayElementBuffer(array, bodies.faces.get());
+  attach_corners(corners_.get(), bodies);
+  glVertexArrayElementBuffer(corners_.get(), bodies.faces.get());
 }
 
 void OutlinePass::draw_depth(const Bodies& bodies, const Scene& scene, LatticePass& lattice,

@@ -26,15 +26,7 @@ SkinPass::SkinPass(const std::string& defines)
       depth_({"skin.vert", "surface.frag"}, define("COLOR_BY", 0)), skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
-  const GLuint array = corners_.get();
-  glVertexArrayVertexBuffer(array, 0, bodies.positions.get(), 0, 12);
-  glVertexArrayVertexBuffer(array, 1, bodies.mass_bodies.get(), 0, 4);
-  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
-  glVertexArrayAttribIFormat(array, 1, 1, GL_UNSIGNED_INT, 0);
-  for (GLuint i = 0; i < 2; ++i) {
-    glVertexArrayAttribBinding(array, i, i);
-    glEnableVertexArrayAttrib(array, i);
-  }
+  attach_corners(corners_.get(), bodies);
   cull_.attach(bodies);
   face_frames_.reserve(face_frame_bytes * bodies.face_count());
   face_normals_.reserve(4 * bodies.face_count());
