@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mouse and keyboard events through the XTEST extension, without a process per event as with xdotool."""
+"""Mouse and keyboard events through the XTEST extension, without a process per event as with xdotool.
+
+The X server handles the requests of one connection in order, and those of several connections in any order: while it
+waits for the delay of an event, it handles those of others. So whatever must happen between two events, such as a new
+size of the window, has to go through the same connection.
+"""
 import ctypes
 import ctypes.util
+
+ON_ERROR = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)
+ignore = ON_ERROR(lambda display, error: 0)  # a window may have gone when its new size arrives
 
 
 class FastInput:
@@ -18,6 +26,7 @@ class FastInput:
         self.display = ctypes.c_void_p(self.x11.XOpenDisplay(display.name.encode()))
         if not self.display:
             raise RuntimeError(f"cannot open display {display.name}")
+        self.x11.XSetErrorHandler(ignore)
         self.pressed = 0
 
     def close(self):
@@ -25,6 +34,14 @@ class FastInput:
 
     def flush(self):
         self.x11.XFlush(self.display)
+
+    def sync(self):
+        """Returns when the server has handled all events."""
+        self.x11.XSync(self.display, 0)
+
+    def resize(self, window, width, height):
+        """Between the events before and those after it. `window`: its number in the X server."""
+        self.x11.XResizeWindow(self.display, ctypes.c_ulong(window), width, height)
 
     def move(self, x, y):
         self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, 0)

@@ -4,6 +4,7 @@ import itertools
 import os
 import random
 import shutil
+import subprocess
 
 from fast_input import FastInput
 from window_case import PROGRAM, SAMPLES, WindowCase, main
@@ -15,7 +16,7 @@ PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "10000"))
 
 class RandomInputTest(WindowCase):
     def test_random_input_does_not_end_the_window(self):
-        """Ten thousand presses of random buttons and keys; none is lost."""
+        """Random buttons and keys, with tooltips, dialogs, the quit question and new sizes of the window; no press is lost."""
         for seed in SEEDS:
             with self.subTest(seed=seed):
                 RandomUser(self, seed).play(PRESSES)
@@ -44,13 +45,17 @@ class RandomUser:
     KEYS = ["space", "period", "Right", "plus", "minus", "asterisk", "0", "f", "r", "n", "d", "h", "s", "l", "k", "b", "t", "z",
             "g", "m", "p", "v", "1", "2", "3", "4", "5", "6", "7", "8", "9", "F1", "question", "Escape", "Escape", "Delete",
             "BackSpace", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+o", "ctrl+s", "Tab", "Return", "Up", "Down", "Left", "Home",
-            "Next", "e", "l"]  # no slash: a path could leave the scratch folder
+            "Next", "e", "l", "bracketleft", "bracketright", "ctrl+k", "ctrl+i", "ctrl+e", "ctrl+r", "ctrl+plus", "ctrl+minus",
+            "x", "u", "o", "y", "w", "End", "c", "F5", "shift+F5"]  # no slash: a path could leave the scratch folder
+    MODAL = ["ctrl+o", "ctrl+s", "ctrl+q", "ctrl+k", "F1", "e", "Escape"]
     SIZE = (640, 400)
+    # The last three are smaller than window managers allow.
+    SIZES = [SIZE, SIZE, SIZE, (1100, 600), (1280, 720), (320, 200), (640, 90), (200, 400)]
     AHEAD = 100  # presses that may wait in the window's queue
 
     def __init__(self, test, seed):
         self.test, self.seed, self.chance, self.last = test, seed, random.Random(seed), []
-        self.display = Display(*self.SIZE)
+        self.display = Display(*map(max, *self.SIZES))
         test.addCleanup(self.display.close)
         self.input = FastInput(self.display)
 
@@ -62,6 +67,10 @@ class RandomUser:
         robots = [str(shutil.copy(SAMPLES / name, folder)) for name in ("eel.json", "fish.json")]  # copies: saving may replace them
         window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)))
         self.test.addCleanup(window.kill)
+        self.size, self.input.pressed = self.SIZE, 0
+        found = subprocess.run(["xdotool", "search", "--onlyvisible", "--class", "mercury"], env=window.environment,
+                               check=True, capture_output=True, text=True).stdout.split()
+        self.x_window = int(found[-1])
         return window
 
     def play(self, presses):
@@ -72,21 +81,28 @@ class RandomUser:
                     self.act()
                 self.input.flush()
                 self.wait(window, self.AHEAD)
-                if window.process.poll() == 0:  # a click hit "Quit" in the menu
+                if self.has_quit(window):
                     handled += self.input.pressed
-                    self.input.pressed = 0
-                    self.test.assertEqual(window.gl_messages(), [])
                     window = self.open()
-                self.test.assertIsNone(window.process.poll())
             self.wait(window, 0)
-            self.test.assertEqual(window.pressed(), self.input.pressed)
-            self.test.assertEqual(window.gl_messages(), [])
+            if not self.has_quit(window):
+                self.test.assertEqual(window.pressed(), self.input.pressed)
+                self.test.assertEqual(window.gl_messages(), [])
             for depth in range(100):
                 self.test.assertEqual(os.listdir(self.top.joinpath(*["down"] * depth)), ["down"], "a file was saved near the root")
         except AssertionError as failure:
             raise AssertionError(f"seed {self.seed}, last actions: {self.last[-60:]}\n{window.stderr()}") from failure
         finally:
             window.kill()
+
+    def has_quit(self, window):
+        """Whether "Quit" in the menu, or Ctrl Q, has ended the window as it should."""
+        if window.process.poll() is None:
+            return False
+        self.test.assertEqual(window.process.returncode, 0)
+        self.test.assertEqual(window.gl_messages(), [])
+        self.input.sync()  # the next window would receive the rest
+        return True
 
     def wait(self, window, ahead):
         """Waits until at most `ahead` presses are unhandled, or the window quits."""
@@ -115,12 +131,20 @@ class RandomUser:
             self.note("to", *self.go())
             device.button(1, False)
             device.hold(held, False)
+        elif kind < 0.72:
+            self.note("rest", *self.go(), "then", key := chance.choice(self.MODAL))  # a tooltip is about to open
+            device.key(key, after=chance.randrange(200, 330))
+        elif kind < 0.73:
+            self.size = chance.choice(self.SIZES)
+            self.note("resize", *self.size)
+            device.resize(self.x_window, *self.size)
+            self.go()  # a press outside the window would not be for the window
         else:
             self.note("key", key := chance.choice(self.KEYS))
             device.key(key)
 
     def go(self):
-        x, y = self.chance.randrange(self.SIZE[0]), self.chance.randrange(self.SIZE[1])
+        x, y = map(self.chance.randrange, self.size)
         self.input.move(x, y)
         return x, y
 
