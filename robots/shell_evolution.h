@@ -14,6 +14,9 @@ namespace mercury {
 // The numbers of a genome: what validate() accepts, the origin keeps and mutate() changes.
 const ParameterTable<ShellGenome>& shell_genome_table();
 
+// Throws ParameterError if the layers are too far apart for the diameter.
+void check_shell_thickness(double thickness, double diameter);
+
 // The genome of a robot's origin. Throws InputError("/origin...") if it holds none.
 ShellGenome shell_genome_in(const Robot& robot);
 
