@@ -166,6 +166,9 @@ class Program {
     if (!scene_->random().empty() && !command.get_option_no_throw("--random"))
       throw InputError(scene_->path().string(),
                        fmt::format("has random robots, which {} does not take; give robot files", full_name(command)));
+    if (!scene_->attached().empty() && !command.get_option_no_throw("--attach"))
+      warn(fmt::format("{}: pins and attached springs are left out; only mercury view has them",
+                       scene_->path().string()));
     scene_options_ = scene_->arguments(command, arguments);
     const auto place = arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(places.front()));
     arguments.insert(place, scene_->robots().begin(), scene_->robots().end());

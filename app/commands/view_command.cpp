@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "app/commands/commands.h"
+#include "app/options/attachment_options.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
@@ -31,6 +32,7 @@ struct ViewCommandOptions {
   RobotOptions robots;
   SimulationOptions simulation;
   ViewOptions view;
+  AttachmentOptions attachments;
   OutputOptions output;
   std::string size, quality = "auto", report;
   double speed = 1;
@@ -59,6 +61,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.interop = !options.no_interop;
   result.paced = !options.unpaced;
   result.view = options.view.settings(Layout::cells);
+  result.attached = options.attachments.attached();
   return result;
 }
 
@@ -166,6 +169,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
   add_text(*command, "--report", options->report,
            "Write the events of the window to a file, one JSON object per line (docs/window.md)", "FILE")
       ->group("Window");
+  options->attachments.add_to(*command);
   options->output.add_force_to(*command);
   options->view.add_to(*command);
   options->simulation.add_to(*command);

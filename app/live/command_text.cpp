@@ -202,6 +202,14 @@ OptionValues append_random_robots(const SceneDocument& document, CommandText& co
   return options;
 }
 
+// The command names files first, and leaves out robots that are in none.
+void append_attachments(const SceneDocument& document, CommandText& command) {
+  SceneDocument named = document;
+  std::erase_if(named.robots, [](const auto& robot) { return robot.source.file.empty() && !robot.source.generation; });
+  std::ranges::stable_partition(named.robots, [](const auto& robot) { return !robot.source.file.empty(); });
+  for (const AttachedMass& one : attached_in(named)) command.text += " --attach=" + text_of(one);
+}
+
 }  // namespace
 
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand) {
@@ -218,6 +226,10 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
   }
   const OptionValues options = append_random_robots(document, command);
   append(command.text, options);
+  if (subcommand == "view")
+    append_attachments(document, command);
+  else if (!document.attachments.empty())
+    command.notes.push_back("pins and attached springs are not in the command; only mercury view has them");
   append(command.text, options_of(document.configuration));
   append(command.text, options_of(settings, subcommand == "view" ? Layout::cells : Layout::grid));
   if (subcommand == "render") command.text += " -o scene.mp4";

@@ -90,7 +90,9 @@ void LiveScene::step(std::int64_t count) {
   parts_->physics.step(count);
 }
 void LiveScene::reset() {
-  const bool pins = std::ranges::any_of(parts_->attachments, &Parts::Attachment::pin);
+  const bool pins = std::ranges::any_of(parts_->document.attachments, [](const Attachment& one) {
+    return one.spring.kind == LivePerturbation::Kind::pin;
+  });
   if (pins) {
     parts_->pins_wait = parts_->snapshot->resets;
     parts_->send_perturbation();

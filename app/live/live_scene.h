@@ -25,6 +25,7 @@
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
 #include "app/live/voxel_edit.h"
+#include "app/options/attachment_options.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -187,13 +188,15 @@ class LiveScene {
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
   std::optional<PerturbationDetails> perturbation() const;
-  // Springs that stay until they are removed or their robot goes. attach_perturbation() ends the perturbation and
-  // leaves its spring; pin() holds a mass where it is, and after a reset where it starts.
+  // Springs that stay until they are removed or their robot goes; each change is an edit. attach_perturbation() ends
+  // the perturbation and leaves its spring; pin() holds a mass where it is, and after a reset where it starts.
   void attach_perturbation();
   void pin(const Hit& hit);
   bool has_attachments(const std::vector<RobotId>& robots) const;
   void remove_attachments(const std::vector<RobotId>& robots);
   std::vector<PerturbationDetails> attachments() const;
+  // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
+  void attach_opened(std::vector<AttachedMass> attached);
 
   // Files. An existing file is replaced only with `overwrite`.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);

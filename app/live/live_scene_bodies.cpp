@@ -42,8 +42,10 @@ bool LiveScene::edit_voxel(RobotId id, const VoxelSide& side, const VoxelEdit& e
   DocumentRobot* robot = parts_->find(id);
   robot->body.robot = std::move(changed);
   robot->source = {.file = robot->source.file};  // the seed no longer makes this robot
-  remove_attachments({id});                      // masses have other numbers now
+  // Masses have other numbers now.
+  std::erase_if(parts_->document.attachments, [&](const Attachment& one) { return one.spring.robot == id; });
   parts_->apply_document();
+  parts_->send_perturbation();
   return true;
 }
 

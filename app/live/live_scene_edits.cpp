@@ -130,13 +130,17 @@ void LiveScene::end_edit() { parts_->history.end_edit(); }
 
 void LiveScene::undo() {
   if (!can_undo()) return;
+  const std::vector<Attachment> before = parts_->document.attachments;
   parts_->history.undo(parts_->document);
   parts_->apply_document();
+  parts_->aim_pins(before);
 }
 void LiveScene::redo() {
   if (!can_redo()) return;
+  const std::vector<Attachment> before = parts_->document.attachments;
   parts_->history.redo(parts_->document);
   parts_->apply_document();
+  parts_->aim_pins(before);
 }
 
 const Configuration& LiveScene::configuration() const { return parts_->document.configuration; }
@@ -159,7 +163,7 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   }
   parts_->document.configuration = wanted;
   parts_->apply_document();
-  if (!parts_->attachments.empty()) parts_->send_perturbation();
+  if (!parts_->document.attachments.empty()) parts_->send_perturbation();
   return true;
 }
 

@@ -22,11 +22,6 @@ float suitable_stiffness(const LiveRobot& robot, const Configuration& configurat
   return std::max(1e-3f, std::min({of_body, of_springs, of_step}));
 }
 
-// The stiffest spring that is stable beside those of the robot [N/m]: k dt^2 well below 4.
-float stiffest_pin(const Configuration& configuration) {
-  return static_cast<float>(0.2 / (configuration.dt * configuration.dt));
-}
-
 }  // namespace
 
 std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
@@ -81,70 +76,6 @@ void LiveScene::set_perturbation_stiffness(float stiffness) {
 void LiveScene::end_perturbation() {
   parts_->perturbation.reset();
   parts_->send_perturbation();
-}
-
-void LiveScene::Parts::send_perturbation() {
-  std::vector<LivePerturbation> all;
-  for (const Attachment& attachment : attachments) {
-    if (attachment.pin && pins_wait) continue;
-    all.push_back(attachment.spring);
-    // Stable at the present time step, which may have grown.
-    all.back().stiffness = std::min(all.back().stiffness, stiffest_pin(document.configuration));
-  }
-  if (perturbation) all.push_back(*perturbation);
-  physics.set_perturbations(std::move(all));
-}
-
-void LiveScene::Parts::update_attachments() {
-  if (attachments.empty()) return;
-  const auto removed =
-      std::erase_if(attachments, [&](const Attachment& one) { return !document.find(one.spring.robot); });
-  const bool back = pins_wait && snapshot->resets > *pins_wait;
-  if (back) {
-    pins_wait.reset();
-    for (Attachment& one : attachments)
-      if (const auto index = snapshot->robots->index_of(one.spring.robot);
-          one.pin && index && one.spring.mass < snapshot->positions_of(*index).size())
-        one.spring.target = snapshot->positions_of(*index)[one.spring.mass];
-  }
-  if (removed > 0 || back) send_perturbation();
-}
-
-void LiveScene::attach_perturbation() {
-  if (!parts_->perturbation) return;
-  parts_->attachments.push_back({*parts_->perturbation});
-  end_perturbation();
-}
-
-void LiveScene::pin(const Hit& hit) {
-  const auto index = parts_->snapshot->robots->index_of(hit.robot);
-  if (!index || hit.mass >= parts_->snapshot->positions_of(*index).size()) return;
-  parts_->attachments.push_back({{.robot = hit.robot,
-                                  .mass = hit.mass,
-                                  .target = parts_->snapshot->positions_of(*index)[hit.mass],
-                                  .stiffness = stiffest_pin(parts_->document.configuration)},
-                                 true});
-  parts_->send_perturbation();
-}
-
-bool LiveScene::has_attachments(const std::vector<RobotId>& robots) const {
-  return std::ranges::any_of(parts_->attachments, [&](const Parts::Attachment& one) {
-    return std::ranges::find(robots, one.spring.robot) != robots.end();
-  });
-}
-
-void LiveScene::remove_attachments(const std::vector<RobotId>& robots) {
-  const auto count = std::erase_if(parts_->attachments, [&](const Parts::Attachment& one) {
-    return std::ranges::find(robots, one.spring.robot) != robots.end();
-  });
-  if (count > 0) parts_->send_perturbation();
-}
-
-std::vector<PerturbationDetails> LiveScene::attachments() const {
-  std::vector<PerturbationDetails> all;
-  for (const Parts::Attachment& one : parts_->attachments)
-    if (auto details = parts_->details_of(one.spring)) all.push_back(*details);
-  return all;
 }
 
 std::optional<PerturbationDetails> LiveScene::perturbation() const {

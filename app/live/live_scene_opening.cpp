@@ -169,6 +169,7 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
       if (opened->scene) {
         parts.open_scene(*opened->scene, environments_of(*opened->scene, opened->robots));
         for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
+        parts.to_attach = opened->scene->attached();
         parts.apply_document();
         for (const RandomRobots& random : opened->scene->random()) generate(random);
         return;

@@ -43,14 +43,10 @@ struct LiveScene::Parts {
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
   std::optional<LivePerturbation> perturbation;
-  std::vector<double> bookmarks;     // ascending [s]
-  std::optional<double> loop_begin;  // of a loop that is not closed yet [s]
-  bool goes_on = false;              // the moment shown becomes the present; physics has not done so yet
-  struct Attachment {
-    LivePerturbation spring;
-    bool pin = false;  // stiff, and its target follows resets
-  };
-  std::vector<Attachment> attachments;
+  std::vector<double> bookmarks;           // ascending [s]
+  std::optional<double> loop_begin;        // of a loop that is not closed yet [s]
+  bool goes_on = false;                    // the moment shown becomes the present; physics has not done so yet
+  std::vector<AttachedMass> to_attach;     // of a scene whose robots are not all there yet
   std::optional<std::uint64_t> pins_wait;  // pins are off until a snapshot has more resets than this
   std::uint64_t last_surroundings = 0;
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
@@ -59,6 +55,7 @@ struct LiveScene::Parts {
 
   // Sends the document to the physics thread.
   void apply_document() {
+    attach_opened(false);  // first, so that no step is made without it
     std::vector<LiveRobot> bodies;
     for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
     physics.set_scene(std::move(bodies), document.configuration, document.surroundings);
@@ -103,6 +100,13 @@ struct LiveScene::Parts {
   void send_perturbation();
   // Forgets attachments of robots that are gone, and moves pins after a reset.
   void update_attachments();
+  // Attaches what an opened scene names and is there. `complete`: no more robots will come, report what is missing.
+  void attach_opened(bool complete);
+  // Undo or redo has replaced the document: pins that were there before stay where they are, and pins that come back
+  // from before a reset hold their masses where these are now.
+  void aim_pins(const std::vector<Attachment>& before);
+  // What was attached at the moment shown.
+  std::vector<Attachment> attachments_then() const;
 };
 
 // "1 robot", "2 robots".

@@ -68,7 +68,8 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
     robots.push_back({&robot, parts.is_saved(robot) ? parts.file_of(robot.body.id) : ""});
   if (robots.empty()) return failed("there is no robot to save in a scene");
   try {
-    const SceneFiles wanted = scene_files(path, robots, parts.document.configuration, parts.view);
+    const SceneFiles wanted =
+        scene_files(path, robots, parts.document.configuration, parts.view, attached_in(parts.document));
     const SaveResult result = save_files(wanted.files, overwrite);
     for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
       const LiveRobot& body = robots[wanted.beside[i]].robot->body;

@@ -18,7 +18,7 @@ constexpr double same_moment = 1e-9;  // [s]
 // an edit: what the user changes then is what the picture shows.
 void LiveScene::Parts::adopt_moment() {
   if (!snapshot || !snapshot->timeline.viewing || goes_on) return;
-  SceneDocument then{.robots = {}, .configuration = snapshot->configuration};
+  SceneDocument then{.robots = {}, .attachments = attachments_then(), .configuration = snapshot->configuration};
   then.configuration.device = document.configuration.device;
   bool same = then.configuration == document.configuration && snapshot->robots->size() == document.robots.size();
   for (const LiveRobot& body : snapshot->robots->robots) {
@@ -28,13 +28,17 @@ void LiveScene::Parts::adopt_moment() {
     same = same && known && known->body.robot == body.robot && known->body.materials == body.materials;
     then.robots.push_back(std::move(robot));
   }
+  same =
+      same && std::ranges::equal(then.attachments, document.attachments, {}, &Attachment::spring, &Attachment::spring);
   physics.go_on();
   goes_on = true;
   forget_later_bookmarks();
+  send_perturbation();  // what the mouse did at that moment is over
   if (same) return;
   history.before_change(document, fmt::format("go back to {:.4g} s", snapshot->time), {});
   document = std::move(then);
   apply_document();
+  send_perturbation();
 }
 
 void LiveScene::Parts::forget_later_bookmarks() {

@@ -12,6 +12,19 @@ const DocumentRobot* SceneDocument::find(RobotId id) const {
   return found == robots.end() ? nullptr : &*found;
 }
 
+std::vector<AttachedMass> attached_in(const SceneDocument& document) {
+  std::vector<AttachedMass> all;
+  for (const auto& [spring, resets] : document.attachments) {
+    const auto robot = std::ranges::find(document.robots, spring.robot, [](const auto& one) { return one.body.id; });
+    if (robot == document.robots.end()) continue;
+    AttachedMass& one = all.emplace_back();
+    one.robot = static_cast<std::size_t>(robot - document.robots.begin());
+    one.mass = spring.mass;
+    if (spring.kind == LivePerturbation::Kind::spring) one.spring = {spring.target, spring.stiffness};
+  }
+  return all;
+}
+
 Robot whole_robot(const LiveRobot& robot) {
   Robot whole = *robot.robot;
   whole.name = robot.name;

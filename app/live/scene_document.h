@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/live/snapshot.h"
+#include "app/options/attachment_options.h"
 #include "mercury/generator.h"
 
 namespace mercury {
@@ -31,14 +32,24 @@ struct DocumentRobot {
   RobotProvenance source;
 };
 
+// A pin or a spring that stays attached to a mass.
+struct Attachment {
+  LivePerturbation spring;
+  std::uint64_t resets = 0;  // of the snapshot, when its target was set (Snapshot::resets)
+};
+
 struct SceneDocument {
   std::vector<DocumentRobot> robots;
+  std::vector<Attachment> attachments;
   Configuration configuration;
   // Grows with each change of environment; an undo brings the old number back, and with it the states that robots had.
   std::uint64_t surroundings = 0;
 
   const DocumentRobot* find(RobotId id) const;  // null if it is unknown
 };
+
+// The attachments as options and scenes have them.
+std::vector<AttachedMass> attached_in(const SceneDocument& document);
 
 // The robot with its name and materials in the window, as it is saved.
 Robot whole_robot(const LiveRobot& robot);

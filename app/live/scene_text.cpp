@@ -131,7 +131,7 @@ bool is_of_scene(const std::pair<std::string, std::string>& option) {
 }  // namespace
 
 SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robots, const Configuration& configuration,
-                       const ViewSettings& view) {
+                       const ViewSettings& view, const std::vector<AttachedMass>& attached) {
   std::vector<Form> forms = forms_of(robots);
   keep_one_shape_per_kind(robots, forms);
   const fs::path folder = fs::absolute(path).parent_path(), beside = path.stem().string() + "-robots";
@@ -162,6 +162,11 @@ SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robo
   text += "format = \"mercury-scene\"\nversion = 1\n";
   text += fmt::format("robots = {}\n", list_of(files));
   if (!random.empty()) text += fmt::format("random = {}\n", list_of(random));
+  if (!attached.empty()) {
+    std::vector<std::string> texts;
+    std::ranges::transform(attached, std::back_inserter(texts), text_of);
+    text += fmt::format("attach = {}\n", list_of(texts));
+  }
   for (const auto& [name, value] : options) {
     json_text(value);
     text += fmt::format("{} = {}\n", name.substr(2), value.empty() ? "true" : toml_value(value));

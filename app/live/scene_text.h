@@ -9,6 +9,7 @@
 #include "app/live/command_text.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
+#include "app/options/attachment_options.h"
 #include "app/scene/view_settings.h"
 
 namespace mercury {
@@ -22,12 +23,14 @@ struct SceneRobot {
 // What is to be written for a scene: the scene file last, and before it a file for each robot that is in no other.
 // Those are robots that only the window has, random ones before robots of files (a scene names files first), and random
 // ones of a kind whose options differ from those of the first. `beside` are the indices of those robots, in the order
-// of their files. Throws InputError for a robot or a name that cannot be written.
+// of their files. `attached`: pins and springs, by the robots' places in `robots`. Throws InputError for a robot or a
+// name that cannot be written.
 struct SceneFiles {
   std::vector<FileToSave> files;
   std::vector<std::size_t> beside;
 };
 SceneFiles scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
-                       const Configuration& configuration, const ViewSettings& view);
+                       const Configuration& configuration, const ViewSettings& view,
+                       const std::vector<AttachedMass>& attached = {});
 
 }  // namespace mercury

@@ -53,12 +53,16 @@ struct LiveRobots {
   std::optional<std::size_t> index_of(RobotId id) const;
 };
 
-// A perturbation by the user's mouse: a spring of rest length 0 from a mass to a point in the robot's own frame.
+// A perturbation by the user: a spring of rest length 0 from a mass to a point in the robot's own frame.
 struct LivePerturbation {
+  // By the mouse, while it is held; or attached, until it is removed. A pin is stiff, and after a reset it holds the
+  // mass where it starts.
+  enum class Kind { mouse, spring, pin };
   RobotId robot = 0;
   std::uint16_t mass = 0;
   Vec3 target;           // [m]
   float stiffness = 50;  // [N/m]
+  Kind kind = Kind::mouse;
   friend bool operator==(const LivePerturbation&, const LivePerturbation&) = default;
 };
 

@@ -22,6 +22,7 @@ struct SceneFile::Parts {
     robots.add_to(app);
     simulation.add_to(app);
     view.add_to(app);
+    attachments.add_to(app);
     // Where a scene is computed, and how a list of files is read, is not part of it.
     for (const char* name : {"--device", "--threads", "--recursive", "--keep-going", "--follow"})
       app.remove_option(app.get_option_no_throw(name));
@@ -32,6 +33,7 @@ struct SceneFile::Parts {
   RobotOptions robots;
   SimulationOptions simulation;
   ViewOptions view;
+  AttachmentOptions attachments;
   std::optional<ConfigFile> file;
 };
 
@@ -83,6 +85,7 @@ SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_uniqu
     parts.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     (void)random();
     (void)view();
+    (void)attached();
     (void)parts.simulation.seconds();
     // Without an environment of its own, its parameters are those of the environment that its robots choose.
     if (!parts.simulation.chosen_environment().empty()) (void)parts.simulation.configuration();
@@ -96,6 +99,7 @@ SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 const std::filesystem::path& SceneFile::path() const { return parts_->path; }
 const std::vector<std::string>& SceneFile::robots() const { return parts_->file->robots(); }
 std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.random(); }
+std::vector<AttachedMass> SceneFile::attached() const { return parts_->attachments.attached(); }
 ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 
 Configuration SceneFile::configuration(std::span<const std::string> environments,

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/options/attachment_options.h"
 #include "app/scene/view_settings.h"
 #include "mercury/configuration.h"
 #include "mercury/generator.h"
@@ -32,6 +33,8 @@ class SceneFile {
   // Robot files, as paths from the working folder, and random robots, which follow them.
   const std::vector<std::string>& robots() const;
   std::vector<RandomRobots> random() const;
+  // Masses that are pinned or held by a spring; robots are counted as in the file, random ones last.
+  std::vector<AttachedMass> attached() const;
   // Without `environment` in the file, the robots choose: `environments` are those that they are made for. Appends to
   // `notes` what the user should know about that. The device is the default one.
   Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;

@@ -19,6 +19,7 @@ struct ViewerOptions {
   std::vector<Robot> robots;                 // that do not come from files
   std::vector<std::filesystem::path> files;  // read once the window is open
   std::vector<RandomRobots> generations;     // made once the window is open
+  std::vector<AttachedMass> attached;        // pins and springs
   std::filesystem::path run;                 // of an evolution, opened with the window; empty = none
   Configuration configuration;
   ViewSettings view;

@@ -95,7 +95,7 @@ std::string written_scene(const std::string& path, const SceneFile& scene) {
   document.body.robot = std::make_shared<const Robot>(robot);
   std::vector<std::string> notes;
   const std::vector<SceneRobot> robots{{&document, "point.json"}};
-  return scene_files(path, robots, scene.configuration({}, notes), scene.view()).files.back().content;
+  return scene_files(path, robots, scene.configuration({}, notes), scene.view(), scene.attached()).files.back().content;
 }
 
 }  // namespace
@@ -121,6 +121,8 @@ std::vector<std::string> scene_seeds() {
       "dt = 0.002\ncolor = \"strain\"\nshow = \"skin,labels\"\nlayout = \"race\"\n",
       "format = \"mercury-scene\"\nversion = 1\nrobots = []\ncut = \"y:0.2\"\nscale = \"-1,1\"\nplain = true\n\n"
       "[camera]\nmode = \"still\"\nazimuth = -1.3\nelevation = 0.2\ntarget = [0, 0.5, 1.0]\ndistance = 3\n",
+      "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\nattach = [\"0:12\", "
+      "\"3:4:0.5,-1e-3,2:40\"]\n",
       "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\ncamera = \"follow:eel\"\n"};
 }
 

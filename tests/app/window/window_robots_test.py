@@ -191,6 +191,17 @@ class RobotsTest(WindowCase):
         window.frame(lambda frame: frame["attached"] == 1)
         window.key("w")
         window.frame(lambda frame: frame["attached"] == 0)
+        window.key("ctrl+z")
+        window.frame(lambda frame: frame["attached"] == 1)
+        # A scene file keeps it.
+        since = window.mark()
+        window.key("ctrl+s")
+        window.dialog("held.toml")
+        window.wait("saved", since)
+        self.assertIn("attach = [", (self.folder / "held.toml").read_text())
+        self.finish(window)
+        window = self.open(str(self.folder / "held.toml"), "--paused")
+        window.frame(lambda frame: frame["attached"] == 1)
         self.finish(window)
 
 

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pins and springs that stay attached: undo, scene files, commands and the timeline.
+#include <gmock/gmock.h>
+
+#include "app/options/scene_file.h"
+#include "mercury/error.h"
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "tests/app/live/live_scene_setup.h"
+#include "tests/app/program.h"
+
+namespace mercury {
+namespace {
+
+using test::ids_of;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class Attachments : public test::FolderTest {
+ protected:
+  // Two robots, and what a scene file says of them.
+  void make(LiveScene& scene) const {
+    test::make_robots(scene, 2);
+    const std::vector<RobotId> ids = ids_of(scene);
+    scene.pin({.robot = ids[0], .index = 0, .mass = 4});
+    scene.begin_perturbation({.robot = ids[1], .index = 1, .mass = 3}, 25);
+    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.5f, -0.25f, 0));
+    scene.attach_perturbation();
+    scene.wait_until_done();
+  }
+  static std::vector<std::string> texts_of(const LiveScene& scene) {
+    std::vector<std::string> texts;
+    for (const AttachedMass& one : attached_in(scene.document())) texts.push_back(text_of(one));
+    return texts;
+  }
+  static std::string refusal(const std::string& text) {
+    try {
+      attached_mass_from("--attach", text);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+};
+
+TEST_F(Attachments, UndoAndRedoTakeEachOfThemAwayAndPutItBack) {
+  LiveScene scene(test::on_cpu());
+  make(scene);
+  const std::vector<std::string> both = texts_of(scene);
+  ASSERT_THAT(both, SizeIs(2));
+  EXPECT_EQ(scene.undo_name(), "attach a spring");
+  scene.undo();
+  EXPECT_THAT(texts_of(scene), ElementsAre("0:4"));
+  EXPECT_EQ(scene.undo_name(), "pin a mass");
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(texts_of(scene), IsEmpty());
+  EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
+  scene.redo();
+  scene.redo();
+  scene.wait_until_done();
+  EXPECT_EQ(texts_of(scene), both);
+  EXPECT_THAT(scene.snapshot().perturbations, SizeIs(2));
+  scene.remove_attachments(ids_of(scene));
+  EXPECT_THAT(texts_of(scene), IsEmpty());
+  scene.undo();
+  EXPECT_EQ(texts_of(scene), both);
+}
+
+TEST_F(Attachments, ARobotThatComesBackHasItsPinAgain) {
+  LiveScene scene(test::on_cpu());
+  make(scene);
+  const std::vector<std::string> both = texts_of(scene);
+  scene.remove({ids_of(scene)[0]});
+  scene.wait_until_done();
+  EXPECT_THAT(texts_of(scene), SizeIs(1));
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(texts_of(scene), both);
+  EXPECT_THAT(scene.snapshot().perturbations, SizeIs(2));
+}
+
+TEST_F(Attachments, APinThatComesBackFromBeforeAResetHoldsItsMassWhereItIs) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  const RobotId id = ids_of(scene)[0];
+  scene.step(800);
+  scene.wait_until_done();
+  scene.pin({.robot = id, .index = 0, .mass = 4});
+  scene.remove_attachments({id});
+  scene.reset();
+  scene.wait_until_done();
+  scene.undo();
+  scene.step(200);
+  scene.wait_until_done();
+  EXPECT_LT(length(scene.snapshot().positions_of(0)[4] - scene.document().robots[0].body.robot->masses[4]), 1e-3f);
+}
+
+TEST_F(Attachments, ASceneFileKeepsThem) {
+  LiveScene scene(test::on_cpu(Land{}));
+  make(scene);
+  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  EXPECT_THAT(read("held.toml"), HasSubstr("attach = [\n  \"0:4\",\n  \"1:3:"));
+  LiveScene again(test::on_cpu());
+  again.open({path("held.toml")});
+  again.wait_until_done();
+  EXPECT_EQ(texts_of(again), texts_of(scene));
+  EXPECT_THAT(again.take_messages(), IsEmpty());
+  // The pin holds the mass where it starts, with the robot set down on the floor.
+  const Snapshot& start = again.snapshot();
+  ASSERT_EQ(start.steps, 0);
+  ASSERT_THAT(start.perturbations, SizeIs(2));
+  EXPECT_EQ(start.perturbations[0].target, start.positions_of(0)[4]);
+}
+
+// A file as the first version with attachments wrote it: it is read for ever.
+TEST_F(Attachments, AKeptSceneFileIsRead) {
+  LiveScene scene(test::on_cpu());
+  scene.open({MERCURY_SCENES "/attached.toml"});
+  scene.wait_until_done();
+  EXPECT_THAT(texts_of(scene), ElementsAre("0:1", "1:7:0.5,-1.25,3:40"));
+}
+
+TEST_F(Attachments, ACommandNamesThem) {
+  LiveScene scene(test::on_cpu());
+  make(scene);
+  const std::string text = scene.command("view").text;
+  for (const std::string& one : texts_of(scene)) EXPECT_THAT(text, HasSubstr(" --attach=" + one));
+  EXPECT_THAT(scene.command("render").notes, testing::Contains(HasSubstr("pins")));
+}
+
+TEST_F(Attachments, GoingBackBeforeAPinTakesItAwayAndUndoBringsItBack) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  scene.step(100);
+  scene.wait_until_done();
+  const double before = scene.snapshot().time;
+  scene.step(50);
+  scene.wait_until_done();
+  scene.pin({.robot = ids_of(scene)[0], .index = 0, .mass = 4});
+  scene.step(50);
+  scene.wait_until_done();
+  scene.seek(before);
+  scene.wait_until_done();
+  scene.go_on();
+  scene.step(10);
+  scene.wait_until_done();
+  EXPECT_THAT(texts_of(scene), IsEmpty());
+  EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_THAT(texts_of(scene), ElementsAre("0:4"));
+  EXPECT_THAT(scene.snapshot().perturbations, SizeIs(1));
+}
+
+TEST_F(Attachments, WhatDoesNotExistIsReported) {
+  save_robot(path("eel.json"), random_voxel_robot({.smallest = {1, 1, 1}, .largest = {1, 1, 1}}, 1));
+  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nrobots = [\"eel.json\"]\nattach = [\"1:0\", \"0:8\"]\n");
+  LiveScene scene(test::on_cpu());
+  scene.open({path("bad.toml")});
+  scene.wait_until_done();
+  scene.frame();
+  std::vector<std::string> texts;
+  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
+  EXPECT_THAT(texts, testing::UnorderedElementsAre("attach 1:0: robot 1 is out of range, the scene has 1 robot",
+                                                   "attach 0:8: mass 8 is out of range, voxel-1-0 has 8"));
+  EXPECT_THAT(texts_of(scene), IsEmpty());
+}
+
+TEST_F(Attachments, BadTextIsRefused) {
+  for (const char* text : {"", "0", "0:", ":1", "0:65536", "-1:0", "0:1:2,3,4", "0:1:2,3:40", "0:1:2,3,4:0",
+                           "0:1:2,3,4:-1", "0:1:nan,3,4:1", "0:1:2,3,4:inf", "0:1:2,3,4:1:1", "a:b"})
+    EXPECT_THAT(refusal(text), HasSubstr("ROBOT:MASS[:X,Y,Z:STIFFNESS]")) << text;
+  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nattach = [\"0:1:2\"]\n");
+  try {
+    const SceneFile scene(path("bad.toml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --attach: \"0:1:2\" is not accepted"));
+  }
+}
+
+}  // namespace
+}  // namespace mercury
