@@ -152,6 +152,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.passes->annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
   if (scene.surroundings == Surroundings::water)
     p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
+  p.ghosts.draw(scene.ghosts);
   p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), scene.tiles.empty() ? style.vignette : 0);
   p.outline.draw(p.bodies, scene, p.passes->lattice, p.bounds.boxes(), p.targets);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.

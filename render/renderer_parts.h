@@ -30,6 +30,7 @@
 #include "render/finish_pass.h"
 #include "render/fit_pass.h"
 #include "render/front_pass.h"
+#include "render/ghost_pass.h"
 #include "render/lattice_pass.h"
 #include "render/light_pass.h"
 #include "render/occlusion_pass.h"
@@ -90,6 +91,7 @@ struct Renderer::Parts {
   PatchPass patches;
   SectionPass section;
   OutlinePass outline;
+  GhostPass ghosts;
   PassTimer timer;
   Pace pace;
   std::string variant;  // lines of #define for this picture

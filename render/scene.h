@@ -110,6 +110,15 @@ struct Patch {
   Eigen::Vector2f slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
+// A body in one translucent colour, without a shadow. What is nearer hides it.
+struct Ghost {
+  std::span<const float> positions;      // 3 per mass
+  std::span<const std::uint32_t> faces;  // 3 masses per face, counter-clockwise seen from outside
+  Eigen::Vector3f offset{0, 0, 0};       // added to the positions [m]
+  Color color;
+  float opacity = 0.4f;
+};
+
 struct Show {
   bool skin = true;
   bool springs = false;
@@ -145,6 +154,7 @@ struct Scene {
   std::span<const Arrow> arrows;
   std::span<const Path> paths;
   std::span<const Label> labels;
+  std::span<const Ghost> ghosts;
   std::optional<Legend> legend;
   std::string clock;       // text in the lower left corner, such as "12.3 s   x4"; empty = none
   std::string caption;     // text in the upper left corner; empty = none

@@ -63,6 +63,10 @@ std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSett
 
 }  // namespace
 
+render::Color ghost_color(render::Theme theme) {
+  return theme == render::Theme::dark ? render::Color{215, 235, 255, 255} : render::Color{30, 60, 105, 255};
+}
+
 struct LivePicture::Parts {
   std::shared_ptr<const Snapshot> snapshot;
   ViewSettings settings;  // of the last update()
@@ -72,13 +76,34 @@ struct LivePicture::Parts {
   SlowMotion slow_motion;
   SlowMotion::Shown shown;
   std::shared_ptr<PositionBridge> bridge;  // or null
+  SlowMotion ghost_motion;
+  std::vector<render::Ghost> ghosts;
 
+  void show_ghosts(const std::set<RobotId>& hidden, double now);
   void keep_trails(const GroupScene& old, const Snapshot& before) {
     for (std::size_t i = 0; i < snapshot->robots->size(); ++i)
       if (const auto index = before.robots->index_of(snapshot->robots->robots[i].id))
         scene->set_trail(i, old.trails()[*index]);
   }
 };
+
+void LivePicture::Parts::show_ghosts(const std::set<RobotId>& hidden, double now) {
+  ghosts.clear();
+  const std::shared_ptr<const Snapshot>& all = snapshot->ghosts;
+  if (all) ghost_motion.take(all);
+  const SlowMotion::Shown at = all ? ghost_motion.at(now) : SlowMotion::Shown{};
+  for (std::size_t i = 0; all && i < all->robots->size(); ++i) {
+    const RobotId id = all->robots->robots[i].id;
+    const auto robot = snapshot->robots->index_of(id);
+    if (!robot || hidden.contains(id) || at.telemetry[i].exploded) continue;
+    const std::size_t first = all->robots->mass_offsets[i], last = all->robots->mass_offsets[i + 1];
+    ghosts.push_back({.positions = {&at.positions.data()[first].x, 3 * (last - first)},
+                      .faces = all->robots->shapes[i]->body->faces,
+                      .offset = scene->ghost_offset(*robot, at.telemetry[i].center_of_mass),
+                      .color = ghost_color(settings.theme)});
+  }
+  scene->scene().ghosts = ghosts;
+}
 
 LivePicture::LivePicture() : parts_(std::make_unique<Parts>()) {}
 LivePicture::~LivePicture() = default;
@@ -118,6 +143,7 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   parts.scene->update(parts.shown.time, parts.shown.telemetry, snapshot->details);
   const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};
+  parts.show_ghosts(hidden, wall);
 }
 
 void LivePicture::lay_out(float aspect) {

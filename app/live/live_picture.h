@@ -15,6 +15,9 @@
 
 namespace mercury {
 
+// The colour of ghosts.
+render::Color ghost_color(render::Theme theme);
+
 // Uses no OpenGL, except through the renderer in set_bodies().
 class LivePicture {
  public:

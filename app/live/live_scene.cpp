@@ -47,6 +47,7 @@ void LiveScene::frame(float aspect) {
   }
   if (parts.perturbation && !parts.document.find(parts.perturbation->robot)) end_perturbation();
   parts.update_attachments();
+  parts.update_ghosts();
   ViewSettings shown = parts.view;
   if (parts.from_above) shown.camera.mode = *parts.from_above ? CameraMode::top : CameraMode::group;
   if (parts.facing) {
@@ -58,6 +59,7 @@ void LiveScene::frame(float aspect) {
   parts.picture.update(parts.snapshot, shown, parts.aspect, {parts.selected.begin(), parts.selected.end()},
                        parts.hidden, parts.perturbation ? std::optional(parts.perturbation->robot) : std::nullopt,
                        wall_now());
+  parts.update_second_picture(shown, parts.perturbation ? std::optional(parts.perturbation->robot) : std::nullopt);
 }
 
 void LiveScene::face(bool from_above, const std::optional<render::Orbit>& direction) {
@@ -213,6 +215,12 @@ void LiveScene::wait_until_done() {
   frame(parts_->aspect);
 }
 
+Series LiveScene::second_series(RobotId robot) const {
+  return parts_->snapshot->second ? parts_->physics.second_measurements().series(robot) : Series{};
+}
+Series LiveScene::ghost_series(RobotId robot) const {
+  return parts_->snapshot->ghosts ? parts_->physics.ghost_measurements().series(robot) : Series{};
+}
 Series LiveScene::series(RobotId robot) const { return parts_->physics.measurements().series(robot); }
 std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
 

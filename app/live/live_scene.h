@@ -57,6 +57,27 @@ struct RobotEntry {
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
 };
 
+// What a ghost shows. automatic: the robot before it was changed, if it was; else its parent, if it has one.
+enum class GhostOf { automatic, unchanged, parent };
+
+// A ghost that is wanted.
+struct LiveGhost {
+  RobotId robot = 0;
+  bool of_parent = false;
+  LiveRobot body;
+};
+
+// How a robot compares with its ghost, when it was as old as the ghost is now.
+struct GhostFigures {
+  RobotId robot = 0;
+  bool of_parent = false;
+  double age = 0;                                 // of the ghost [s]
+  double robot_distance = 0, ghost_distance = 0;  // from their starts [m]
+  double robot_speed = 0, ghost_speed = 0;        // distance / age [m/s]
+  bool same_age = true;                           // the robot is as old as the ghost
+  bool ghost_exploded = false;
+};
+
 // What LiveScene::mark_loop() did.
 enum class LoopMark { begun, closed, ended };
 
@@ -180,7 +201,9 @@ class LiveScene {
   const ViewSettings& view() const;
   void set_view(const ViewSettings& settings);  // details that the environment lacks are ignored
 
-  // Mouse. Rays and positions are those in the picture.
+  // Mouse. Rays and positions are those in the picture, or in that of the second side.
+  void point_at_second(bool second);
+  bool points_at_second() const;
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitDetails describe(const Hit& hit) const;
   void begin_perturbation(const Hit& hit, float stiffness = 0);  // [N/m]; 0 = suits the robot
@@ -197,6 +220,20 @@ class LiveScene {
   std::vector<PerturbationDetails> attachments() const;
   // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
   void attach_opened(std::vector<AttachedMass> attached);
+
+  // Comparison (companion.h). The second side shows the same robots under other settings, from the moment shown on; all
+  // that changes robots or time acts on both. nullopt ends it.
+  void set_second(const std::optional<SideDifference>& difference);
+  const std::optional<SideDifference>& second() const;
+  // The second side's picture; null if there is none, as while a recording is played.
+  LivePicture* second_picture();
+  // Ghosts of these robots, from the moment shown on, in the place of those there were. Returns how many there are:
+  // robots without a parent have no ghost of it.
+  std::size_t show_ghosts(const std::vector<RobotId>& robots, GhostOf of = GhostOf::automatic);
+  void hide_ghosts();
+  const std::vector<LiveGhost>& ghosts() const;
+  std::vector<GhostFigures> ghost_figures() const;
+  bool has_parent(RobotId robot) const;
 
   // Files. An existing file is replaced only with `overwrite`.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
@@ -218,6 +255,8 @@ class LiveScene {
 
   // Measures.
   Series series(RobotId robot) const;
+  Series second_series(RobotId robot) const;  // empty if there is no second side
+  Series ghost_series(RobotId robot) const;   // empty if it has no ghost
   std::vector<RankingRow> ranking() const;
   std::string csv(const std::vector<RobotId>& robots) const;  // time series, one column per robot and quantity
   std::string ranking_csv() const;

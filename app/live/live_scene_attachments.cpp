@@ -142,7 +142,7 @@ void LiveScene::attach_perturbation() {
 }
 
 void LiveScene::pin(const Hit& hit) {
-  const auto now = position_of(*parts_->snapshot, hit.robot, hit.mass);
+  const auto now = position_of(parts_->pointed_snapshot(), hit.robot, hit.mass);
   if (!now) return;
   parts_->edit("pin a mass");
   parts_->document.attachments.push_back({{.robot = hit.robot,

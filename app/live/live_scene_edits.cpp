@@ -39,7 +39,8 @@ RobotId LiveScene::Parts::append(Robot robot, RobotProvenance source) {
   LiveRobot body{.id = id, .name = robot.name.empty() ? "robot" : robot.name};
   body.robot = std::make_shared<const Robot>(std::move(robot));
   if (!source.file.empty()) saved[id] = {source.file, body};
-  document.robots.push_back({std::move(body), std::move(source)});
+  auto made = std::make_shared<const LiveRobot>(body);
+  document.robots.push_back({std::move(body), std::move(source), std::move(made)});
   return id;
 }
 

@@ -41,7 +41,7 @@ std::vector<RandomRobot> make_random_robots(const RandomRobots& request, WorkCon
 }
 
 struct Child {
-  RobotId parent;
+  LiveRobot parent;
   Robot robot;
 };
 
@@ -54,7 +54,7 @@ std::vector<Child> make_children(const std::vector<DocumentRobot>& parents, cons
       const Robot parent = whole_robot(parents[i]);
       MutationRequest own = mutation;
       own.seed = seed_of(mutation.seed, i);
-      children.push_back({parents[i].body.id, mutate_robot(parent, own, parent.name + "-child")});
+      children.push_back({parents[i].body, mutate_robot(parent, own, parent.name + "-child")});
     } catch (const InputError& error) {
       messages.add(Severity::warning, error.what());
     }
@@ -114,7 +114,8 @@ void LiveScene::breed(RobotId a, RobotId b, std::uint64_t seed) {
   if (!first || !second) return;
   const auto parents =
       std::make_shared<const std::array<Robot, 2>>(std::array<Robot, 2>{whole_robot(*first), whole_robot(*second)});
-  const auto task = [&parts, parents, a, seed](WorkControl&) -> Background::Finish {
+  const LiveRobot body = first->body;
+  const auto task = [&parts, parents, body, seed](WorkControl&) -> Background::Finish {
     std::shared_ptr<Robot> child;
     try {
       const auto& [mother, father] = *parents;
@@ -122,10 +123,10 @@ void LiveScene::breed(RobotId a, RobotId b, std::uint64_t seed) {
     } catch (const InputError& error) {
       parts.messages.add(Severity::warning, error.what());
     }
-    return [&parts, a, child] {
+    return [&parts, body, child] {
       if (!child) return;
       parts.edit("breed a robot");
-      parts.place_child(a, std::move(*child), false);
+      parts.place_child(body, std::move(*child), false);
       parts.apply_document();
     };
   };
@@ -133,12 +134,13 @@ void LiveScene::breed(RobotId a, RobotId b, std::uint64_t seed) {
 }
 
 // Adds a child at the end of the list, or in its parent's place.
-void LiveScene::Parts::place_child(RobotId parent, Robot child, bool replace) {
+void LiveScene::Parts::place_child(const LiveRobot& parent, Robot child, bool replace) {
   child.name = free_name(child.name);
   append(std::move(child), {});
+  document.robots.back().parent = std::make_shared<const LiveRobot>(parent);
   if (!replace) return;
   const auto place =
-      std::ranges::find_if(document.robots, [&](const DocumentRobot& robot) { return robot.body.id == parent; });
+      std::ranges::find_if(document.robots, [&](const DocumentRobot& robot) { return robot.body.id == parent.id; });
   if (place == document.robots.end()) return;
   *place = std::move(document.robots.back());
   document.robots.pop_back();

@@ -26,11 +26,11 @@ float suitable_stiffness(const LiveRobot& robot, const Configuration& configurat
 
 std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
   const Shown& shown = parts_->view.shown;
-  const Snapshot& snapshot = *parts_->snapshot;
+  const Snapshot& snapshot = parts_->pointed_snapshot();
   const auto hidden = std::make_unique<bool[]>(snapshot.robots->size());
   for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
     hidden[i] = parts_->hidden.contains(snapshot.robots->robots[i].id);
-  return mercury::pick(snapshot, parts_->picture.offsets(), ray,
+  return mercury::pick(snapshot, parts_->pointed_picture().offsets(), ray,
                        {.skin = shown.skin,
                         .springs = shown.springs,
                         .masses = shown.masses,
@@ -41,28 +41,28 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
 HitDetails LiveScene::describe(const Hit& hit) const {
   parts_->described = 30;
   parts_->physics.watch_velocities(true);
-  return mercury::describe(*parts_->snapshot, hit);
+  return mercury::describe(parts_->pointed_snapshot(), hit);
 }
 
 void LiveScene::begin_perturbation(const Hit& hit, float stiffness) {
-  const auto index = parts_->snapshot->robots->index_of(hit.robot);
-  if (!index || hit.mass >= parts_->snapshot->positions_of(*index).size()) return;
+  const auto index = parts_->pointed_snapshot().robots->index_of(hit.robot);
+  if (!index || hit.mass >= parts_->pointed_snapshot().positions_of(*index).size()) return;
   parts_->adopt_moment();
-  const LiveRobot& robot = parts_->snapshot->robots->robots[*index];
+  const LiveRobot& robot = parts_->pointed_snapshot().robots->robots[*index];
   const float suitable = suitable_stiffness(robot, parts_->document.configuration);
   const bool usable = std::isfinite(stiffness) && stiffness > 0;
   parts_->perturbation = LivePerturbation{.robot = hit.robot,
                                           .mass = hit.mass,
-                                          .target = parts_->snapshot->positions_of(*index)[hit.mass],
+                                          .target = parts_->pointed_snapshot().positions_of(*index)[hit.mass],
                                           .stiffness = usable ? stiffness : suitable};
   parts_->send_perturbation();
 }
 
 void LiveScene::move_perturbation(const Eigen::Vector3f& target) {
   if (!parts_->perturbation || !target.allFinite()) return;
-  const auto index = parts_->snapshot->robots->index_of(parts_->perturbation->robot);
-  if (!index || *index >= parts_->picture.offsets().size()) return;
-  const Eigen::Vector3f own = target - parts_->picture.offsets()[*index];
+  const auto index = parts_->pointed_snapshot().robots->index_of(parts_->perturbation->robot);
+  if (!index || *index >= parts_->pointed_picture().offsets().size()) return;
+  const Eigen::Vector3f own = target - parts_->pointed_picture().offsets()[*index];
   parts_->perturbation->target = {own.x(), own.y(), own.z()};
   parts_->send_perturbation();
 }
@@ -83,11 +83,12 @@ std::optional<PerturbationDetails> LiveScene::perturbation() const {
 }
 
 std::optional<PerturbationDetails> LiveScene::Parts::details_of(const LivePerturbation& pull) {
-  const auto index = snapshot->robots->index_of(pull.robot);
-  if (!index || *index >= picture.offsets().size() || pull.mass >= picture.positions_of(*index).size())
+  const auto index = pointed_snapshot().robots->index_of(pull.robot);
+  if (!index || *index >= pointed_picture().offsets().size() ||
+      pull.mass >= pointed_picture().positions_of(*index).size())
     return std::nullopt;
-  const Eigen::Vector3f offset = picture.offsets()[*index];
-  const Vec3 mass = picture.positions_of(*index)[pull.mass];
+  const Eigen::Vector3f offset = pointed_picture().offsets()[*index];
+  const Vec3 mass = pointed_picture().positions_of(*index)[pull.mass];
   return PerturbationDetails{.robot = pull.robot,
                              .mass = pull.mass,
                              .at = eigen(mass) + offset,

@@ -33,6 +33,10 @@ struct LiveScene::Parts {
 
   std::shared_ptr<const Snapshot> snapshot;
   LivePicture picture;
+  std::unique_ptr<LivePicture> second_picture;  // while there is a second side
+  bool pointed_second = false;                  // the mouse is on the second side
+  std::optional<SideDifference> difference;     // of the second side that is wanted
+  std::vector<LiveGhost> ghosts;                // that are wanted
   float aspect = 16.0f / 9;
   std::optional<bool> from_above;  // see LiveScene::face
   std::optional<render::Orbit> facing;
@@ -82,6 +86,12 @@ struct LiveScene::Parts {
   }
   void adopt_moment();
   void forget_later_bookmarks();
+  bool points_at_second() const { return pointed_second && second_picture && snapshot->second; }
+  const Snapshot& pointed_snapshot() const { return points_at_second() ? *snapshot->second : *snapshot; }
+  const LivePicture& pointed_picture() const { return points_at_second() ? *second_picture : picture; }
+  void update_second_picture(ViewSettings shown, const std::optional<RobotId>& held);
+  // Forgets ghosts of robots that are gone.
+  void update_ghosts();
   void play_recording(const std::shared_ptr<TrajectoryReader>& recording, const std::filesystem::path& file);
   // Applies `change` to robots as one edit. `change` returns whether it changed its robot.
   bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
@@ -93,7 +103,7 @@ struct LiveScene::Parts {
   // Clears the scene and sets what else the file says. `environments`: those that its robots are made for.
   void open_scene(const SceneFile& scene, const std::vector<std::string>& environments);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
-  void place_child(RobotId parent, Robot child, bool replace);
+  void place_child(const LiveRobot& parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
   std::optional<PerturbationDetails> details_of(const LivePerturbation& pull);
   // Sends the perturbation of the mouse and what is attached.

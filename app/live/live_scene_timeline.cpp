@@ -25,6 +25,7 @@ void LiveScene::Parts::adopt_moment() {
     const DocumentRobot* known = document.find(body.id);
     DocumentRobot robot{.body = body, .source = known ? known->source : RobotProvenance{}};
     if (known) robot.body.name = known->body.name;
+    if (known) robot.made = known->made, robot.parent = known->parent;
     same = same && known && known->body.robot == body.robot && known->body.materials == body.materials;
     then.robots.push_back(std::move(robot));
   }

@@ -82,6 +82,19 @@ void Measurements::restart(const LiveRobots& robots, double time, std::int64_t s
   }
 }
 
+void Measurements::branch(const Measurements& other, std::span<const RobotId> robots) {
+  const std::scoped_lock lock(mutex_, other.mutex_);
+  environment_ = other.environment_;
+  tracks_.clear();
+  for (const RobotId id : robots)
+    if (const auto track = other.tracks_.find(id); track != other.tracks_.end()) tracks_.insert(*track);
+  order_.assign(robots.begin(), robots.end());
+  times_ = other.times_;
+  interval_ = other.interval_;
+  first_interval_ = other.first_interval_;
+  next_ = other.next_;
+}
+
 void Measurements::set_robots(const LiveRobots& robots, double time, const Environment& environment,
                               std::span<const Telemetry> telemetry) {
   const std::lock_guard lock(mutex_);
@@ -173,6 +186,12 @@ Series Measurements::series(RobotId robot) const {
   const auto track = tracks_.find(robot);
   if (track == tracks_.end()) return {};
   return {{times_.begin() + static_cast<std::ptrdiff_t>(track->second.missing), times_.end()}, track->second.samples};
+}
+
+double Measurements::distance_at_age(RobotId robot, double age) const {
+  const std::lock_guard lock(mutex_);
+  const auto track = tracks_.find(robot);
+  return track == tracks_.end() ? 0 : distance_at(track->second, age);
 }
 
 std::vector<RankingRow> Measurements::ranking() const {

@@ -76,6 +76,8 @@ class Measurements {
   // Forgets everything: time starts again, at `time` and `step`. One telemetry per robot.
   void restart(const LiveRobots& robots, double time, std::int64_t step, const Configuration& configuration,
                std::span<const Telemetry> telemetry);
+  // Takes over the series of these robots from others, and forgets all else. Then call set_robots().
+  void branch(const Measurements& other, std::span<const RobotId> robots);
   // Call it after robots were added or removed. The series of the others continue.
   void set_robots(const LiveRobots& robots, double time, const Environment& environment,
                   std::span<const Telemetry> telemetry);
@@ -92,6 +94,8 @@ class Measurements {
 
   // The series of one robot; empty if it is unknown.
   Series series(RobotId robot) const;
+  // How far a robot was from its start when it was that old; 0 if it is unknown [m].
+  double distance_at_age(RobotId robot, double age) const;
   // One row per robot, in the order of the robots, from the last observe(). Distances are those of the environment of
   // the last restart() or set_robots(). Distances at equal age are interpolated between samples; exploded robots do not
   // count as the youngest.

@@ -124,6 +124,15 @@ void Physics::pause_on_explosion(bool pause) {
   request(*parts_, [&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
 }
 
+void Physics::set_second(std::optional<SideDifference> difference) {
+  request(*parts_, [&](PendingCommands& pending) { pending.difference = std::move(difference); });
+}
+void Physics::set_ghosts(std::vector<LiveRobot> ghosts) {
+  request(*parts_, [&](PendingCommands& pending) { pending.ghosts = std::move(ghosts); });
+}
+const Measurements& Physics::second_measurements() const { return parts_->second_measurements; }
+const Measurements& Physics::ghost_measurements() const { return parts_->ghost_measurements; }
+
 void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
 
 std::shared_ptr<const Snapshot> Physics::newest() {

@@ -45,6 +45,7 @@
 #include "app/live/snapshot.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
+#include "app/scene/side_difference.h"
 #include "app/scene/view_settings.h"
 
 namespace mercury {
@@ -99,6 +100,16 @@ class Physics {
   void go_on();                        // the moment shown is the present from now on; what came after it is forgotten
   void set_loop(std::optional<std::pair<double, double>> times);  // plays from the first time to the second [s]
   void set_timeline_budget(std::size_t bytes);                    // of memory for keyframes
+
+  // The second side: the same robots under other settings, from the moment shown on, or nothing. Snapshot::second is
+  // its state at the same time. What changes the robots changes both sides.
+  void set_second(std::optional<SideDifference> difference);
+  // Ghosts: these bodies in the scene's configuration, from the moment shown on. Each has the id of its robot. It
+  // begins in the state of its robot if its masses are joined in the same way, else at rest. Replaces those there were.
+  // Snapshot::ghosts is their state.
+  void set_ghosts(std::vector<LiveRobot> ghosts);
+  const Measurements& second_measurements() const;
+  const Measurements& ghost_measurements() const;
 
   // Snapshots have velocities while physics pauses and after wait_until_done(). With `watch`, those of playing robots
   // have them, too.

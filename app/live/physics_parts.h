@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/live/companion.h"
 #include "app/live/pace.h"
 #include "app/live/physics.h"
 #include "app/live/population.h"
@@ -39,6 +40,8 @@ struct PendingCommands {
   std::optional<bool> playing, pause_on_explosion;
   std::optional<double> speed, seek, seek_first;  // seek_first: before go_on
   std::optional<Loop> loop;
+  std::optional<std::optional<SideDifference>> difference;
+  std::optional<std::vector<LiveRobot>> ghosts;
   std::optional<std::size_t> timeline_budget;
   std::int64_t steps = 0, steps_back = 0;
   bool drop_steps = false, reset = false, go_on = false, quit = false;
@@ -46,7 +49,8 @@ struct PendingCommands {
 
   bool any() const {
     return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first ||
-           loop || timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit || ticket > 0;
+           loop || difference || ghosts || timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit ||
+           ticket > 0;
   }
   // Forgets the moments that were asked for.
   void drop_timeline() {
@@ -74,7 +78,7 @@ struct Physics::Parts {
 
   // Safe to use from any thread.
   Messages& messages;
-  Measurements measurements;
+  Measurements measurements, second_measurements, ghost_measurements;
   std::atomic<bool> velocities_wanted = false;
 
   // Owned by the physics thread.
@@ -105,6 +109,10 @@ struct Physics::Parts {
   double keyframe_seconds = 0;                  // wall time of making the last keyframe [s]
   std::shared_ptr<TrajectoryReader> recording;  // that is played, or nothing
   double recording_time = 0;                    // its moment that is shown [s]
+  std::optional<SideDifference> difference;     // of the second side, or nothing
+  std::vector<LiveRobot> ghost_list;            // each has the id of its robot
+  std::unique_ptr<Companion> second, ghosts;    // null = not wanted, or a recording is played
+  std::uint64_t companion_count = 0;            // made so far
   std::set<std::string> reported_notes;
   Pace pace;
   SpeedGauge gauge;
@@ -138,7 +146,7 @@ struct Physics::Parts {
   void follow_changes(bool robots_changed);
   void begin_seek(std::int64_t step);
   void finish_seek();
-  void show_keyframe(const Keyframe& keyframe);
+  void show_keyframe(const Keyframe& keyframe, bool jumps = true);
   void advance_seek();
   void apply_events();
   std::int64_t next_stop() const;
@@ -151,6 +159,22 @@ struct Physics::Parts {
   void show_recording(double time);
   void leave_recording();
   TimelineState timeline_state() const;
+  Leader leader() const;
+  CompanionRobots robots_for(const Companion& companion) const;
+  void for_companions(const std::function<void(Companion&)>& use);
+  void take_comparison(PendingCommands& taken);
+  void begin_companions();
+  void restart_companions();
+  void follow_companions();
+  void advance_companions();
+  void observe_companions();
+  std::int64_t next_sample() const;
+  std::int64_t next_beginning() const;
+  std::shared_ptr<const BatchState> state_of(const std::unique_ptr<Companion>& companion) const;
+  const Keyframe* keyframe_before(std::int64_t step) const;
+  void show_companions(const Keyframe& keyframe, bool jumps);
+  void forget_later_companions();
+  void publish_companions(Snapshot& next, bool with_velocities);
   void observe_details();
   void begin_pace();
   void advance();

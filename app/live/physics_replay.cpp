@@ -63,6 +63,7 @@ void Physics::Parts::apply_repro_changes() {
     if (change.perturbations) perturbations = live_perturbations(robot.id, *change.perturbations);
   }
   simulation.set_perturbations(population.perturbations_of(perturbations));
+  follow_companions();
   follow_changes(false);
 }
 

@@ -55,15 +55,19 @@ void Physics::Parts::take_steps(std::int64_t count) {
   double spent = 0;
   while (simulation.steps() < target) {
     viewing ? apply_events() : apply_repro_changes();
-    const std::int64_t sample = std::max(measurements.next_step(), simulation.steps() + 1);
-    const std::int64_t stop = std::min({target, sample, viewing ? next_stop() : next_change_step()});
+    const std::int64_t sample = std::max(next_sample(), simulation.steps() + 1);
+    const std::int64_t stop = std::min({target, sample, viewing ? next_stop() : next_change_step(), next_beginning()});
     const double start = wall_now();
     simulation.step(stop - simulation.steps());
+    advance_companions();
     const double stepped = wall_now();
     spent += stepped - start;
     if (stop != sample && stop != target) continue;
     telemetry = simulation.telemetry();
-    if (!viewing || era == head_era) measurements.observe(simulation.time(), simulation.steps(), telemetry);
+    if (!viewing || era == head_era) {
+      measurements.observe(simulation.time(), simulation.steps(), telemetry);
+      observe_companions();
+    }
     if (!viewing) report_explosions(true);
     measuring_seconds += wall_now() - stepped;
     if (!playing && steps_left == 0 && !viewing) break;  // stopped by an explosion
@@ -84,7 +88,8 @@ void Physics::Parts::take_steps(std::int64_t count) {
 void Physics::Parts::limit_measuring() {
   constexpr double most = 0.04, enough = 0.05;  // share of the time; [s] of steps before it is known
   if (stepping_seconds < enough) return;
-  if (playing && !std::isfinite(speed) && measuring_seconds > most * stepping_seconds) measurements.thin_out();
+  if (playing && !std::isfinite(speed) && measuring_seconds > most * stepping_seconds)
+    for (Measurements* measured : {&measurements, &second_measurements, &ghost_measurements}) measured->thin_out();
   stepping_seconds = measuring_seconds = 0;
 }
 

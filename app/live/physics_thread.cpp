@@ -69,6 +69,7 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   const bool robots_changed = taken.scene && set_scene(*taken.scene);
   if (taken.view) view = *taken.view;
   if (taken.view || robots_changed) observe_details();
+  take_comparison(taken);
   if (taken.scene && taken.scene->recording)
     begin_recording(taken.scene->recording);
   else if (recording && taken.reset)
@@ -77,6 +78,8 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
     restart();
   if (taken.perturbations) perturbations = std::move(*taken.perturbations);
   if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
+  if (taken.perturbations || taken.scene) follow_companions();
+  begin_companions();
   if ((taken.perturbations || taken.scene || taken.reset) && !viewing) follow_changes(robots_changed);
   if (taken.bridge) bridge = std::move(*taken.bridge);
   if (taken.speed) speed = *taken.speed;
@@ -105,6 +108,7 @@ void Physics::Parts::restart() {
   const double time = simulation.time();
   measurements.restart(*population.robots(), time, simulation.steps(), simulation.configuration(), telemetry);
   measurements.observe(time, simulation.steps(), telemetry);
+  restart_companions();
 }
 
 // Returns whether the list of robots or the kind of environment changed.
@@ -159,6 +163,8 @@ void Physics::Parts::enter_surroundings(std::uint64_t next, bool to_land) {
 // empty one.
 void Physics::Parts::start_over() {
   details.reset();
+  second.reset();
+  ghosts.reset();
   simulation = Simulation(simulation.configuration());
   population.start_over();
   telemetry.clear();
@@ -174,12 +180,7 @@ void Physics::Parts::start_over() {
 // Observes the details of the view that exist in this environment.
 void Physics::Parts::observe_details() {
   details.reset();
-  const Environment& environment = simulation.configuration().environment;
-  ViewSettings known = view;
-  if (!known.color->exists_in(environment)) known.color = &material_color();
-  if (!has_face_forces(environment)) known.shown.arrows.drag = known.shown.arrows.lift = false;
-  if (!std::holds_alternative<Land>(environment)) known.shown.arrows.contact = false;
-  details.emplace(simulation, known);
+  details.emplace(simulation, known_in(view, simulation.configuration().environment));
 }
 
 // At unlimited speed, snapshots may take at most a fifth of the time.
@@ -226,6 +227,7 @@ void Physics::Parts::publish_snapshot() {
   next->due_at = playing && std::isfinite(speed) ? pace.done_at() : 0;
   next->achieved_speed = playing ? gauge.speed() : 0;
   next->step_seconds = step_seconds;
+  publish_companions(*next, with_velocities);
   next->springs_per_second = step_seconds > 0 && (playing || steps_left > 0)
                                  ? static_cast<double>(population.robots()->springs) / step_seconds
                                  : 0;

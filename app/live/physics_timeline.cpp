@@ -68,7 +68,9 @@ void Physics::Parts::keep_keyframe() {
                 .perturbations = perturbations,
                 .next_event = viewing ? next_event : events.end(),
                 .era = era,
-                .work = work_before});
+                .work = work_before,
+                .second = state_of(second),
+                .ghosts = state_of(ghosts)});
   keyframe_seconds = wall_now() - start;
 }
 
@@ -99,13 +101,13 @@ void Physics::Parts::begin_seek(std::int64_t step) {
   viewing = true;
   steps_left = 0;
   const std::int64_t target = std::clamp(step, timeline.front().step(), std::max(timeline.front().step(), head_step));
-  const Keyframe& keyframe = *timeline.before(target);
+  const Keyframe& keyframe = *keyframe_before(target);
   const bool is_ahead = simulation.steps() <= target && keyframe.step() <= simulation.steps() && keyframe.era <= era;
   if (!is_ahead) show_keyframe(keyframe);
   seek_target = target;
 }
 
-void Physics::Parts::show_keyframe(const Keyframe& keyframe) {
+void Physics::Parts::show_keyframe(const Keyframe& keyframe, bool jumps) {
   simulation.set_perturbations({});
   const bool tuned = simulation.configuration() != keyframe.configuration;
   if (tuned) simulation.configure(keyframe.configuration);
@@ -118,6 +120,7 @@ void Physics::Parts::show_keyframe(const Keyframe& keyframe) {
   telemetry = simulation.telemetry();
   if (era == head_era) measurements.observe(simulation.time(), simulation.steps(), telemetry);
   if (tuned || others) observe_details();
+  show_companions(keyframe, jumps);
   ++resets;
   dirty = true;
 }
@@ -146,7 +149,7 @@ void Physics::Parts::apply_events() {
   bool changed = false, tuned = false;
   for (;;) {
     if (const Keyframe* next = timeline.next_era(era); next && next->step() <= simulation.steps()) {
-      show_keyframe(*next);
+      show_keyframe(*next, false);
       continue;
     }
     const SceneEvent* event = events.find(next_event);
@@ -167,6 +170,7 @@ void Physics::Parts::apply_events() {
   }
   if (!changed) return;
   simulation.set_perturbations(population.perturbations_of(perturbations));
+  follow_companions();
   if (tuned) {
     observe_details();
     begin_pace();
@@ -186,7 +190,7 @@ void Physics::Parts::return_to_present() {
   if (!viewing) return;
   seek_target.reset();
   if (simulation.steps() != head_step) {
-    if (const Keyframe* last = timeline.before(head_step)) show_keyframe(*last);
+    if (const Keyframe* last = keyframe_before(head_step)) show_keyframe(*last);
     if (simulation.steps() < head_step) take_steps(head_step - simulation.steps());
   }
   apply_events();
@@ -211,6 +215,7 @@ void Physics::Parts::forget_later() {
   if (era != head_era)
     measurements.set_robots(robots, simulation.time(), simulation.configuration().environment, telemetry);
   measurements.cut(simulation.time(), simulation.steps());
+  forget_later_companions();
   replay_log.cut(simulation, robots, perturbations);
   if (loop && loop->second > simulation.time()) loop.reset();
   if (replayed_repro)

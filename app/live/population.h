@@ -15,7 +15,10 @@ namespace mercury {
 // many others were removed since. Not thread-safe; the physics thread owns it.
 class Population {
  public:
-  explicit Population(Simulation& simulation) : simulation_(simulation) {}
+  // `revision`: of the empty list of robots.
+  explicit Population(Simulation& simulation, std::uint64_t revision = 0)
+      : simulation_(simulation),
+        robots_(std::make_shared<LiveRobots>(LiveRobots{.revision = revision, .mass_offsets = {0}})) {}
 
   // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials. Returns whether the
   // list changed; materials alone do not count.
@@ -50,7 +53,7 @@ class Population {
   void follow_materials(const std::vector<LiveRobot>& wanted, bool arranged);
 
   Simulation& simulation_;
-  std::shared_ptr<const LiveRobots> robots_ = std::make_shared<LiveRobots>(LiveRobots{.mass_offsets = {0}});
+  std::shared_ptr<const LiveRobots> robots_;
   std::map<RobotId, Departed> departed_;
   std::map<std::uint64_t, std::map<RobotId, Departed>> surroundings_;
   std::size_t departed_masses_ = 0;

@@ -30,6 +30,8 @@ struct RobotProvenance {
 struct DocumentRobot {
   LiveRobot body;
   RobotProvenance source;
+  // Bodies to compare it with, or null: as it was opened or made, and that which it was mutated or bred from.
+  std::shared_ptr<const LiveRobot> made = nullptr, parent = nullptr;
 };
 
 // A pin or a spring that stays attached to a mass.

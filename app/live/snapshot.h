@@ -80,6 +80,10 @@ struct Snapshot {
   const ColorQuantity* color = &material_color();  // the quantity in details.values
   std::vector<LivePerturbation> perturbations;
 
+  // The same moment of what goes along with these robots (companion.h), or null: the second side, and the ghosts. A
+  // ghost has the id of its robot.
+  std::shared_ptr<const Snapshot> second, ghosts;
+
   TimelineState timeline;
 
   bool playing = false;

@@ -28,6 +28,8 @@ class SnapshotPool {
     return {snapshot.release(), [free = free_](Snapshot* done) {
               std::unique_ptr<Snapshot> owned(done);
               owned->positions.release_card();
+              owned->second.reset();
+              owned->ghosts.reset();
               const std::lock_guard lock(free->mutex);
               if (free->snapshots.size() < most_free) free->snapshots.push_back(std::move(owned));
             }};

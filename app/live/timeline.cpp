@@ -18,8 +18,14 @@ bool same_base(const Clock& a, const Clock& b) {
 }  // namespace
 
 std::size_t Keyframe::bytes() const {
-  return sizeof(Keyframe) + (state.positions.capacity() + state.velocities.capacity()) * sizeof(Vec3) +
-         state.explosions.capacity() * sizeof(BatchState::Explosion);
+  const auto bytes_of = [](const BatchState& all) {
+    return (all.positions.capacity() + all.velocities.capacity()) * sizeof(Vec3) +
+           all.explosions.capacity() * sizeof(BatchState::Explosion);
+  };
+  std::size_t sum = sizeof(Keyframe) + bytes_of(state);
+  for (const auto& companion : {second, ghosts})
+    if (companion) sum += sizeof(BatchState) + bytes_of(*companion);
+  return sum;
 }
 
 void Timeline::clear() {
@@ -61,6 +67,13 @@ void Timeline::cut(std::int64_t step, std::uint64_t era) {
 const Keyframe* Timeline::before(std::int64_t step) const {
   const auto after = std::ranges::upper_bound(keyframes_, step, {}, &Keyframe::step);
   return after == keyframes_.begin() ? nullptr : &*std::prev(after);
+}
+
+const Keyframe* Timeline::before(std::int64_t step, const std::function<bool(const Keyframe&)>& usable) const {
+  auto place = std::ranges::upper_bound(keyframes_, step, {}, &Keyframe::step);
+  while (place != keyframes_.begin())
+    if (usable(*--place)) return &*place;
+  return nullptr;
 }
 
 const Keyframe* Timeline::next_era(std::uint64_t era) const {

@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct Keyframe {
   std::uint64_t next_event = 0;  // number of the first event after it
   std::uint64_t era = 0;
   double work = 0;  // wall time that all steps before it took [s]
+  // Of the robots' companions (companion.h), if they had begun before.
+  std::shared_ptr<const BatchState> second, ghosts;
 
   std::int64_t step() const { return state.clock.step; }
   std::size_t bytes() const;
@@ -56,6 +59,8 @@ class Timeline {
   const Keyframe& front() const { return keyframes_.front(); }
   // The last keyframe at or before a step; null if there is none. Valid until the next change.
   const Keyframe* before(std::int64_t step) const;
+  // The same among those that `usable` accepts.
+  const Keyframe* before(std::int64_t step, const std::function<bool(const Keyframe&)>& usable) const;
   // The first keyframe of the next era; null if there is none.
   const Keyframe* next_era(std::uint64_t era) const;
 

@@ -50,6 +50,15 @@ Vector3f GroupMotion::offset_of(const Vector3f& offset, const Room& room, const 
   return shown;
 }
 
+Vector3f GroupMotion::ghost_offset(const Vector3f& shown, const Room& room, const Trail& trail, Vec3 ghost) const {
+  Vector3f apart = eigen(ghost) - eigen(trail.last());
+  if (on_land_) apart.z() = 0;
+  if (layout_ == Layout::grid || !apart.allFinite()) return shown;
+  if (layout_ == Layout::cells) return shown - std::max(0.0f, 1 - room.radius / std::max(1e-9f, apart.norm())) * apart;
+  const auto way = static_cast<float>(distance_between(trail.start(), ghost, environment_));
+  return shown - apart + (way - progress_of(trail)) * along_;
+}
+
 float GroupMotion::progress_of(const Trail& trail) const {
   return static_cast<float>(distance_between(trail.start(), trail.last(), environment_));
 }

@@ -37,6 +37,9 @@ class GroupMotion {
 
   // The offset of a robot that starts with `offset` and has come along `trail`.
   Eigen::Vector3f offset_of(const Eigen::Vector3f& offset, const Room& room, const Trail& trail) const;
+  // The offset of the ghost of a robot that is shown with `shown`; the ghost's centre of mass is at `ghost`. The two
+  // are as far apart as they are, in cells at most by the room's radius; in a race the ghost is in the same lane.
+  Eigen::Vector3f ghost_offset(const Eigen::Vector3f& shown, const Room& room, const Trail& trail, Vec3 ghost) const;
   // How far the robot is from its start [m]; in a race, its place along its lane.
   float progress_of(const Trail& trail) const;
   // The box that a camera shows: `box` is around the robot, `offset` its own at the start.

@@ -76,6 +76,10 @@ class GroupScene {
   std::span<const render::Bounds> last_boxes() const { return last_boxes_; }
   // What is added to each robot's own coordinates in the picture at the last update() [m].
   std::span<const Eigen::Vector3f> offsets() const { return shown_offsets_; }
+  // What is added to the coordinates of a robot's ghost, whose centre of mass is there.
+  Eigen::Vector3f ghost_offset(std::size_t robot, Vec3 center_of_mass) const {
+    return motion_.ghost_offset(shown_offsets_[robot], rooms_[robot], trails_[robot], center_of_mass);
+  }
 
  private:
   // The render materials of robots with the same materials. `own` are those of the robot's file, which give the

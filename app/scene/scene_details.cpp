@@ -1,7 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/scene_details.h"
 
+#include <variant>
+
+#include "mercury/observables.h"
+
 namespace mercury {
+
+ViewSettings known_in(const ViewSettings& settings, const Environment& environment) {
+  ViewSettings known = settings;
+  if (!known.color->exists_in(environment)) known.color = &material_color();
+  if (!has_face_forces(environment)) known.shown.arrows.drag = known.shown.arrows.lift = false;
+  if (!std::holds_alternative<Land>(environment)) known.shown.arrows.contact = false;
+  return known;
+}
 
 DetailObserver::DetailObserver(const Simulation& simulation, const ViewSettings& settings) : simulation_(simulation) {
   if (settings.color->has_values()) coloring_.emplace(simulation, *settings.color);

@@ -19,6 +19,9 @@ struct SceneDetails {
   std::string arrow_key;  // what their lengths mean
 };
 
+// The settings without what the environment does not have: its colour quantity becomes the material, its arrows go.
+ViewSettings known_in(const ViewSettings& settings, const Environment& environment);
+
 // Computes them on the simulating thread, so that this overlaps with drawing. Does not read positions and velocities
 // when only shapes are shown.
 class DetailObserver {

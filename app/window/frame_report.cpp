@@ -29,6 +29,16 @@ std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& p
   return places;
 }
 
+// What the second side shows, or null.
+nlohmann::json second_of(const Snapshot& snapshot) {
+  if (!snapshot.second) return nullptr;
+  const Configuration& configuration = snapshot.second->configuration;
+  return {{"steps", snapshot.second->steps},
+          {"time", snapshot.second->time},
+          {"solver", name_of(configuration.solver)},
+          {"environment", name_of(configuration.environment)}};
+}
+
 }  // namespace
 
 void FrameReport::write_gl_messages(PanelContext& context) {
@@ -80,6 +90,8 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                         {"looping", timeline.looping},
                         {"bookmarks", scene.bookmarks()},
                         {"budget", timeline.budget}}},
+                      {"second", second_of(scene.snapshot())},
+                      {"ghosts", scene.picture().scene().ghosts.size()},
                       {"selected", scene.selection().size()},
                       {"attached", scene.attachments().size()},
                       {"panel_seconds", cost.panels},

@@ -26,6 +26,7 @@
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
+#include "app/window/viewport/comparison_view.h"
 #include "app/window/viewport/cut_handle.h"
 #include "app/window/viewport/legend_view.h"
 #include "app/window/viewport/mouse_controller.h"
@@ -81,6 +82,9 @@ class Viewer {
   void frame(double dt);
   void handle_input(const std::vector<InputEvent>& events);
   void draw_frame(const std::vector<InputEvent>& events, double dt);
+  void split_area(const ViewportArea& whole);
+  void draw_text();
+  void use_mouse();
   void draw_handles();
   bool skips_picture() const;
   void update_renderer();
@@ -117,11 +121,16 @@ class Viewer {
   CutHandle cut_handle_;
   Screenshot screenshot_;
 
-  ViewportArea area_{{0, 0}, {16, 9}};
-  std::uint64_t bodies_revision_ = 0;  // of the bodies that the renderer has
-  bool camera_moved_ = false;          // between the last two pictures
-  bool camera_placed_ = false;         // the camera has been placed before the first robots
-  int redraws_ = 3;                    // pictures to draw even if nothing changes
+  ViewportArea area_{{0, 0}, {16, 9}};        // of the robots, or of the first side
+  ViewportArea whole_area_{{0, 0}, {16, 9}};  // of both sides
+  std::optional<ViewportArea> second_area_;   // none = there is one side
+  std::optional<Viewport> second_viewport_;   // the same
+  std::uint64_t second_revision_ = 0;         // of its bodies
+  EventLog no_log_;                           // for what the second side shows again
+  std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
+  bool camera_moved_ = false;                 // between the last two pictures
+  bool camera_placed_ = false;                // the camera has been placed before the first robots
+  int redraws_ = 3;                           // pictures to draw even if nothing changes
 
   // The last picture.
   std::int64_t shown_steps_ = -1;
@@ -215,7 +224,8 @@ double Viewer::wait_after(double spent) const { return options_.paced ? std::max
 bool Viewer::anything_moves() const {
   return redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking || camera_.gliding() ||
          camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() || recorder_.busy() ||
-         screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse();
+         screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() ||
+         (second_viewport_ && second_viewport_->coarse());
 }
 
 void Viewer::handle_input(const std::vector<InputEvent>& events) {
@@ -263,14 +273,12 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   imgui_.set_appearance(scene_.view().theme, preferences_.text_scale);
   const auto panels_begin = Clock::now();
   imgui_.begin_frame(events);
-  area_ = panels_.draw_frame();
-  mouse_.update(area_, shown_camera_);
+  split_area(panels_.draw_frame());
+  use_mouse();
   panels_.draw_over(area_, shown_camera_, dt);
-  const bool clock = !preferences_.panels;  // the play bar has its own clock
-  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_,
-                     {.clock = clock, .hovered = mouse_.hovered()}, log_);
+  draw_text();
   draw_handles();
-  mouse_.draw(area_, shown_camera_);
+  mouse_.draw(scene_.points_at_second() ? *second_area_ : area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
@@ -285,10 +293,46 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   draw_seconds_ = since(drawing);
 }
 
+// Two sides have a half each, and pictures of the same size.
+void Viewer::split_area(const ViewportArea& whole) {
+  const bool two = scene_.second_picture() != nullptr;
+  if (two != second_area_.has_value()) redraws_ = 3;
+  whole_area_ = area_ = whole;
+  second_area_.reset();
+  if (two) {
+    const Halves halves = halves_of(whole);
+    area_ = halves.first;
+    second_area_ = halves.second;
+    context_.aspect = area_.aspect();
+    log_.item("second", halves.second.low, halves.second.high);
+  } else {
+    second_viewport_.reset();
+  }
+}
+
+// A drag belongs to the side on which it began.
+void Viewer::use_mouse() {
+  if (!second_area_)
+    scene_.point_at_second(false);
+  else if (!mouse_.busy())
+    scene_.point_at_second(ImGui::GetIO().MousePos.x >= second_area_->low.x);
+  mouse_.update(scene_.points_at_second() ? *second_area_ : area_, shown_camera_);
+}
+
+void Viewer::draw_text() {
+  ViewportTextOptions options{.clock = !preferences_.panels,  // the play bar has its own clock
+                              .hovered = mouse_.hovered()};
+  if (second_area_) options.top = draw_side_titles(scene_, halves_of(whole_area_), log_);
+  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
+  draw_ghost_figures(scene_, area_, shown_camera_, log_);
+  if (LivePicture* second = scene_.second_picture(); second && second_area_)
+    draw_viewport_text(second->scene(), second->bounds(), *second_area_, shown_camera_, options, no_log_);
+}
+
 // What the mouse moves in the picture besides robots and camera.
 void Viewer::draw_handles() {
   ViewSettings view = scene_.view();
-  bool changed = legend_.draw(scene_.picture().scene().legend, area_, view, log_);
+  bool changed = legend_.draw(scene_.picture().scene().legend, whole_area_, view, log_);
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   if (changed) scene_.set_view(view);
 }
@@ -321,6 +365,22 @@ void Viewer::update_renderer() {
     bodies_revision_ = live.bodies_revision();
     redraws_ = 3;
   }
+  if (second_area_ && !second_viewport_) {
+    second_viewport_.emplace(window_.gl_context(), preferences_.quality);
+    second_revision_ = 0;
+  }
+  if (second_area_) {
+    second_viewport_->place(
+        static_cast<int>(second_area_->low.x * scale.x), static_cast<int>(second_area_->low.y * scale.y),
+        static_cast<int>(second_area_->width() * scale.x), static_cast<int>(second_area_->height() * scale.y));
+    if (second_viewport_->renderer().quality() != viewport_.renderer().quality())
+      second_viewport_->renderer().set_quality(viewport_.renderer().quality());
+    if (second_revision_ != scene_.second_picture()->bodies_revision()) {
+      scene_.second_picture()->set_bodies(second_viewport_->renderer());
+      second_revision_ = scene_.second_picture()->bodies_revision();
+      redraws_ = 3;
+    }
+  }
   if (!camera_placed_ && !live.bounds().empty()) {
     const CameraPlan& plan = scene_.view().camera;
     camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
@@ -350,11 +410,13 @@ void Viewer::draw_picture(double dt) {
                   camera.field_of_view != shown_camera_.field_of_view;
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
-  if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse()) return;
+  if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !(second_viewport_ && second_viewport_->coarse()))
+    return;
   if (leaves_card_to_steps()) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   viewport_.draw(without_text(live.scene()), camera, moving);
+  if (second_area_) second_viewport_->draw(without_text(scene_.second_picture()->scene()), camera, moving);
   drawn_at_ = Clock::now();
   ++pictures_;
   times_.picture = since(begin);
@@ -370,7 +432,10 @@ void Viewer::present() {
   glViewport(0, 0, pixels.width, pixels.height);
   glClearColor(0.08f, 0.10f, 0.13f, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (pixels.width > 0 && pixels.height > 0) viewport_.present(pixels.height);
+  if (pixels.width > 0 && pixels.height > 0) {
+    viewport_.present(pixels.height);
+    if (second_viewport_) second_viewport_->present(pixels.height);
+  }
   imgui_.end_frame();
   recorder_.capture_frame(context_, pixels);
   update_screenshot();

@@ -112,6 +112,10 @@ void Panels::draw_view_menu() {
     menu_item("Frame", Action::frame, context_.scene.robot_count() > 0);
     menu_item("Drag arrows", Action::drag_arrows, true, context_.scene.view().shown.arrows.drag);
     menu_item("Dark or light", Action::theme);
+    menu_item("Two views", Action::compare, context_.scene.robot_count() > 0, context_.scene.second().has_value());
+    menu_item("Ghosts of the selected", Action::ghosts,
+              !context_.scene.selection().empty() || !context_.scene.ghosts().empty(),
+              !context_.scene.ghosts().empty());
     menu_item("Left panels", Action::left_panels, true, column_open(Side::left));
     menu_item("Right panels", Action::right_panels, true, column_open(Side::right));
     menu_item("Hide panels", Action::hide_panels);

@@ -11,6 +11,7 @@
 #include "app/window/panels/body_editor.h"
 #include "app/window/panels/camera_commands.h"
 #include "app/window/panels/color_section.h"
+#include "app/window/panels/compare_panel.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/export_commands.h"
 #include "app/window/panels/file_commands.h"
@@ -89,6 +90,12 @@ void Panels::execute(const Command& command) {
     case Action::legend:
     case Action::theme:
       change_view(command.action, command.number);
+      break;
+    case Action::compare:
+      toggle_second_view(context_);
+      break;
+    case Action::ghosts:
+      toggle_ghosts(context_);
       break;
     case Action::left_panels:
     case Action::right_panels: {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/browser_panel.h"
+#include "app/window/panels/compare_panel.h"
 #include "app/window/panels/evolution_panel.h"
 #include "app/window/panels/measure_panel.h"
 #include "app/window/panels/messages_panel.h"
@@ -27,6 +28,7 @@ constexpr PanelEntry table[] = {
     {"Browser", "folders of robots, with pictures", Side::left, make<BrowserPanel>},
     {"Ranking", "which robot went farthest", Side::left, make<RankingPanel>},
     {"Evolution", "runs of an evolution: scores, champions, families", Side::left, make<EvolutionPanel>},
+    {"Compare", "two views, and ghosts of robots as they were", Side::left, make<ComparePanel>},
     {"View", "colours, arrows, camera, appearance", Side::right, make<ViewPanel>},
     {"Tune", "solver, environment, materials", Side::right, make<TunePanel>},
     {"Measure", "plots over time", Side::right, make<MeasurePanel>},

@@ -69,6 +69,8 @@ constexpr KeyBinding table[] = {
     {Action::labels, "labels", "L", "names and distances", "Picture"},
     {Action::legend, "legend", "K", "legend", "Picture"},
     {Action::theme, "theme", "B", "dark or light theme", "Picture"},
+    {Action::compare, "compare", "I", "two views of the same robots under different settings, or one", "Picture"},
+    {Action::ghosts, "ghosts", "A", "ghosts of the selected robots as they were, or none", "Picture"},
 
     {Action::left_panels, "left_panels", "[", "collapse or open the left panels", "Window"},
     {Action::right_panels, "right_panels", "]", "collapse or open the right panels", "Window"},

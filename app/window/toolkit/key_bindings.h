@@ -69,6 +69,8 @@ enum class Action {
   labels,
   legend,
   theme,
+  compare,  // two views
+  ghosts,
   left_panels,
   right_panels,
   hide_panels,

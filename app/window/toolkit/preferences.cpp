@@ -50,6 +50,7 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   read(document, "save_folder", preferences.save_folder);
   read(document, "pause_on_explosion", preferences.pause_on_explosion);
   read(document, "timeline_megabytes", preferences.timeline_megabytes);
+  read(document, "compared", preferences.compared);
   read(document, "gestures_used", preferences.gestures_used);
   std::string quality;
   read(document, "quality", quality);
@@ -84,6 +85,7 @@ void save(const Preferences& preferences, const std::filesystem::path& file) {
                       {"save_folder", preferences.save_folder},
                       {"pause_on_explosion", preferences.pause_on_explosion},
                       {"timeline_megabytes", preferences.timeline_megabytes},
+                      {"compared", preferences.compared},
                       {"gestures_used", preferences.gestures_used}};
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);

@@ -25,6 +25,7 @@ struct Preferences {
   std::string scene;                     // file that was opened or saved last; not kept for the next start
   bool pause_on_explosion = false;
   static constexpr int least_timeline = 16, most_timeline = 16384;
+  std::string compared;                 // settings of the second view, as it was last
   int timeline_megabytes = 512;         // of memory for the timeline, at most
   std::array<bool, 4> gestures_used{};  // turn, move, zoom, pull; the window explains the others
 };

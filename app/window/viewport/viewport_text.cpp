@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
 #include "render/label_layout.h"
 #include "render/overlay.h"
 
@@ -96,7 +97,8 @@ void draw_viewport_text(const render::Scene& scene, std::span<const render::Boun
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
   draw_labels(scene, bounds, area, camera, options.hovered, log);
-  if (!scene.caption.empty()) line({area.low.x + text, area.low.y + text}, scene.caption);
+  if (!scene.caption.empty())
+    line({area.low.x + text, area.low.y + options.top + text}, shortened(scene.caption, area.width() - 2 * text));
   if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();

@@ -19,6 +19,7 @@ render::Scene without_text(const render::Scene& scene);
 
 struct ViewportTextOptions {
   bool clock = false;                  // draw the clock
+  float top = 0;                       // of the picture that is taken [pixels]
   std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
 };
 

@@ -10,7 +10,7 @@ import unittest
 from window_case import SAMPLES, WindowCase, main, numpy
 
 
-LEFT = ["Robots", "Browser", "Ranking", "Evolution"]
+LEFT = ["Robots", "Browser", "Ranking", "Evolution", "Compare"]
 RIGHT = ["View", "Tune", "Measure", "Video", "Messages", "Stats"]
 
 

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+// The second side and the ghosts: each shows, bit for bit, what a simulation of its own would show.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "app/scene/side_difference.h"
+#include "mercury/error.h"
+#include "mercury/random_voxel.h"
+#include "tests/app/live/live_scene_setup.h"
+#include "tests/sim/backend.h"
+
+namespace mercury {
+namespace {
+
+using Positions = std::vector<Vec3>;
+
+Positions positions_of(const Snapshot& snapshot) {
+  const auto positions = snapshot.positions.host();
+  return {positions.begin(), positions.end()};
+}
+Positions second_positions(const LiveScene& scene) { return positions_of(*scene.snapshot().second); }
+Positions ghost_positions(const LiveScene& scene) { return positions_of(*scene.snapshot().ghosts); }
+
+Positions positions_of(const Simulation& simulation) {
+  Positions positions(simulation.mass_count());
+  simulation.read_positions(positions);
+  return positions;
+}
+
+// A simulation of the scene's robots in another configuration.
+Simulation alone(const LiveScene& scene, const Configuration& configuration) {
+  Simulation simulation(configuration);
+  for (const DocumentRobot& robot : scene.document().robots) simulation.add(whole_robot(robot));
+  return simulation;
+}
+
+void make_steps(LiveScene& scene, std::int64_t count) {
+  scene.step(count);
+  scene.wait_until_done();
+}
+
+void stiffen(LiveScene& scene, RobotId robot) {
+  scene.scale_materials({robot}, {.stiffness = 1.7f, .frequency = 1.3f});
+}
+
+class ComparisonOn : public BackendTest {
+ protected:
+  LiveSceneOptions options(Environment environment = Ocean{}) const {
+    return {.configuration = {.environment = environment, .device = device()}};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, ComparisonOn, every_device, BackendTest::name);
+
+TEST_P(ComparisonOn, SecondSideIsARunOfItsOwnWithThatConfiguration) {
+  LiveScene scene(options());
+  test::make_robots(scene, 3);
+  for (const char* text : {"solver=xpbd", "environment=land", "damping=0.7,density=400", "dt=0.00025"}) {
+    scene.reset();
+    scene.set_second(SideDifference(text));
+    make_steps(scene, 120);
+    Simulation second = alone(scene, SideDifference(text).over(scene.configuration()));
+    second.step(std::llround(scene.snapshot().time / second.configuration().dt));
+    ASSERT_TRUE(scene.snapshot().second) << text;
+    EXPECT_TRUE(second_positions(scene) == positions_of(second)) << text;
+    EXPECT_NEAR(scene.snapshot().second->time, scene.snapshot().time, 1e-9) << text;
+    Simulation first = alone(scene, scene.configuration());
+    first.step(120);
+    EXPECT_TRUE(positions_of(scene.snapshot()) == positions_of(first)) << text;
+  }
+}
+
+TEST_P(ComparisonOn, BothSidesBeginInTheSameStates) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  make_steps(scene, 70);
+  scene.set_second(SideDifference("solver=xpbd"));
+  scene.wait_until_done();
+  EXPECT_TRUE(second_positions(scene) == positions_of(scene.snapshot()));
+  EXPECT_TRUE(scene.snapshot().second->velocities == scene.snapshot().velocities);
+  Simulation both = alone(scene, scene.configuration());
+  both.step(70);
+  Configuration xpbd = scene.configuration();
+  xpbd.solver = Solver::xpbd;
+  both.configure(xpbd);
+  both.step(50);
+  make_steps(scene, 50);
+  EXPECT_TRUE(second_positions(scene) == positions_of(both));
+  EXPECT_EQ(scene.snapshot().second->steps, scene.snapshot().steps);
+}
+
+TEST_P(ComparisonOn, GhostHasTheBitsOfTheUnchangedRobotAlone) {
+  LiveScene scene(options());
+  test::make_robots(scene, 3);
+  const std::vector<RobotId> robots = test::ids_of(scene);
+  make_steps(scene, 40);
+  EXPECT_EQ(scene.show_ghosts({robots[1]}), 1u);
+  stiffen(scene, robots[1]);
+  make_steps(scene, 60);
+  Simulation unchanged(scene.configuration(), std::span(scene.document().find(robots[1])->body.robot.get(), 1));
+  unchanged.step(100);
+  EXPECT_TRUE(ghost_positions(scene) == positions_of(unchanged));
+  EXPECT_TRUE(ghost_positions(scene) !=
+              Positions(scene.snapshot().positions_of(1).begin(), scene.snapshot().positions_of(1).end()));
+}
+
+TEST_P(ComparisonOn, GhostOfAMutantIsItsParent) {
+  LiveScene scene(options());
+  test::make_robots(scene, 1);
+  const RobotId parent = test::ids_of(scene)[0];
+  scene.mutate({parent}, {.seed = 3});
+  scene.wait_until_done();
+  const RobotId child = test::ids_of(scene)[1];
+  EXPECT_TRUE(scene.has_parent(child));
+  EXPECT_FALSE(scene.has_parent(parent));
+  EXPECT_EQ(scene.show_ghosts({child}), 1u);
+  EXPECT_TRUE(scene.ghosts()[0].of_parent);
+  make_steps(scene, 90);
+  const auto first = scene.snapshot().positions_of(0);
+  EXPECT_TRUE(ghost_positions(scene) == Positions(first.begin(), first.end()));
+  // Once the mutant is changed, its ghost is the mutant as it was made, unless the parent is asked for.
+  stiffen(scene, child);
+  scene.show_ghosts({child});
+  EXPECT_FALSE(scene.ghosts()[0].of_parent);
+  scene.show_ghosts({child}, GhostOf::parent);
+  EXPECT_TRUE(scene.ghosts()[0].of_parent);
+  EXPECT_EQ(scene.show_ghosts({parent}, GhostOf::parent), 0u);
+}
+
+TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  const RobotId robot = test::ids_of(scene)[0];
+  make_steps(scene, 30);
+  const Positions common = positions_of(scene.snapshot());
+  make_steps(scene, 10);
+  scene.set_second(SideDifference("solver=xpbd"));
+  scene.show_ghosts({robot});
+  stiffen(scene, robot);
+  struct Moment {
+    double time;
+    Positions first, second, ghosts;
+  };
+  std::vector<Moment> moments;
+  const auto keep = [&] {
+    moments.push_back(
+        {scene.snapshot().time, positions_of(scene.snapshot()), second_positions(scene), ghost_positions(scene)});
+  };
+  make_steps(scene, 25);
+  keep();
+  Configuration configuration = scene.configuration();
+  configuration.dt = 7e-4;
+  scene.set_configuration(configuration);
+  make_steps(scene, 35);
+  keep();
+  make_steps(scene, 5);
+  scene.duplicate({robot});
+  make_steps(scene, 20);
+  keep();
+  for (const std::size_t i : {0u, 1u, 0u, 2u, 1u}) {
+    scene.seek(moments[i].time);
+    scene.wait_until_done();
+    EXPECT_TRUE(positions_of(scene.snapshot()) == moments[i].first) << i;
+    EXPECT_TRUE(second_positions(scene) == moments[i].second) << i;
+    EXPECT_TRUE(ghost_positions(scene) == moments[i].ghosts) << i;
+  }
+  // Before the comparison began, both sides were one.
+  scene.seek(0.03);
+  scene.wait_until_done();
+  EXPECT_TRUE(positions_of(scene.snapshot()) == common);
+  EXPECT_TRUE(second_positions(scene) == common);
+  // Playing on from there comes to the same moments.
+  make_steps(scene, 35);
+  EXPECT_TRUE(second_positions(scene) == moments[0].second);
+  EXPECT_TRUE(ghost_positions(scene) == moments[0].ghosts);
+}
+
+TEST_P(ComparisonOn, AComparisonThatBeginsAtAnEarlierMomentKeepsWhatCameAfter) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  make_steps(scene, 100);
+  const Positions end = positions_of(scene.snapshot());
+  scene.seek(0.04);
+  scene.wait_until_done();
+  scene.set_second(SideDifference("damping=2"));
+  scene.wait_until_done();
+  EXPECT_TRUE(scene.snapshot().timeline.viewing);
+  scene.seek(0.1);
+  scene.wait_until_done();
+  EXPECT_TRUE(positions_of(scene.snapshot()) == end);
+  Simulation second = alone(scene, scene.configuration());
+  second.step(40);
+  second.configure(SideDifference("damping=2").over(scene.configuration()));
+  second.step(60);
+  EXPECT_TRUE(second_positions(scene) == positions_of(second));
+}
+
+TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.set_second(SideDifference("solver=xpbd"));
+  scene.set_speed(unlimited_speed);
+  for (int i = 0; i < 4; ++i) {
+    const std::int64_t before = scene.snapshot().steps;
+    scene.play();
+    while (scene.snapshot().steps < before + 50) {
+      scene.frame();
+      ASSERT_TRUE(!scene.snapshot().second || scene.snapshot().second->steps == scene.snapshot().steps);
+      std::this_thread::yield();
+    }
+    scene.pause();
+    scene.wait_until_done();
+    EXPECT_EQ(scene.snapshot().second->steps, scene.snapshot().steps);
+  }
+}
+
+TEST(Comparison, EditsActOnBothSides) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  scene.set_second(SideDifference("damping=1"));
+  const std::vector<RobotId> robots = test::ids_of(scene);
+  make_steps(scene, 20);
+  stiffen(scene, robots[0]);
+  scene.remove({robots[1]});
+  Configuration configuration = scene.configuration();
+  configuration.solver = Solver::xpbd;
+  scene.set_configuration(configuration);
+  scene.wait_until_done();
+  const Snapshot& second = *scene.snapshot().second;
+  ASSERT_EQ(second.robots->size(), 1u);
+  EXPECT_EQ(second.robots->robots[0].materials, scene.document().robots[0].body.materials);
+  EXPECT_EQ(second.configuration.solver, Solver::xpbd);
+  EXPECT_EQ(second.configuration.damping, 1);
+  scene.undo();
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(scene.snapshot().second->robots->size(), 2u);
+}
+
+TEST(Comparison, GhostsCountNowhere) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 2);
+  const std::vector<RobotId> robots = test::ids_of(scene);
+  make_steps(scene, 30);
+  const std::vector<render::Bounds> boxes(scene.picture().camera_boxes().begin(), scene.picture().camera_boxes().end());
+  scene.show_ghosts({robots[0]});
+  make_steps(scene, 1);
+  EXPECT_EQ(scene.picture().scene().ghosts.size(), 1u);
+  EXPECT_EQ(scene.robot_count(), 2u);
+  EXPECT_EQ(scene.entries().size(), 2u);
+  EXPECT_EQ(scene.ranking().size(), 2u);
+  EXPECT_EQ(scene.picture().camera_boxes().size(), boxes.size());
+  EXPECT_EQ(scene.snapshot().robots->size(), 2u);
+  EXPECT_EQ(scene.undo_name(), "make 2 robots");
+
+  scene.hide_ghosts();
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().ghosts);
+  EXPECT_TRUE(scene.picture().scene().ghosts.empty());
+}
+
+TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
+  LiveSceneOptions options = test::on_cpu();
+  options.view.layout = Layout::grid;
+  LiveScene scene(options);
+  test::make_robots(scene, 1);
+  const RobotId robot = test::ids_of(scene)[0];
+  scene.show_ghosts({robot});
+  stiffen(scene, robot);
+  make_steps(scene, 400);
+  const render::Ghost& ghost = scene.picture().scene().ghosts[0];
+  EXPECT_EQ(ghost.offset, scene.picture().offsets()[0]);
+  EXPECT_EQ(ghost.positions.size(), scene.picture().scene().positions.size());
+  const std::vector<GhostFigures> figures = scene.ghost_figures();
+  ASSERT_EQ(figures.size(), 1u);
+  EXPECT_TRUE(figures[0].same_age);
+  EXPECT_NEAR(figures[0].age, scene.snapshot().time, 1e-9);
+  EXPECT_NEAR(figures[0].robot_distance, scene.ranking()[0].distance, 1e-12);
+  EXPECT_NE(figures[0].robot_distance, figures[0].ghost_distance);
+}
+
+TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  const RobotId robot = test::ids_of(scene)[0];
+  make_steps(scene, 200);
+  scene.set_second(SideDifference("solver=xpbd"));
+  make_steps(scene, 200);
+  const Series first = scene.series(robot), second = scene.second_series(robot);
+  ASSERT_EQ(first.times.size(), second.times.size());
+  for (std::size_t i = 0; i < first.times.size(); ++i) {
+    EXPECT_NEAR(first.times[i], second.times[i], 1e-9);
+    if (first.times[i] < 0.2) {
+      EXPECT_EQ(first.samples[i].distance, second.samples[i].distance);
+    }
+  }
+  EXPECT_NE(first.samples.back().distance, second.samples.back().distance);
+  EXPECT_TRUE(scene.ghost_series(robot).times.empty());
+}
+
+TEST(SideDifference, NamesWhatCannotBeUsed) {
+  const auto problem_of = [](const char* text) {
+    try {
+      SideDifference{std::string(text)};
+      return std::string();
+    } catch (const ParameterError& error) {
+      EXPECT_EQ(error.parameter(), "compare");
+      return error.problem();
+    }
+  };
+  EXPECT_THAT(problem_of("solver=fast"), testing::HasSubstr("force"));
+  EXPECT_THAT(problem_of("xpbd"), testing::HasSubstr("solver=xpbd"));
+  EXPECT_THAT(problem_of("speed=3"), testing::HasSubstr("drag_coefficient"));
+  EXPECT_THAT(problem_of("dt=0"), testing::HasSubstr("> 0"));
+  EXPECT_THAT(problem_of("dt=1ms"), testing::HasSubstr("not a number"));
+  EXPECT_THAT(problem_of("flow=1:2"), testing::HasSubstr("three numbers"));
+  EXPECT_THAT(problem_of("self_collision=1"), testing::HasSubstr("on or off"));
+  EXPECT_EQ(problem_of("solver=xpbd,environment=land,friction=0.2,flow=1:0:0"), "");
+}
+
+TEST(SideDifference, ParametersCountWhereTheEnvironmentHasThem) {
+  const SideDifference difference("density=500,friction=0.1");
+  Configuration first;
+  first.damping = 0.3;
+  EXPECT_EQ(std::get<Ocean>(difference.over(first).environment).density, 500);
+  EXPECT_EQ(difference.over(first).damping, 0.3);
+  first.environment = Land{};
+  EXPECT_EQ(std::get<Land>(difference.over(first).environment).friction, 0.1f);
+  EXPECT_EQ(differences(first, difference.over(first)),
+            (std::pair<std::string, std::string>("friction 0.8", "friction 0.1")));
+  EXPECT_EQ(SideDifference(difference.text()), difference);
+}
+
+}  // namespace
+}  // namespace mercury

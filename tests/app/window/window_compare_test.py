@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two views and ghosts in the real window: window_compare_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
+from window_case import WindowCase, main, numpy
+
+
+class CompareTest(WindowCase):
+    def pause(self, window):
+        window.key("space")
+        return window.frame(lambda frame: not frame["playing"])
+
+    def half(self, picture, window, item):
+        """The pixels of the middle of an item."""
+        area = window.items[item]
+        x, y = int(area["x"]), int(area["y"])
+        width, height = int(0.4 * area["width"]), int(0.25 * area["height"])
+        return picture[y - height:y + height, x - width:x + width]
+
+    def test_two_views_show_the_same_time_under_different_settings(self):
+        window = self.small()
+        window.key("i")
+        shown = window.frame(lambda frame: frame["second"] and frame["second"]["time"] > 0.3)
+        self.assertEqual(shown["second"]["solver"], "xpbd")
+        window.place("title.first")
+        window.place("title.second")
+        self.assertLess(window.items["title.first"]["x"], window.items["second"]["x"])
+        self.pause(window)
+        paused = window.frame()
+        self.assertEqual(paused["second"]["steps"], paused["steps"])
+        # One step, one step back, and a drag along the timeline.
+        window.key("Right")
+        frame = window.frame(lambda frame: frame["steps"] == paused["steps"] + 1)
+        self.assertEqual(frame["second"]["steps"], frame["steps"])
+        window.key("Left", "Left")
+        frame = window.frame(lambda frame: frame["steps"] == paused["steps"] - 1)
+        self.assertEqual(frame["second"]["steps"], frame["steps"])
+        window.key("r")
+        frame = window.frame(lambda frame: frame["time"] == 0)
+        self.assertEqual(frame["second"]["time"], 0)
+        # The right side in another environment: its picture is another one.
+        window.click("tab.Compare")
+        window.click("compare.environment")
+        window.frame(lambda frame: frame["second"] and frame["second"]["environment"] == "land")
+        picture = window.screenshot()
+        water = self.half(picture, window, "title.first").mean(axis=(0, 1))
+        land = self.half(picture, window, "title.second").mean(axis=(0, 1))
+        self.assertGreater(numpy.abs(water - land).max(), 0.03)
+        window.click("compare.off")
+        window.frame(lambda frame: frame["second"] is None)
+        window.until("one view", lambda: "title.first" not in window.items)
+        self.finish(window)
+
+    def test_the_mouse_selects_robots_on_either_side(self):
+        window = self.small("--paused")
+        window.key("i")
+        frame = window.frame(lambda frame: frame["second"])
+        frame = window.frame()
+        window.place("second")
+        distance = window.items["second"]["x"] - window.items["title.first"]["x"]
+        x, y = frame["where"][0]
+        window.do("mousemove", x + distance, y)
+        window.frame()
+        window.do("click", 1)
+        window.frame(lambda frame: frame["selected"] == 1)
+        self.finish(window)
+
+    def test_a_ghost_shows_a_robot_as_it_was(self):
+        window = self.small()
+        window.key("ctrl+a", "a")
+        window.frame(lambda frame: frame["ghosts"] == 2)
+        window.place("ghost.0")
+        window.key("a")
+        window.frame(lambda frame: frame["ghosts"] == 0)
+        window.until("no figures", lambda: "ghost.0" not in window.items)
+        # Mutants beside the ghosts of their parents.
+        window.key("m")
+        window.wait("robots", 0, lambda event: event["count"] == 4)
+        window.key("ctrl+i", "a", "r")
+        window.frame(lambda frame: frame["ghosts"] == 2 and frame["time"] > 0.5)
+        self.pause(window)
+        window.place("ghost.2")
+        window.frame()
+        with_ghosts = window.screenshot()
+        window.key("a")
+        window.frame(lambda frame: frame["ghosts"] == 0)
+        window.until("no figures", lambda: "ghost.2" not in window.items)
+        without = window.screenshot()
+        changed = (numpy.abs(with_ghosts - without).max(axis=2) > 0.05).mean()
+        self.assertGreater(changed, 0.001)
+        self.finish(window)
+
+
+if __name__ == "__main__":
+    main()
