@@ -178,6 +178,7 @@ OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usua
   if (settings.camera.elevation) options.number("--elevation", degrees(*settings.camera.elevation), NAN);
   options.number("--zoom", settings.camera.zoom, 1.0f);
   options.text("--bookmarks", bookmarks_text(settings.bookmarks), "");
+  options.text("--compare", settings.compare ? settings.compare->text() : "", "");
   return options.take();
 }
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/companion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <variant>
+
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {
@@ -18,6 +22,14 @@ bool same_list(const std::vector<LiveRobot>& a, const std::vector<LiveRobot>& b)
   return std::ranges::equal(a, b, [](const LiveRobot& one, const LiveRobot& other) {
     return one.id == other.id && one.robot == other.robot && one.materials == other.materials && one.name == other.name;
   });
+}
+
+// One step of the robots must not become so many of the companion that the window cannot be used.
+void require_comparable(const Configuration& own, const Configuration& first) {
+  constexpr double most = 1000;
+  if (own.dt * most < first.dt)
+    throw InputError("dt", fmt::format("{:g} s is less than 1/{:g} of the {:g} s that the robots have", own.dt, most,
+                                       first.dt));
 }
 
 bool is_land(const Configuration& configuration) { return std::holds_alternative<Land>(configuration.environment); }
@@ -43,6 +55,7 @@ void Companion::begin(const CompanionRobots& wanted, const Leader& leader) {
 // Puts all robots into the states of their partners.
 void Companion::copy(const CompanionRobots& wanted, const Leader& leader) {
   const Simulation& first = leader.simulation;
+  require_comparable(wanted.configuration, first.configuration());
   simulation_.set_perturbations({});
   simulation_.configure(first.configuration());
   population_.follow(wanted.robots);
@@ -72,6 +85,7 @@ void Companion::copy(const CompanionRobots& wanted, const Leader& leader) {
 }
 
 void Companion::follow(const CompanionRobots& wanted, const Leader& leader) {
+  require_comparable(wanted.configuration, leader.simulation.configuration());
   const Configuration& now = simulation_.configuration();
   const bool to_land = is_land(wanted.configuration) && !is_land(now);
   const bool moved = leader.surroundings != surroundings_, tuned = wanted.configuration != now;

@@ -24,6 +24,7 @@ constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02,  0.05,           0.
 LiveScene::LiveScene(const LiveSceneOptions& options) : parts_(std::make_unique<Parts>(options)) {
   parts_->document.configuration = options.configuration;
   parts_->physics.set_view(options.view);
+  parts_->physics.set_second(options.view.compare);
   frame();
 }
 

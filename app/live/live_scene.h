@@ -204,6 +204,8 @@ class LiveScene {
   // Mouse. Rays and positions are those in the picture, or in that of the second side.
   void point_at_second(bool second);
   bool points_at_second() const;
+  const Snapshot& pointed_snapshot() const;
+  const LivePicture& pointed_picture() const;
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitDetails describe(const Hit& hit) const;
   void begin_perturbation(const Hit& hit, float stiffness = 0);  // [N/m]; 0 = suits the robot

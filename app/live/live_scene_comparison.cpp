@@ -9,15 +9,17 @@
 namespace mercury {
 
 void LiveScene::set_second(const std::optional<SideDifference>& difference) {
-  if (difference == parts_->difference) return;
-  parts_->difference = difference;
-  parts_->physics.set_second(difference);
+  ViewSettings settings = parts_->view;
+  settings.compare = difference;
+  set_view(settings);
 }
-const std::optional<SideDifference>& LiveScene::second() const { return parts_->difference; }
+const std::optional<SideDifference>& LiveScene::second() const { return parts_->view.compare; }
 LivePicture* LiveScene::second_picture() { return parts_->second_picture.get(); }
 
 void LiveScene::point_at_second(bool second) { parts_->pointed_second = second; }
 bool LiveScene::points_at_second() const { return parts_->points_at_second(); }
+const Snapshot& LiveScene::pointed_snapshot() const { return parts_->pointed_snapshot(); }
+const LivePicture& LiveScene::pointed_picture() const { return parts_->pointed_picture(); }
 
 // Both sides have the same layout, colours and scale, so that what differs is the robots.
 void LiveScene::Parts::update_second_picture(ViewSettings shown, const std::optional<RobotId>& held) {

@@ -192,6 +192,7 @@ void LiveScene::Parts::open_scene(const SceneFile& scene, const std::vector<std:
   view = scene.view(Layout::cells);
   camera = view.camera;
   physics.set_view(view);
+  physics.set_second(view.compare);
   for (std::string& note : notes) report(Severity::note, std::move(note));
 }
 

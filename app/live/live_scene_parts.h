@@ -35,7 +35,6 @@ struct LiveScene::Parts {
   LivePicture picture;
   std::unique_ptr<LivePicture> second_picture;  // while there is a second side
   bool pointed_second = false;                  // the mouse is on the second side
-  std::optional<SideDifference> difference;     // of the second side that is wanted
   std::vector<LiveGhost> ghosts;                // that are wanted
   float aspect = 16.0f / 9;
   std::optional<bool> from_above;  // see LiveScene::face

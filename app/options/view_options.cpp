@@ -64,6 +64,10 @@ void ViewOptions::add_to(CLI::App& command) {
                "group|follow[:ROBOT]|turntable|top|still|FILE.json"));
   add(add_value(command, "--bookmarks", words_.bookmarks,
                 "Cameras of the window's keys F5 to F8, as a JSON list of camera files' members", "JSON", text_from));
+  add(add_value(command, "--compare", words_.compare,
+                "Of the window: a second view of the same robots under other settings, as in solver=xpbd or "
+                "environment=land,dt=0.0005",
+                "NAME=VALUE,...", text_from));
   add(command.add_flag("--follow", follow_, "The same as --camera follow"));
   add(add_number(command, "--azimuth", words_.azimuth, "Where the eye is, around the robots from +x (default -75)",
                  "DEGREES"));

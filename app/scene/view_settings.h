@@ -12,6 +12,7 @@
 #include "app/scene/camera_plan.h"
 #include "app/scene/color_quantity.h"
 #include "app/scene/group_layout.h"
+#include "app/scene/side_difference.h"
 #include "render/scene.h"
 
 namespace mercury {
@@ -40,11 +41,12 @@ struct ViewSettings {
   Layout layout = Layout::grid;
   std::optional<Grid> grid;
   CameraPlan camera;
-  CameraBookmarks bookmarks;           // of the window
-  std::string caption;                 // text in the upper left corner; further lines are smaller
-  std::shared_ptr<const Board> board;  // the robots are drawn in its cells; nullptr = no board
-  bool interop = true;                 // let CUDA write into OpenGL's memory if possible
-  double speed = 1;                    // simulated seconds per second of the video, for the clock
+  CameraBookmarks bookmarks;              // of the window
+  std::optional<SideDifference> compare;  // of the window: a second view, and what it simulates differently
+  std::string caption;                    // text in the upper left corner; further lines are smaller
+  std::shared_ptr<const Board> board;     // the robots are drawn in its cells; nullptr = no board
+  bool interop = true;                    // let CUDA write into OpenGL's memory if possible
+  double speed = 1;                       // simulated seconds per second of the video, for the clock
 };
 
 // Changes the layout and shows what it needs: trails, without which nobody sees that a robot in its cell moves, and the

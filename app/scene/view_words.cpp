@@ -159,6 +159,7 @@ ViewSettings view_settings(const ViewWords& words, Layout usual) {
   if (!words.camera.empty()) settings.camera = camera_named(words.camera);
   if (settings.layout == Layout::race) set_race(settings);
   if (settings.layout == Layout::cells) set_layout(settings, Layout::cells);
+  if (words.compare) settings.compare = SideDifference(*words.compare);
   if (words.bookmarks) settings.bookmarks = bookmarks_from(*words.bookmarks);
   if (words.azimuth) settings.camera.azimuth = radians(*words.azimuth);
   if (words.elevation) settings.camera.elevation = radians(*words.elevation);

@@ -92,6 +92,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                         {"budget", timeline.budget}}},
                       {"second", second_of(scene.snapshot())},
                       {"ghosts", scene.picture().scene().ghosts.size()},
+                      {"cursor", context.cursor.time ? nlohmann::json(*context.cursor.time) : nlohmann::json()},
                       {"selected", scene.selection().size()},
                       {"attached", scene.attachments().size()},
                       {"panel_seconds", cost.panels},

@@ -30,6 +30,7 @@
 #include "app/window/viewport/cut_handle.h"
 #include "app/window/viewport/legend_view.h"
 #include "app/window/viewport/mouse_controller.h"
+#include "app/window/viewport/second_view.h"
 #include "app/window/viewport/viewport_text.h"
 
 namespace mercury::window {
@@ -105,6 +106,7 @@ class Viewer {
   Window window_;
   ImGuiLayer imgui_;
   Viewport viewport_;
+  SecondView second_;
   LiveScene scene_;
   LiveRun run_;
   OrbitController camera_;
@@ -123,9 +125,6 @@ class Viewer {
 
   ViewportArea area_{{0, 0}, {16, 9}};        // of the robots, or of the first side
   ViewportArea whole_area_{{0, 0}, {16, 9}};  // of both sides
-  std::optional<ViewportArea> second_area_;   // none = there is one side
-  std::optional<Viewport> second_viewport_;   // the same
-  std::uint64_t second_revision_ = 0;         // of its bodies
   EventLog no_log_;                           // for what the second side shows again
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
   bool camera_moved_ = false;                 // between the last two pictures
@@ -148,7 +147,7 @@ Viewer::Viewer(ViewerOptions options)
       preferences_(preferences_for(options_, folder_)),
       log_(options_.report.empty() ? EventLog() : EventLog(options_.report)),
       window_("Mercury", preferences_.size, options_.paced), imgui_(window_, settings("window.ini")),
-      viewport_(window_.gl_context(), preferences_.quality),
+      viewport_(window_.gl_context(), preferences_.quality), second_(window_.gl_context()),
       scene_({.configuration = options_.configuration, .view = options_.view}) {
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
     scene_.set_bridge(std::move(chosen.bridge));
@@ -166,6 +165,7 @@ void Viewer::save_settings() {
   ViewSettings view = scene_.view();
   view.camera = {.mode = camera_.mode()};  // the rest of the camera belongs to this scene
   view.bookmarks = {};
+  view.compare.reset();
   save_session_settings(session_settings_path(),
                         {.view = view,
                          .generation = context_.creation.generation,
@@ -224,8 +224,7 @@ double Viewer::wait_after(double spent) const { return options_.paced ? std::max
 bool Viewer::anything_moves() const {
   return redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking || camera_.gliding() ||
          camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() || recorder_.busy() ||
-         screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() ||
-         (second_viewport_ && second_viewport_->coarse());
+         screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() || second_.coarse();
 }
 
 void Viewer::handle_input(const std::vector<InputEvent>& events) {
@@ -278,7 +277,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
-  mouse_.draw(scene_.points_at_second() ? *second_area_ : area_, shown_camera_);
+  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
@@ -295,38 +294,36 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
 
 // Two sides have a half each, and pictures of the same size.
 void Viewer::split_area(const ViewportArea& whole) {
-  const bool two = scene_.second_picture() != nullptr;
-  if (two != second_area_.has_value()) redraws_ = 3;
-  whole_area_ = area_ = whole;
-  second_area_.reset();
-  if (two) {
-    const Halves halves = halves_of(whole);
-    area_ = halves.first;
-    second_area_ = halves.second;
-    context_.aspect = area_.aspect();
-    log_.item("second", halves.second.low, halves.second.high);
-  } else {
-    second_viewport_.reset();
+  whole_area_ = whole;
+  area_ = second_.split(scene_, whole);
+  context_.aspect = area_.aspect();
+  if (second_.changed()) {
+    redraws_ = 3;
+    scene_.picture().lay_out(area_.aspect());
+    if (LivePicture* second = scene_.second_picture()) second->lay_out(area_.aspect());
   }
+  if (second_.area()) log_.item("second", second_.area()->low, second_.area()->high);
 }
 
 // A drag belongs to the side on which it began.
 void Viewer::use_mouse() {
-  if (!second_area_)
+  if (!second_.area())
     scene_.point_at_second(false);
   else if (!mouse_.busy())
-    scene_.point_at_second(ImGui::GetIO().MousePos.x >= second_area_->low.x);
-  mouse_.update(scene_.points_at_second() ? *second_area_ : area_, shown_camera_);
+    scene_.point_at_second(ImGui::GetIO().MousePos.x >= second_.area()->low.x);
+  mouse_.update(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
 }
 
 void Viewer::draw_text() {
   ViewportTextOptions options{.clock = !preferences_.panels,  // the play bar has its own clock
                               .hovered = mouse_.hovered()};
-  if (second_area_) options.top = draw_side_titles(scene_, halves_of(whole_area_), log_);
+  if (second_.area()) options.top = draw_side_titles(scene_, halves_of(whole_area_), log_);
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
   draw_ghost_figures(scene_, area_, shown_camera_, log_);
-  if (LivePicture* second = scene_.second_picture(); second && second_area_)
-    draw_viewport_text(second->scene(), second->bounds(), *second_area_, shown_camera_, options, no_log_);
+  LivePicture* const second = scene_.second_picture();
+  if (!second || !second_.area()) return;
+  options.caption = second->scene().caption != scene_.picture().scene().caption;
+  draw_viewport_text(second->scene(), second->bounds(), *second_.area(), shown_camera_, options, no_log_);
 }
 
 // What the mouse moves in the picture besides robots and camera.
@@ -365,22 +362,7 @@ void Viewer::update_renderer() {
     bodies_revision_ = live.bodies_revision();
     redraws_ = 3;
   }
-  if (second_area_ && !second_viewport_) {
-    second_viewport_.emplace(window_.gl_context(), preferences_.quality);
-    second_revision_ = 0;
-  }
-  if (second_area_) {
-    second_viewport_->place(
-        static_cast<int>(second_area_->low.x * scale.x), static_cast<int>(second_area_->low.y * scale.y),
-        static_cast<int>(second_area_->width() * scale.x), static_cast<int>(second_area_->height() * scale.y));
-    if (second_viewport_->renderer().quality() != viewport_.renderer().quality())
-      second_viewport_->renderer().set_quality(viewport_.renderer().quality());
-    if (second_revision_ != scene_.second_picture()->bodies_revision()) {
-      scene_.second_picture()->set_bodies(second_viewport_->renderer());
-      second_revision_ = scene_.second_picture()->bodies_revision();
-      redraws_ = 3;
-    }
-  }
+  if (second_.update(scene_, viewport_.renderer().quality(), scale)) redraws_ = 3;
   if (!camera_placed_ && !live.bounds().empty()) {
     const CameraPlan& plan = scene_.view().camera;
     camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
@@ -410,13 +392,12 @@ void Viewer::draw_picture(double dt) {
                   camera.field_of_view != shown_camera_.field_of_view;
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
-  if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !(second_viewport_ && second_viewport_->coarse()))
-    return;
+  if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
   if (leaves_card_to_steps()) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   viewport_.draw(without_text(live.scene()), camera, moving);
-  if (second_area_) second_viewport_->draw(without_text(scene_.second_picture()->scene()), camera, moving);
+  second_.draw(scene_, camera, moving);
   drawn_at_ = Clock::now();
   ++pictures_;
   times_.picture = since(begin);
@@ -434,7 +415,7 @@ void Viewer::present() {
   glClear(GL_COLOR_BUFFER_BIT);
   if (pixels.width > 0 && pixels.height > 0) {
     viewport_.present(pixels.height);
-    if (second_viewport_) second_viewport_->present(pixels.height);
+    second_.present(pixels.height);
   }
   imgui_.end_frame();
   recorder_.capture_frame(context_, pixels);

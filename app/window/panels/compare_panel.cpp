@@ -70,9 +70,9 @@ void toggle_ghosts(PanelContext& context, GhostOf of) {
   if (count == 0) {
     context.toasts.show(Tone::info, "the selected robots have no parent in the window");
   } else if (scene.snapshot().steps > 0) {
-    context.toasts.show(Tone::info,
-                        fmt::format("{} from {:.2f} s on; a reset (R) starts robots and ghosts together",
-                                    count == 1 ? "a ghost" : fmt::format("{} ghosts", count), scene.snapshot().time));
+    context.toasts.show(
+        Tone::info,
+        fmt::format("ghosts from {:.2f} s on; a reset (R) starts robots and ghosts together", scene.snapshot().time));
   }
 }
 
@@ -171,7 +171,9 @@ void ComparePanel::draw_ghosts(PanelContext& context) {
     note("A ghost shows a robot before it was tuned, edited or mutated. It counts nowhere and nothing pulls at it.");
   for (const GhostFigures& figures : scene.ghost_figures()) {
     ImGui::Bullet();
-    ImGui::TextWrapped("%s: %s", name_of_robot(scene, figures.robot).c_str(), text_of(figures).c_str());
+    std::string text = text_of(figures);
+    std::ranges::replace(text, '\n', ' ');
+    ImGui::TextWrapped("%s: %s", name_of_robot(scene, figures.robot).c_str(), text.c_str());
   }
 }
 

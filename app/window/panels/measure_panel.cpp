@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <deque>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
+#include "app/scene/side_difference.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/panels/saving.h"
+#include "app/window/panels/timeline_strip.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -18,10 +21,34 @@ namespace {
 
 constexpr std::size_t max_lines = 10;  // the number of category colours
 
+// A robot's series on the first side, on the second, and of its ghost.
 struct Curve {
   std::string name;
-  Series series;
+  std::array<Series, 3> series;
 };
+constexpr std::array strokes{Stroke::solid, Stroke::dashed, Stroke::dotted};
+
+// What the names of lines are followed by: "eel (XPBD)".
+std::array<std::string, 3> suffixes_of(const Snapshot& snapshot) {
+  std::array<std::string, 3> suffixes{"", "", " (ghost)"};
+  if (!snapshot.second) return suffixes;
+  const auto [first, second] = differences(snapshot.configuration, snapshot.second->configuration);
+  suffixes[0] = first.empty() ? "" : fmt::format(" ({})", first);
+  suffixes[1] = second.empty() ? " (right)" : fmt::format(" ({})", second);
+  return suffixes;
+}
+
+// What the strokes mean, if there is more than one.
+std::string stroke_text(const Snapshot& snapshot) {
+  std::string text;
+  if (snapshot.second) {
+    auto [first, second] = differences(snapshot.configuration, snapshot.second->configuration);
+    if (first.empty()) first = "left side", second = "right side";
+    text = fmt::format("solid: {}; dashed: {}", first, second);
+  }
+  if (snapshot.ghosts) text += fmt::format("{}dotted: ghosts", text.empty() ? "" : "; ");
+  return text;
+}
 
 }  // namespace
 
@@ -37,11 +64,15 @@ void MeasurePanel::draw(PanelContext& context) {
     if (toggle_button(name.name, shown_[i])) shown_[i] = !shown_[i];
     context.log.item(std::string("measure.") + name.name);
   }
-  view_.begin_frame();
+  view_.cursor = context.cursor.time;
+  view_.next_cursor.reset();
+  view_.went_to.reset();
   view_.mark = context.scene.picture().scene().time;
   if (!large_) draw_plots(context, 9 * ImGui::GetFontSize());
   draw_buttons(context);
   if (large_) draw_window(context);
+  if (view_.next_cursor) context.cursor.next = view_.next_cursor;
+  scrub(context);
   log_view(context);
 }
 
@@ -69,19 +100,27 @@ void MeasurePanel::draw_plots(PanelContext& context, float height) {
     note(fmt::format("the first {} of {} robots; select others to see them", max_lines, robots.size()).c_str());
     robots.resize(max_lines);
   }
+  const LiveScene& scene = context.scene;
+  const std::array<std::string, 3> suffixes = suffixes_of(scene.snapshot());
   std::deque<Curve> curves;
   for (const RobotId robot : robots)
-    curves.push_back({name_of_robot(context.scene, robot), context.scene.series(robot)});
+    curves.push_back(
+        {name_of_robot(scene, robot), {scene.series(robot), scene.second_series(robot), scene.ghost_series(robot)}});
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (!shown_[i]) continue;
     const MeasureName& measure = measures()[i];
-    std::vector<std::vector<double>> values(curves.size());
+    std::deque<std::vector<double>> values;
     std::vector<PlotLine> lines;
-    for (std::size_t k = 0; k < curves.size(); ++k) {
-      for (const Sample& sample : curves[k].series.samples)
-        values[k].push_back(static_cast<double>(sample.of(measure.measure)));
-      lines.push_back({curves[k].name, render::category_color(static_cast<int>(k)), curves[k].series.times, values[k]});
-    }
+    for (std::size_t k = 0; k < curves.size(); ++k)
+      for (std::size_t side = 0; side < strokes.size(); ++side) {
+        const Series& series = curves[k].series[side];
+        if (side > 0 && series.times.empty()) continue;
+        values.emplace_back();
+        for (const Sample& sample : series.samples)
+          values.back().push_back(static_cast<double>(sample.of(measure.measure)));
+        lines.push_back({curves[k].name + suffixes[side], render::category_color(static_cast<int>(k)), series.times,
+                         values.back(), strokes[side]});
+      }
     plot(measure.name, {.title = measure.name, .unit = measure.unit, .height = height}, lines, &view_);
     context.log.item(std::string("plot.") + measure.name);
   }
@@ -89,13 +128,26 @@ void MeasurePanel::draw_plots(PanelContext& context, float height) {
   for (std::size_t k = 0; k < curves.size(); ++k)
     names.push_back({curves[k].name, render::category_color(static_cast<int>(k)), {}, {}});
   plot_legend(names);
+  if (const std::string meaning = stroke_text(scene.snapshot()); !meaning.empty()) note(meaning.c_str());
+}
+
+// A drag with Ctrl shows the moment under the mouse.
+void MeasurePanel::scrub(PanelContext& context) {
+  if (!view_.went_to) {
+    if (std::exchange(scrubs_, false)) end_scrub(context);
+    return;
+  }
+  if (!std::exchange(scrubs_, true)) begin_scrub(context);
+  scrub_to(context, *view_.went_to);
 }
 
 void MeasurePanel::draw_buttons(PanelContext& context) {
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   if (ImGui::Button(large_ ? "Smaller" : "Larger", {half, 0})) large_ = !large_;
   context.log.item("measure.large");
-  tooltip("plots in a window of their own; the wheel zooms in time, a drag moves, a double click shows everything");
+  tooltip(
+      "plots in a window of their own; the wheel zooms in time, a drag moves, a double click shows everything; "
+      "Ctrl and a click or drag show that moment");
   ImGui::SameLine();
   if (ImGui::Button("Save as CSV...", {half, 0}))
     save_csv(context, "measurements", [&context] { return context.scene.csv(selected_or_all(context.scene)); });

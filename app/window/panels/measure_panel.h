@@ -19,11 +19,13 @@ class MeasurePanel : public Panel {
   void draw_window(PanelContext& context);
   void draw_plots(PanelContext& context, float height);
   void draw_buttons(PanelContext& context);
+  void scrub(PanelContext& context);
   void log_view(PanelContext& context);
 
   std::array<bool, 5> shown_{true, true, false, false, false};  // one per measure of measures()
   PlotView view_;
-  bool large_ = false;  // in a window of their own
+  bool large_ = false;   // in a window of their own
+  bool scrubs_ = false;  // a drag goes through time
   std::optional<std::pair<double, double>> logged_;
 };
 

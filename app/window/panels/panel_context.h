@@ -2,6 +2,9 @@
 // What a panel may read and change. The viewer owns all of it and passes it to each panel in each frame.
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "app/live/live_run.h"
 #include "app/live/live_scene.h"
 #include "app/window/dialogs/dialogs.h"
@@ -33,6 +36,12 @@ struct Scrub {
   double time = 0;        // of the last moment that was asked for [s]
 };
 
+// The moment under the mouse, over a plot or the timeline: all of them show it in the next frame.
+struct TimeCursor {
+  std::optional<double> time, next;  // [s]
+  void begin_frame() { time = std::exchange(next, std::nullopt); }
+};
+
 struct PanelContext {
   LiveScene& scene;          // robots, physics, undo, colours
   LiveRun& run;              // the evolution that is open
@@ -49,6 +58,7 @@ struct PanelContext {
   RobotCreation creation = {};
   EvolveRequest evolve = {};  // the settings of the last evolution
   Scrub scrub = {};
+  TimeCursor cursor = {};
   BodyEdit body_edit = {};
   RobotMenu robot_menu = {};
   UsedGestures gestures = {};         // of this session

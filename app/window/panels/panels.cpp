@@ -16,6 +16,7 @@ namespace mercury::window {
 ViewportArea Panels::draw_frame() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ViewportArea area{{0, 0}, screen};
+  context_.cursor.begin_frame();
   if (context_.preferences.panels) {
     draw_menu();
     const float top = ImGui::GetFrameHeight(), bottom = screen.y - play_bar_height();

@@ -37,23 +37,22 @@ std::string memory_text(const TimelineState& timeline) {
   return fmt::format("{:.{}f} of {:.0f} MB", used, used < 10 ? 1 : 0, static_cast<double>(timeline.budget) / megabyte);
 }
 
-// A drag shows the moment under the mouse. Robots that played go on when the button is released.
+// A drag shows the moment under the mouse.
 void drag(PanelContext& context, const Track& track) {
-  LiveScene& scene = context.scene;
-  bool& plays_on = context.scrub.plays_on;
-  if (ImGui::IsItemActivated()) {
-    plays_on = scene.playing();
-    scene.pause();
-    context.scrub.time = std::nan("");
-  }
-  if (ImGui::IsItemActive()) {
-    const double time = track.time(ImGui::GetIO().MousePos.x);
-    if (time != context.scrub.time) scene.seek(time);
-    context.scrub.time = time;
-  }
-  if (ImGui::IsItemDeactivated() && std::exchange(plays_on, false)) scene.play();
-  if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-    ImGui::SetTooltip("%s", moment_text(track.time(ImGui::GetIO().MousePos.x)).c_str());
+  const double time = track.time(ImGui::GetIO().MousePos.x);
+  if (ImGui::IsItemActivated()) begin_scrub(context);
+  if (ImGui::IsItemActive()) scrub_to(context, time);
+  if (ImGui::IsItemDeactivated()) end_scrub(context);
+  if (ImGui::IsItemHovered()) context.cursor.next = time;
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%s", moment_text(time).c_str());
+}
+
+// A thin line at the moment under the mouse, also if that is over a plot.
+void draw_cursor(PanelContext& context, const Track& track) {
+  if (!context.cursor.time || *context.cursor.time < track.begin || *context.cursor.time > track.end) return;
+  const float x = track.x(*context.cursor.time);
+  ImGui::GetWindowDrawList()->AddLine({x, track.low.y}, {x, track.high.y}, ImGui::GetColorU32(ImGuiCol_Text));
+  context.log.item("timeline.cursor", {x - 0.5f, track.low.y}, {x + 0.5f, track.high.y});
 }
 
 void draw_track(const LiveScene& scene, const TimelineState& timeline, const Track& track) {
@@ -184,9 +183,25 @@ void draw_timeline_strip(PanelContext& context) {
   context.log.item("timeline", track.low, track.high);
   drag(context, track);
   draw_track(scene, timeline, track);
+  draw_cursor(context, track);
   draw_actions(context, timeline);
   ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
   draw_memory(context, timeline, memory);
+}
+
+void begin_scrub(PanelContext& context) {
+  context.scrub.plays_on = context.scene.playing();
+  context.scene.pause();
+  context.scrub.time = std::nan("");
+}
+
+void scrub_to(PanelContext& context, double time) {
+  if (time != context.scrub.time) context.scene.seek(time);
+  context.scrub.time = time;
+}
+
+void end_scrub(PanelContext& context) {
+  if (std::exchange(context.scrub.plays_on, false)) context.scene.play();
 }
 
 void change_timeline(PanelContext& context, Action action) {

@@ -77,13 +77,37 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
 }
 
+// A line in pieces: `on` pixels are drawn, `off` are not.
+void draw_pieces(const std::vector<ImVec2>& points, ImU32 color, float thickness, float on, float off) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  float along = 0;  // of the present piece and the gap behind it
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const ImVec2 a = points[i - 1], b = points[i];
+    const float length = std::hypot(b.x - a.x, b.y - a.y);
+    const auto at = [&](float way) {
+      const float share = length > 0 ? way / length : 0;
+      return ImVec2{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+    };
+    for (float way = 0; way < length;) {
+      const float left = (along < on ? on : on + off) - along, next = std::min(length, way + std::max(left, 0.01f));
+      if (along < on) list.AddLine(at(way), at(next), color, thickness);
+      along += next - way;
+      if (along >= on + off - 0.005f) along = 0;
+      way = next;
+    }
+  }
+}
+
 void draw_line(const Frame& frame, const PlotLine& line) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   std::vector<ImVec2> points;
+  const float thickness = 1.6f * ImGui::GetFontSize() / 17;
   const auto flush = [&] {
-    if (points.size() > 1)
-      list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0,
-                       1.6f * ImGui::GetFontSize() / 17);
+    if (points.size() > 1 && line.stroke != Stroke::solid)
+      draw_pieces(points, packed(line.color), thickness, line.stroke == Stroke::dashed ? 5 * thickness : thickness,
+                  line.stroke == Stroke::dashed ? 3 * thickness : 2 * thickness);
+    else if (points.size() > 1)
+      list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0, thickness);
     else if (!points.empty())
       list.AddCircleFilled(points.front(), 0.2f * ImGui::GetFontSize(), packed(line.color));
     points.clear();
@@ -121,7 +145,10 @@ void handle_mouse(const Frame& frame, const Range& all, PlotView& view) {
     if (io.MouseWheel != 0) view.zoom(x_at(frame, io.MousePos.x), std::pow(0.8, io.MouseWheel), all.low, all.high);
     if (ImGui::IsMouseDoubleClicked(0)) view.range.reset();
   }
-  if (ImGui::IsItemActive() && io.MouseDelta.x != 0)
+  if (ImGui::IsItemActivated()) view.goes = io.KeyCtrl;
+  if (ImGui::IsItemDeactivated()) view.goes = false;
+  if (ImGui::IsItemActive() && view.goes) view.went_to = std::clamp(x_at(frame, io.MousePos.x), all.low, all.high);
+  if (ImGui::IsItemActive() && !view.goes && io.MouseDelta.x != 0)
     view.pan(x_at(frame, frame.low.x) - x_at(frame, frame.low.x + io.MouseDelta.x), all.low, all.high);
 }
 

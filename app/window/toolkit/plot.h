@@ -14,11 +14,14 @@
 
 namespace mercury::window {
 
+enum class Stroke { solid, dashed, dotted };
+
 struct PlotLine {
   std::string name;
   render::Color color;
   std::span<const double> x;
   std::span<const double> y;  // same length as x; values that are not finite leave a gap
+  Stroke stroke = Stroke::solid;
 };
 
 struct PlotAxes {
@@ -35,6 +38,8 @@ struct PlotView {
   std::optional<double> cursor;                    // where the mouse was over one of the plots in the last frame
   std::optional<double> next_cursor;               // where it is in this one
   std::optional<double> mark;                      // such as the time of the picture
+  bool goes = false;                               // a press with Ctrl is held: the mouse goes along x
+  std::optional<double> went_to;                   // where it is then
 
   // Keeps `factor` of the range around a point, within [low, high], all there is. Everything is shown again when the
   // range would be larger.
@@ -46,7 +51,8 @@ struct PlotView {
 };
 
 // Draws a plot over the remaining width. Hovering shows the values under the cursor. With a `view`, the wheel zooms
-// along x, a drag moves the part that is shown, and a double click shows everything.
+// along x, a drag moves the part that is shown, and a double click shows everything. A drag that begins with Ctrl moves
+// nothing; view->went_to then says where the mouse is.
 void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines, PlotView* view = nullptr);
 
 // The legend: colour and name of each line, in rows.

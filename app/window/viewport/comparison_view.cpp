@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/scene/side_difference.h"
 #include "app/window/toolkit/theme.h"
@@ -23,18 +23,51 @@ std::string signed_length(double metres, const char* per = "") {
   return fmt::format("{:+.2f} m{}", metres, per);
 }
 
-// A line with a background in the middle of an area, its upper edge at `top`.
-void middle_line(const ViewportArea& area, float top, const std::string& text, ImU32 color, EventLog& log,
-                 const std::string& name) {
+// Text with a background, centred below `at`. Returns its lower edge.
+float centered(ImVec2 at, const std::string& text, ImU32 color, EventLog& log, const std::string& name) {
   const float font = ImGui::GetFontSize(), margin = 0.4f * font;
-  const std::string fitting = shortened(text, area.width() - 4 * margin);
-  const ImVec2 size = ImGui::CalcTextSize(fitting.c_str());
-  const ImVec2 at{std::clamp((area.low.x + area.high.x - size.x) / 2, area.low.x + 2 * margin, area.high.x), top};
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const ImVec2 low{at.x - size.x / 2 - margin, at.y}, high{at.x + size.x / 2 + margin, at.y + size.y + margin};
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const ImVec2 low{at.x - margin, at.y - 0.5f * margin}, high{at.x + size.x + margin, at.y + size.y + 0.5f * margin};
   list.AddRectFilled(low, high, palette().on_picture, 0.35f * font);
-  list.AddText(at, color, fitting.c_str());
+  list.AddText({low.x + margin, low.y + margin / 2}, color, text.c_str());
   log.item(name, low, high);
+  return high.y;
+}
+
+// The middle of a box in the picture, and the lowest of its corners.
+struct Place {
+  float x = 0, low = 0;
+};
+Place place_of(const render::Bounds& box, const ViewportArea& area, const render::Camera& camera) {
+  const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
+  Place place{camera.project(box.center(), width, height).x(), 0};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f at((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
+                             (corner & 4) ? box.high.z() : box.low.z());
+    place.low = std::max(place.low, camera.project(at, width, height).y());
+  }
+  return place;
+}
+
+// Where a text of this size goes without covering earlier ones: at `wanted`, or below.
+ViewportArea free_place(ImVec2 wanted, ImVec2 size, const ViewportArea& area, std::vector<ViewportArea>& taken) {
+  wanted.x =
+      std::clamp(wanted.x, std::min(area.low.x, area.high.x - size.x), std::max(area.low.x, area.high.x - size.x));
+  wanted.y = std::clamp(wanted.y, area.low.y, std::max(area.low.y, area.high.y - size.y));
+  ViewportArea place{wanted, {wanted.x + size.x, wanted.y + size.y}};
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const ViewportArea& other : taken) {
+      const bool apart = place.high.x <= other.low.x || other.high.x <= place.low.x || place.high.y <= other.low.y ||
+                         other.high.y <= place.low.y;
+      if (apart) continue;
+      place = {{place.low.x, other.high.y}, {place.high.x, other.high.y + size.y}};
+      moved = true;
+    }
+  }
+  taken.push_back(place);
+  return place;
 }
 
 }  // namespace
@@ -50,54 +83,49 @@ float draw_side_titles(const LiveScene& scene, const Halves& halves, EventLog& l
   if (!snapshot.second) return 0;
   auto [first, second] = differences(snapshot.configuration, snapshot.second->configuration);
   if (first.empty()) first = second = "no difference";
-  const float font = ImGui::GetFontSize(), top = halves.first.low.y + 0.6f * font;
+  const float font = ImGui::GetFontSize();
   const ImU32 color = ImGui::GetColorU32(ImGuiCol_Text);
-  middle_line(halves.first, top, first, color, log, "title.first");
-  middle_line(halves.second, top, second, color, log, "title.second");
+  float low = 0;
+  const auto title = [&](const ViewportArea& half, const std::string& text, const char* name) {
+    const float middle = (half.low.x + half.high.x) / 2;
+    low = centered({middle, half.low.y + 0.5f * font}, shortened(text, half.width() - 2 * font), color, log, name);
+  };
+  title(halves.first, first, "title.first");
+  title(halves.second, second, "title.second");
   ImGui::GetBackgroundDrawList()->AddRectFilled({halves.first.high.x, halves.first.low.y},
                                                 {halves.second.low.x, halves.second.high.y}, palette().accent);
-  return 1.4f * font;
+  return low - halves.first.low.y;
 }
 
 std::string text_of(const GhostFigures& figures) {
-  const char* whose = figures.of_parent ? "its parent" : "before its change";
-  if (figures.ghost_exploded)
-    return fmt::format("{}: exploded", figures.of_parent ? "the parent" : "before the change");
+  const char* other = figures.of_parent ? "its parent" : "itself unchanged";
+  if (figures.ghost_exploded) return fmt::format("{} exploded", figures.of_parent ? "its parent" : "unchanged, it");
   const double farther = figures.robot_distance - figures.ghost_distance;
+  if (farther == 0 && !figures.of_parent) return "as it was";
   std::string text = signed_length(farther);
   if (figures.ghost_distance > 1e-6) text += fmt::format(" ({:+.0f} %)", 100 * farther / figures.ghost_distance);
-  text += fmt::format(", {} against {}", signed_length(figures.robot_speed - figures.ghost_speed, "/s"),
-                      figures.of_parent ? whose : "itself unchanged");
+  text += fmt::format("\n{} to {}", signed_length(figures.robot_speed - figures.ghost_speed, "/s"), other);
   if (!figures.same_age) text += fmt::format(" at {:.1f} s", figures.age);
   return text;
 }
 
 void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) {
-  const std::vector<GhostFigures> all = scene.ghost_figures();
-  if (all.empty()) return;
-  const auto bounds = scene.picture().last_boxes();
-  const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
+  const auto boxes = scene.picture().last_boxes();
   const float font = ImGui::GetFontSize();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
-  for (const GhostFigures& figures : all) {
+  std::vector<ViewportArea> taken;
+  for (const GhostFigures& figures : scene.ghost_figures()) {
     const auto robot = scene.snapshot().robots->index_of(figures.robot);
-    if (!robot || *robot >= bounds.size() || bounds[*robot].empty() || scene.is_hidden(figures.robot)) continue;
-    const Eigen::Vector3f middle = bounds[*robot].center();
-    if ((middle - camera.eye).dot(camera.target - camera.eye) <= 0) continue;
-    float low = 0, x = camera.project(middle, width, height).x();
-    for (int corner = 0; corner < 8; ++corner) {
-      const render::Bounds& box = bounds[*robot];
-      const Eigen::Vector3f at((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
-                               (corner & 4) ? box.high.z() : box.low.z());
-      low = std::max(low, camera.project(at, width, height).y());
-    }
+    if (!robot || *robot >= boxes.size() || boxes[*robot].empty() || scene.is_hidden(figures.robot)) continue;
+    if ((boxes[*robot].center() - camera.eye).dot(camera.target - camera.eye) <= 0) continue;
+    const Place place = place_of(boxes[*robot], area, camera);
     const std::string text = text_of(figures);
-    const float half = ImGui::CalcTextSize(text.c_str()).x / 2 + font;
-    x = std::clamp(x, std::min(half, area.width() / 2), std::max(area.width() - half, area.width() / 2));
-    const float top = std::clamp(area.low.y + low + 0.3f * font, area.low.y, area.high.y - 2 * font);
-    middle_line({{area.low.x + x - half, top}, {area.low.x + x + half, top}}, top, text,
-                packed(ghost_color(scene.view().theme)), log, fmt::format("ghost.{}", *robot));
+    const ImVec2 bare = ImGui::CalcTextSize(text.c_str()), size{bare.x + 0.8f * font, bare.y + 0.4f * font};
+    const ViewportArea at =
+        free_place({area.low.x + place.x - size.x / 2, area.low.y + place.low + 0.2f * font}, size, area, taken);
+    centered({(at.low.x + at.high.x) / 2, at.low.y}, text, ImGui::GetColorU32(ImGuiCol_Text), log,
+             fmt::format("ghost.{}", *robot));
   }
   list.PopClipRect();
 }

@@ -3,6 +3,8 @@
 // ghosts.
 #pragma once
 
+#include <string>
+
 #include "app/live/live_scene.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/viewport/viewport_area.h"
@@ -21,7 +23,7 @@ float draw_side_titles(const LiveScene& scene, const Halves& halves, EventLog& l
 // A line of text below each robot that has a ghost: how much farther and faster it is.
 void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log);
 
-// "+12 cm (+8 %), +3 cm/s against its ghost".
+// "+12 cm (+8 %)\n+3 cm/s to its parent": two lines, or one.
 std::string text_of(const GhostFigures& figures);
 
 }  // namespace mercury::window

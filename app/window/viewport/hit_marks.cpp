@@ -23,10 +23,10 @@ std::optional<ImVec2> on_screen(const ViewportArea& area, const render::Camera& 
 
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
                                     const render::Camera& camera) {
-  const auto index = scene.snapshot().robots->index_of(hit.robot);
-  const LivePicture& picture = scene.picture();
+  const auto index = scene.pointed_snapshot().robots->index_of(hit.robot);
+  const LivePicture& picture = scene.pointed_picture();
   if (!index || *index >= picture.offsets().size()) return std::nullopt;
-  const Robot& robot = *scene.snapshot().robots->robots[*index].robot;
+  const Robot& robot = *scene.pointed_snapshot().robots->robots[*index].robot;
   const std::span<const Vec3> positions = picture.positions_of(*index);
   const auto place = [&](std::uint16_t mass) {
     return on_screen(area, camera, eigen(positions[mass]) + picture.offsets()[*index]);
@@ -71,7 +71,7 @@ void write_figures(const LiveScene& scene, const Hit& hit) {
 
 bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
                          const render::Camera& camera) {
-  if (!scene.snapshot().robots->index_of(hit.robot)) return false;
+  if (!scene.pointed_snapshot().robots->index_of(hit.robot)) return false;
   const auto at = draw_hit_mark(scene, hit, area, camera);
   const float text = ImGui::GetFontSize(), width = 18 * text, height = 11 * text, gap = 2 * text;
   const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));

@@ -152,7 +152,7 @@ void MouseController::select_box(const ViewportArea& area, const render::Camera&
   const ImVec2 end = ImGui::GetIO().MousePos;
   const ImVec2 low{std::min(pressed_at_.x, end.x), std::min(pressed_at_.y, end.y)};
   const ImVec2 high{std::max(pressed_at_.x, end.x), std::max(pressed_at_.y, end.y)};
-  const std::span<const render::Bounds> bounds = scene_.picture().bounds();
+  const std::span<const render::Bounds> bounds = scene_.pointed_picture().bounds();
   const LiveRobots& robots = *scene_.snapshot().robots;
   std::vector<RobotId> selected = scene_.selection();
   for (std::size_t i = 0; i < std::min(bounds.size(), robots.size()); ++i) {

@@ -97,7 +97,7 @@ void draw_viewport_text(const render::Scene& scene, std::span<const render::Boun
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
   draw_labels(scene, bounds, area, camera, options.hovered, log);
-  if (!scene.caption.empty())
+  if (options.caption && !scene.caption.empty())
     line({area.low.x + text, area.low.y + options.top + text}, shortened(scene.caption, area.width() - 2 * text));
   if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);

@@ -20,6 +20,7 @@ render::Scene without_text(const render::Scene& scene);
 struct ViewportTextOptions {
   bool clock = false;                  // draw the clock
   float top = 0;                       // of the picture that is taken [pixels]
+  bool caption = true;                 // draw the caption
   std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
 };
 

@@ -6,9 +6,11 @@
 #include <thread>
 
 #include "app/scene/side_difference.h"
+#include "app/scene/view_words.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
+#include "tests/app/program.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -297,6 +299,39 @@ TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
   }
   EXPECT_NE(first.samples.back().distance, second.samples.back().distance);
   EXPECT_TRUE(scene.ghost_series(robot).times.empty());
+}
+
+TEST(Comparison, TheSettingOfTheViewIsTheSecondSide) {
+  LiveSceneOptions options = test::on_cpu();
+  options.view = view_settings({.compare = "solver=xpbd,damping=0.5"});
+  LiveScene scene(options);
+  test::make_robots(scene, 1);
+  ASSERT_TRUE(scene.snapshot().second);
+  EXPECT_EQ(scene.snapshot().second->configuration.solver, Solver::xpbd);
+  EXPECT_THAT(scene.command().text, testing::HasSubstr("--compare=solver=xpbd,damping=0.5"));
+  ViewSettings view = scene.view();
+  view.compare.reset();
+  scene.set_view(view);
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().second);
+  EXPECT_FALSE(scene.second());
+}
+
+TEST(Comparison, ASecondSideThatWouldHoldUpTheWindowEndsWithAMessage) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  scene.set_second(SideDifference("dt=1e-9"));
+  make_steps(scene, 3);
+  EXPECT_FALSE(scene.snapshot().second);
+  const std::vector<Message> messages = scene.take_messages();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_THAT(messages[0].text, testing::HasSubstr("the second view ended: dt: 1e-09 s is less than 1/1000"));
+}
+
+TEST(Comparison, TheCommandNamesAValueThatCannotBeUsed) {
+  const test::Outcome run = test::mercury({"view", "--compare", "solver=fast"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.messages, testing::HasSubstr("--compare: solver: \"fast\""));
 }
 
 TEST(SideDifference, NamesWhatCannotBeUsed) {

@@ -72,7 +72,17 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
   }
 
   void act() {
-    switch (below(30)) {
+    constexpr const char* differences[] = {"solver=xpbd", "environment=land", "dt=0.0004", "damping=3,density=10"};
+    switch (below(33)) {
+      case 30:
+        scene.set_second(SideDifference(differences[below(std::size(differences))]));
+        break;
+      case 31:
+        scene.show_ghosts(some());
+        break;
+      case 32:
+        below(2) ? scene.set_second(std::nullopt) : scene.hide_ghosts();
+        break;
       case 0:
         scene.play();
         break;

@@ -88,6 +88,47 @@ class CompareTest(WindowCase):
         self.assertGreater(changed, 0.001)
         self.finish(window)
 
+    def test_plots_and_the_timeline_share_a_cursor(self):
+        window = self.small("--compare", "damping=1")
+        window.frame(lambda frame: frame["time"] > 1 and frame["second"])
+        paused = self.pause(window)
+        window.click("tab.Measure")
+        x, y = window.place("plot.distance")
+        window.do("mousemove", x, y)
+        moment = window.frame(lambda frame: frame["cursor"] is not None)["cursor"]
+        begin, head = paused["timeline"]["begin"], paused["timeline"]["head"]
+        window.place("timeline.cursor")
+        strip = window.items["timeline"]
+        share = (window.items["timeline.cursor"]["x"] - strip["x"]) / strip["width"] + 0.5
+        self.assertAlmostEqual(share, (moment - begin) / (head - begin), delta=0.02)
+        # Ctrl and a click go there.
+        window.do("keydown", "Control_L", "mousedown", 1)
+        window.frame(lambda frame: frame["timeline"]["viewing"] and not frame["timeline"]["seeking"])
+        window.do("mouseup", 1, "keyup", "Control_L")
+        shown = window.frame()
+        self.assertAlmostEqual(shown["time"], moment, delta=0.002)
+        self.assertEqual(shown["second"]["steps"], shown["steps"])
+        # Away from plots and timeline there is no cursor; over the timeline, plots have it, too.
+        window.do("mousemove", 640, 300)
+        window.frame(lambda frame: frame["cursor"] is None)
+        window.do("mousemove", round(strip["x"]), round(strip["y"]))
+        self.assertAlmostEqual(window.frame(lambda frame: frame["cursor"] is not None)["cursor"], (begin + head) / 2,
+                               delta=0.02 * (head - begin))
+        self.finish(window)
+
+    def test_a_scene_keeps_its_two_views(self):
+        window = self.small("--paused", "--compare", "solver=xpbd")
+        window.frame(lambda frame: frame["second"])
+        since = window.mark()
+        window.key("ctrl+s")
+        window.dialog("two.toml")
+        window.wait("saved", since)
+        self.assertIn('compare = "solver=xpbd"', (self.folder / "two.toml").read_text())
+        self.finish(window)
+        window = self.window_in(self.folder, "two.toml", "--paused")
+        self.assertEqual(window.frame(lambda frame: frame["second"])["second"]["solver"], "xpbd")
+        self.finish(window)
+
 
 if __name__ == "__main__":
     main()

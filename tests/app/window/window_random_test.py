@@ -46,7 +46,7 @@ class RandomUser:
             "g", "m", "p", "v", "1", "2", "3", "4", "5", "6", "7", "8", "9", "F1", "question", "Escape", "Escape", "Delete",
             "BackSpace", "ctrl+z", "ctrl+y", "ctrl+a", "ctrl+o", "ctrl+s", "Tab", "Return", "Up", "Down", "Left", "Home",
             "Next", "e", "l", "bracketleft", "bracketright", "ctrl+k", "ctrl+i", "ctrl+e", "ctrl+r", "ctrl+plus", "ctrl+minus",
-            "x", "u", "o", "y", "w", "End", "c", "F5", "shift+F5"]  # no slash: a path could leave the scratch folder
+            "x", "u", "o", "y", "w", "End", "c", "F5", "shift+F5", "a", "i"]  # no slash: a path could leave the scratch folder
     MODAL = ["ctrl+o", "ctrl+s", "ctrl+q", "ctrl+k", "F1", "e", "Escape"]
     SIZE = (640, 400)
     # The last three are smaller than window managers allow.
