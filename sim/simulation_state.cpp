@@ -76,7 +76,10 @@ void Simulation::read_velocities(std::span<Vec3> out) const {
   parts_->backend->read_velocities(out);
 }
 int Simulation::cuda_device() const { return parts_->backend->cuda_device(); }
-void Simulation::copy_positions(float* device_out) const { parts_->backend->copy_positions(device_out); }
+bool Simulation::copy_positions(float* device_out) const { return parts_->backend->copy_positions(device_out); }
+void Simulation::copy_positions_with_steps(std::shared_ptr<float> device_out) const {
+  parts_->backend->copy_positions_with_steps(std::move(device_out));
+}
 
 void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) {
   parts_->require(robot);

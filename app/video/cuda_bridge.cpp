@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies positions from CUDA's memory into OpenGL's, on the GPU that both use.
 //
-//   simulating thread   copy into a Store's memory, mark it       (CUDA, the simulation's stream)
+//   simulating thread   steps, and copy into a Store's memory      (CUDA, the simulation's stream)
 //   drawing thread      wait for the mark; copy from the same     (OpenGL)
 //                       memory into the renderer's buffer; fence
 //
 // 1. The memory belongs to both interfaces all the time (card_memory.h). Mapping an OpenGL buffer in CUDA for each
 //    picture would make each side wait until the other has nothing left to do.
 // 2. A store is written again only after its fence: OpenGL has read it.
+// 3. The copy belongs to the steps: work of its own would have to wait until the card has drawn something, and switches
+//    between drawing and computing cost more than the copy.
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
 #include <cuda_gl_interop.h>
@@ -112,11 +114,10 @@ class Pool : public std::enable_shared_from_this<Pool> {
 
 class CudaSnapshot final : public PositionSnapshot {
  public:
-  CudaSnapshot(int device, const std::shared_ptr<Pool>& pool, const Simulation& simulation)
-      : device_(device), masses_(simulation.mass_count()), store_(pool->take(masses_ * sizeof(Vec3))) {
+  CudaSnapshot(int device, std::shared_ptr<Store> store, const Simulation& simulation)
+      : device_(device), masses_(simulation.mass_count()), store_(std::move(store)) {
     // The simulation's kernels run in the same stream, so the copy lies between the earlier and the later steps.
-    simulation.copy_positions(store_->data());
-    store_->taken.set(cudaStreamLegacy);
+    if (simulation.copy_positions(store_->data())) store_->taken.set(cudaStreamLegacy);
   }
 
   void read(std::span<Vec3> out) const override {
@@ -147,7 +148,13 @@ class CudaBridge final : public PositionBridge {
 
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
     check(cudaSetDevice(device_), "choosing the device");
-    return std::make_unique<CudaSnapshot>(device_, pool_, simulation);
+    const std::size_t bytes = simulation.mass_count() * sizeof(Vec3);
+    const bool is_next = simulation_ == &simulation && next_ && next_->size >= bytes;
+    auto snapshot = std::make_unique<CudaSnapshot>(device_, is_next ? next_ : pool_->take(bytes), simulation);
+    simulation_ = &simulation;
+    next_ = pool_->take(bytes);
+    simulation.copy_positions_with_steps({next_, next_->data()});
+    return snapshot;
   }
 
   void show(const PositionSnapshot& snapshot, render::Renderer& renderer, render::Scene& scene) override {
@@ -184,6 +191,8 @@ class CudaBridge final : public PositionBridge {
 
   int device_;
   std::shared_ptr<Pool> pool_;
+  const Simulation* simulation_ = nullptr;  // that leaves its positions in next_
+  std::shared_ptr<Store> next_;             // of the next snapshot
   std::vector<Import> imports_;
   std::deque<InUse> in_use_;  // oldest first
 };

@@ -69,7 +69,7 @@ ChosenBridge choose_bridge(int cuda_device, bool interop) {
   if (!interop || cuda_device < 0) return {.bridge = make_host_bridge()};
   try {
     return {.bridge = make_cuda_bridge(cuda_device), .on_card = true};
-  } catch (const NoInterop& error) {
+  } catch (const std::runtime_error& error) {  // NoInterop, or the card has no memory left
     return {.bridge = make_host_bridge(),
             .note = std::string("positions are copied through the host: ") + error.what()};
   }

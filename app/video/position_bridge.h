@@ -31,7 +31,8 @@ class PositionSnapshot {
   virtual void read(std::span<Vec3> out) const = 0;
 };
 
-// The simulating thread calls take() and the drawing thread calls show(), possibly at the same time.
+// The simulating thread calls take() and the drawing thread calls show(), possibly at the same time. A bridge serves
+// one simulation.
 class PositionBridge {
  public:
   virtual ~PositionBridge() = default;

@@ -163,12 +163,13 @@ void CudaBackend::settle() const {
 
 void CudaBackend::begin_change() {
   settle();
-  report_valid_ = false;
+  report_valid_ = copy_valid_ = false;
 }
 
 void CudaBackend::begin_exchange() {
   begin_change();
   views_valid_ = rest_valid_ = false;
+  positions_copy_.reset();
   owned_->actuators.clear();
   for (const auto& robots : classes()) robots->end_actuation();
 }

@@ -67,7 +67,8 @@ class CudaBackend final : public Backend {
   void read_positions(std::span<Vec3> out) const override;
   void read_velocities(std::span<Vec3> out) const override;
   int cuda_device() const override { return device_; }
-  void copy_positions(float* device_out) const override;
+  bool copy_positions(float* device_out) const override;
+  void copy_positions_with_steps(std::shared_ptr<float> device_out) const override;
   std::shared_ptr<void> allocate_shared(std::size_t bytes) const override;
   void copy_shared(void* to, const void* from, std::size_t bytes) const override;
   void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const override;
@@ -98,7 +99,7 @@ class CudaBackend final : public Backend {
   // Waits for what is queued in a caller's stream. To be called before everything that does not begin with enter() or
   // begin_launches().
   void settle() const;
-  // settle() before a change by the caller: it invalidates the last report.
+  // settle() before a change by the caller: it invalidates the last report and the copy of the positions.
   void begin_change();
   // To be called before robots come or go: what names places or masses of the batch is no longer valid.
   void begin_exchange();
@@ -134,7 +135,9 @@ class CudaBackend final : public Backend {
   std::vector<std::size_t> first_report_;    // [class]
   std::vector<std::uint32_t> launch_order_;  // classes that have robots, the largest robots first
   mutable bool report_valid_ = false, report_expected_ = false;
-  mutable bool queued_ = false;  // something in a caller's stream that may not be done
+  mutable std::shared_ptr<float> positions_copy_;  // where steps leave the positions; nullptr = nowhere
+  mutable bool copy_valid_ = false;                // it holds those of the present state
+  mutable bool queued_ = false;                    // something in a caller's stream that may not be done
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;
   Configuration configuration_;

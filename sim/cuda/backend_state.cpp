@@ -43,7 +43,7 @@ void CudaBackend::put_at_rest_in_stream(std::span<const Robot* const> robots, st
                                         const std::uint8_t* mask, const PublishedArrays& arrays, void* cuda_stream) {
   if (places_.empty()) return;
   use_device();
-  report_valid_ = report_expected_ = false;
+  report_valid_ = report_expected_ = copy_valid_ = false;
   const float* const rest = rest_positions(robots, lifts);
   const cudaStream_t stream = enter(cuda_stream);
   put_masked_at_rest(views(), places_.size(), rest, mask, stream);
@@ -61,12 +61,18 @@ void CudaBackend::read_velocities(std::span<Vec3> out) const {
   for (const auto& robots : classes()) robots->read_all(field_v, out);
 }
 
-void CudaBackend::copy_positions(float* device_out) const {
-  if (places_.empty()) return;
+bool CudaBackend::copy_positions(float* device_out) const {
+  if (places_.empty() || (copy_valid_ && positions_copy_.get() == device_out)) return false;
   use_device();
   const cudaStream_t stream = enter(nullptr);
   publish_states(views(), places_.size(), {.positions = device_out}, stream);
   leave(stream);
+  return true;
+}
+
+void CudaBackend::copy_positions_with_steps(std::shared_ptr<float> device_out) const {
+  positions_copy_ = std::move(device_out);
+  copy_valid_ = false;
 }
 
 std::shared_ptr<void> CudaBackend::allocate_shared(std::size_t bytes) const {

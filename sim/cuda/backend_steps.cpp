@@ -99,7 +99,7 @@ void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const P
                                  void* cuda_stream) {
   if (places_.empty()) return;
   use_device();
-  report_valid_ = report_expected_ = false;
+  report_valid_ = report_expected_ = copy_valid_ = false;
   const cudaStream_t stream = enter(cuda_stream);
   owned_->actuators.apply(clock, stream);
   fork_launches(clock, stream);
@@ -172,8 +172,10 @@ void CudaBackend::join_launches(cudaStream_t stream) const {
 
 void CudaBackend::end_launches(Event& end) {
   join_launches(main().get());
+  if (positions_copy_) publish_states(views(), places_.size(), {.positions = positions_copy_.get()}, main().get());
   end.record(main().get());
   busy_seconds_ += end.seconds_since(owned_->start);
+  copy_valid_ = positions_copy_ != nullptr;
 }
 
 DeviceTelemetry* CudaBackend::reports_on_device() const {

@@ -172,6 +172,35 @@ TEST_P(SharedArrays, HoldWhatCopyPositionsWrites) {
   EXPECT_EQ(other.vectors(target), x);
 }
 
+TEST_P(SharedArrays, StepsLeavePositionsInTheGivenMemory) {
+  const std::vector<Robot> robots = crowd();
+  SharedBatch batch = this->batch({}, robots), other = this->batch({}, robots);
+  const auto target = other->shared_state(StateArray::positions);
+  if (batch->cuda_device() < 0) {
+    EXPECT_THROW(batch->copy_positions_with_steps(target.data), std::logic_error);
+    return;
+  }
+  const auto present = [&] {
+    std::vector<Vec3> x(batch->mass_count());
+    batch->read_positions(x);
+    return x;
+  };
+  batch->copy_positions_with_steps(target.data);
+  EXPECT_TRUE(batch->copy_positions(target.data.get())) << "nothing has stepped yet";
+  batch->step(20);
+  EXPECT_EQ(other.vectors(target), present());
+  EXPECT_FALSE(batch->copy_positions(target.data.get())) << "they are there";
+  batch->set_state(2, {.positions = robots[2].masses, .velocities = std::vector<Vec3>(robots[2].masses.size())});
+  EXPECT_TRUE(batch->copy_positions(target.data.get())) << "a robot has moved since";
+  EXPECT_EQ(other.vectors(target), present());
+  batch->step_and_sample(10, 5);
+  EXPECT_EQ(other.vectors(target), present());
+  batch->keep(std::array<std::size_t, 2>{1, 3});
+  const auto before = other.vectors(target);
+  batch->step(10);
+  EXPECT_EQ(other.vectors(target), before) << "it ends when robots go";
+}
+
 TEST_P(SharedArrays, OutliveTheirSimulation) {
   const std::vector<Robot> robots = crowd();
   SharedArray<float> positions;

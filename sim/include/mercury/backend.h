@@ -121,7 +121,10 @@ class Backend {
 
   // See the functions of the same names in Simulation. The defaults are right unless one CUDA device holds all robots.
   virtual int cuda_device() const { return -1; }
-  virtual void copy_positions(float* /*device_out*/) const {
+  virtual bool copy_positions(float* /*device_out*/) const {
+    throw std::logic_error("these robots are on no CUDA device");
+  }
+  virtual void copy_positions_with_steps(std::shared_ptr<float> /*device_out*/) const {
     throw std::logic_error("these robots are on no CUDA device");
   }
 

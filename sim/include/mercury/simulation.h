@@ -123,8 +123,13 @@ class Simulation {
   // The CUDA device that holds all robots; -1 = none, or several.
   int cuda_device() const;
   // Like read_positions(), into memory of that device (3 * mass_count() floats). Queues the copy in the device's legacy
-  // default stream and does not wait for it. Throws std::logic_error if cuda_device() is -1.
-  void copy_positions(float* device_out) const;
+  // default stream and does not wait for it. Returns false, and queues nothing, if the last steps have left them there
+  // (copy_positions_with_steps()). Throws std::logic_error if cuda_device() is -1.
+  bool copy_positions(float* device_out) const;
+  // From now on, step() and step_and_sample() leave the positions in this memory before they return, as
+  // copy_positions() would. On a device that also draws, a copy after the steps would have to wait for its turn; this
+  // one belongs to the steps. It ends with nullptr and when robots come or go. Throws like copy_positions().
+  void copy_positions_with_steps(std::shared_ptr<float> device_out) const;
 
   // Shared arrays, in the memory of cuda_device(), or of the host if that is -1. The first call makes the array. Every
   // function that steps or changes robots updates it before it returns, and the functions with a stream before what
