@@ -28,7 +28,7 @@ std::int64_t Pace::due(double wall) {
   return static_cast<std::int64_t>(std::floor(wanted + 1e-9)) - done_;
 }
 
-double Pace::next_due() const { return start_ + static_cast<double>(done_ + 1) / rate_; }
+double Pace::next_due(std::int64_t steps) const { return start_ + static_cast<double>(done_ + steps) / rate_; }
 
 void SpeedGauge::mark(double wall, double time) {
   constexpr double span = 1;  // [s]

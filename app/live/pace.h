@@ -20,8 +20,8 @@ class Pace {
 
   // Steps that are due at `wall` and not done. A very large number if the speed is infinite.
   std::int64_t due(double wall);
-  // Wall time at which the next step is due [s].
-  double next_due() const;
+  // Wall time at which the last of that many next steps is due [s].
+  double next_due(std::int64_t steps = 1) const;
   // Wall time at which the last completed step was due [s].
   double done_at() const { return start_ + static_cast<double>(done_) / rate_; }
   void done(std::int64_t steps) { done_ += steps; }

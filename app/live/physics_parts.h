@@ -117,7 +117,8 @@ struct Physics::Parts {
   Pace pace;
   SpeedGauge gauge;
   bool playing = false, stop_at_explosion = false;
-  double speed = 1, step_seconds = 0;
+  double speed = 1;
+  double step_seconds = 0;                             // wall time of a step, a running mean; 0 = unknown [s]
   double published_at = 0, gathering_seconds = 0;      // end and duration of the last publish_snapshot() [s]
   double stepping_seconds = 0, measuring_seconds = 0;  // since the last limit_measuring() [s]
   std::int64_t steps_left = 0;                         // of step()
@@ -126,6 +127,8 @@ struct Physics::Parts {
   bool dirty = true;   // something changed after the last snapshot
   std::thread thread;  // last: it starts when all other members exist
 
+  // The time of a scene without robots stands still.
+  bool is_running() const { return playing && simulation.size() > 0; }
   void run();
   bool wait_for_commands(PendingCommands& taken);
   void carry_out(PendingCommands& taken);
@@ -177,6 +180,7 @@ struct Physics::Parts {
   void publish_companions(Snapshot& next, bool with_velocities);
   void observe_details();
   void begin_pace();
+  std::int64_t steps_at_once() const;
   void advance();
   void take_steps(std::int64_t count);
   void report_explosions(bool from_steps);

@@ -19,10 +19,18 @@ void Physics::Parts::begin_pace() {
   gauge.mark(wall_now(), simulation.time());
 }
 
+// How many steps are worth a launch on a card: if it also draws, each launch interrupts the drawing.
+std::int64_t Physics::Parts::steps_at_once() const {
+  constexpr double launch_period = 0.004;  // wall time [s]
+  if (cuda_device < 0 || !std::isfinite(speed)) return 1;
+  return std::max<std::int64_t>(1, std::llround(launch_period * speed / simulation.configuration().dt));
+}
+
 // Makes one slice of the steps that are due.
 void Physics::Parts::advance() {
   if (seek_target) return advance_seek();
-  if (steps_left == 0 && !playing) return;
+  if (simulation.size() == 0) steps_left = 0;
+  if (steps_left == 0 && !is_running()) return;
   if (recording) return advance_recording();
   if (loop_back()) return;
   const auto steps_in = [&](double seconds) {
@@ -41,8 +49,9 @@ void Physics::Parts::advance() {
     if (viewing && simulation.steps() == head_step) return_to_present();
     return;
   }
-  const std::int64_t count = std::min(affordable, pace.due(wall_now()));
-  if (count <= 0) return;
+  const std::int64_t due = pace.due(wall_now());
+  if (due < steps_at_once()) return;
+  const std::int64_t count = std::min(affordable, due);
   take_steps(count);
   pace.done(count);
   gauge.mark(wall_now(), simulation.time());
@@ -86,7 +95,7 @@ void Physics::Parts::take_steps(std::int64_t count) {
 
 // At unlimited speed, samples must not take much of the time: makes them rarer.
 void Physics::Parts::limit_measuring() {
-  constexpr double most = 0.04, enough = 0.05;  // share of the time; [s] of steps before it is known
+  constexpr double most = 0.02, enough = 0.05;  // share of the time; [s] of steps before it is known
   if (stepping_seconds < enough) return;
   if (playing && !std::isfinite(speed) && measuring_seconds > most * stepping_seconds)
     for (Measurements* measured : {&measurements, &second_measurements, &ghost_measurements}) measured->thin_out();

@@ -31,13 +31,13 @@ void Physics::Parts::run() {
 bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
   const auto due = std::chrono::steady_clock::time_point(
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
-          playing && std::isfinite(speed) ? std::min(pace.next_due(), wall_now() + 1) : 0)));
+          playing && std::isfinite(speed) ? std::min(pace.next_due(steps_at_once()), wall_now() + 1) : 0)));
   std::unique_lock lock(mutex);
   const auto ready = [&] { return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)); };
   if (steps_left == 0 && !seek_target && !ready()) {
     tickets_done = ticket;
     done.notify_all();
-    if (playing)
+    if (is_running())
       wake.wait_until(lock, due, ready);
     else
       wake.wait(lock, ready);
@@ -82,6 +82,7 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   begin_companions();
   if ((taken.perturbations || taken.scene || taken.reset) && !viewing) follow_changes(robots_changed);
   if (taken.bridge) bridge = std::move(*taken.bridge);
+  if (robots_changed) step_seconds = 0;
   if (taken.speed) speed = *taken.speed;
   if (taken.playing) playing = *taken.playing;
   if (taken.drop_steps) steps_left = 0;
@@ -93,6 +94,7 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
 // Returns all robots to rest at time 0, or a replay to its start.
 void Physics::Parts::restart() {
   simulation.reset();
+  step_seconds = 0;  // exploded robots cost nothing until now
   population.forget_departed();
   exploded.clear();
   steps_left = 0;
@@ -149,6 +151,7 @@ void Physics::Parts::enter_surroundings(std::uint64_t next, bool to_land) {
   surroundings = next;
   if (!population.restore_surroundings(next) && to_land) population.settle();
   replay_log.forget_states();  // the steps before do not lead to these
+  step_seconds = 0;
   const std::vector<Telemetry> now = simulation.telemetry();
   const auto is_whole = [&](RobotId id) {
     const auto index = population.robots()->index_of(id);
@@ -183,9 +186,9 @@ void Physics::Parts::observe_details() {
   details.emplace(simulation, known_in(view, simulation.configuration().environment));
 }
 
-// At unlimited speed, snapshots may take at most a fifth of the time.
+// At unlimited speed, snapshots may take at most a twentieth of the time.
 bool Physics::Parts::may_publish() const {
-  constexpr double share = 0.2;
+  constexpr double share = 0.05;
   if (!playing || std::isfinite(speed) || ticket > tickets_done) return true;
   return wall_now() - published_at >= (1 / share - 1) * gathering_seconds;
 }

@@ -14,7 +14,7 @@ namespace mercury {
 namespace {
 
 constexpr double keyframe_period = 0.25;      // wall time of steps between two keyframes, at least [s]
-constexpr double keyframe_share = 0.05;       // of the time that keyframes may take
+constexpr double keyframe_share = 0.02;       // of the time that keyframes may take
 constexpr double near_target_seconds = 0.04;  // wall time of the steps from the last keyframe to a moment [s]
 
 }  // namespace
@@ -113,6 +113,7 @@ void Physics::Parts::show_keyframe(const Keyframe& keyframe, bool jumps) {
   if (tuned) simulation.configure(keyframe.configuration);
   const bool others = population.robots() != keyframe.robots && population.follow(keyframe.robots->robots);
   simulation.restore(keyframe.state);
+  step_seconds = 0;
   perturbations = keyframe.perturbations;
   simulation.set_perturbations(population.perturbations_of(perturbations));
   next_event = keyframe.next_event;

@@ -38,8 +38,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double frame_time = 1.0 / 60;  // minimum, if the display does not limit the frame rate [s]
-constexpr double idle_time = 0.2;        // between frames while nothing moves [s]
+constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
+constexpr double rare_frame_time = 1.0 / 30;  // while the card is left to the steps [s]
+constexpr double idle_time = 0.2;             // between frames while nothing moves [s]
 // While input is waiting, the window skips pictures for this multiple of the time that drawing one takes.
 constexpr double skip_factor = 4;
 
@@ -96,6 +97,7 @@ class Viewer {
   bool anything_moves() const;
   double wait_after(double spent) const;
   bool leaves_card_to_steps() const;
+  bool waits_with_picture() const;
   std::filesystem::path settings(const char* name) const { return folder_.empty() ? folder_ : folder_ / name; }
 
   FrameReport report_;  // first member, since it measures the time from the start
@@ -219,7 +221,10 @@ int Viewer::run() {
 }
 
 // How long the next frame can wait for events [s].
-double Viewer::wait_after(double spent) const { return options_.paced ? std::max(0.0, frame_time - spent) : 0; }
+double Viewer::wait_after(double spent) const {
+  if (leaves_card_to_steps()) return std::max(0.0, rare_frame_time - spent);
+  return options_.paced ? std::max(0.0, frame_time - spent) : 0;
+}
 
 bool Viewer::anything_moves() const {
   return redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking || camera_.gliding() ||
@@ -372,13 +377,16 @@ void Viewer::update_renderer() {
   }
 }
 
-// At unlimited speed, what a card spends on pictures is missing in the steps. While the user only watches, pictures get
+// At unlimited speed, what a card spends on pictures is missing in the steps. While the user only watches, drawing gets
 // a small share of its time.
 bool Viewer::leaves_card_to_steps() const {
-  constexpr double share = 0.1;
   if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
-  if (redraws_ > 0 || mouse_.busy() || camera_.gliding() || recorder_.busy()) return false;
-  return since(drawn_at_) < (1 / share - 1) * viewport_.draw_seconds();
+  return redraws_ == 0 && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
+}
+
+bool Viewer::waits_with_picture() const {
+  constexpr double share = 0.06;
+  return leaves_card_to_steps() && since(drawn_at_) < (1 / share - 1) * viewport_.draw_seconds();
 }
 
 void Viewer::draw_picture(double dt) {
@@ -393,7 +401,7 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
-  if (leaves_card_to_steps()) return;
+  if (waits_with_picture()) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   viewport_.draw(without_text(live.scene()), camera, moving);

@@ -64,6 +64,27 @@ TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   }
 }
 
+// Otherwise robots would start at a step that depends on how long they took to load.
+TEST(LivePhysics, TimeStandsStillWithoutRobots) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  physics.set_speed(unlimited_speed);
+  physics.play();
+  physics.step(5);
+  for (int i = 0; i < 50; ++i) {
+    physics.wait_until_done();
+    EXPECT_EQ(physics.newest()->steps, 0);
+  }
+  const auto robots = some_robots(1);
+  physics.pause();
+  physics.set_scene(robots, on_cpu());
+  physics.step(5);
+  physics.wait_until_done();
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(5);
+  EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
+}
+
 TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   Messages messages;
   Physics physics(on_cpu(), messages);

@@ -105,8 +105,9 @@ class TimelineTest(WindowCase):
         window.key("y")
         self.assertEqual(window.wait("robots", accept=lambda event: event["count"] == 4)["names"][2:], ["eel-2", "fish-2"])
         self.assertEqual(window.frame()["selected"], 2)
+        before = window.mark()
         window.key("ctrl+z")
-        window.wait("robots", window.mark() - 1, lambda event: event["count"] == 2)
+        window.wait("robots", before, lambda event: event["count"] == 2)
         self.finish(window)
 
     def test_a_recording_plays_and_is_gone_on_from(self):
