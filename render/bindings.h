@@ -5,7 +5,7 @@
 namespace mercury::render::binding {
 
 // Storage buffers. A pass binds its own buffers from first_free on.
-inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_records = 4, face_frames = 5,
+inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_records = 4, seen_face_records = 5,
                           materials = 6, faces = 7, mass_normals = 8, face_values = 9, mass_values = 10,
                           first_free = 11, face_normals = 13, face_areas = 14, seen_faces = 15;
 

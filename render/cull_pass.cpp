@@ -50,6 +50,11 @@ void CullPass::find(const Bodies& bodies, bool all_sides) {
   }
 }
 
+void CullPass::bind_seen() const {
+  commands_.bind_storage(binding::first_free + 1);
+  seen_faces_.bind_storage(binding::seen_faces);
+}
+
 void CullPass::draw_seen(GLuint vertex_array) const { draw(vertex_array, seen_corners_, 0); }
 void CullPass::draw_lit(GLuint vertex_array) const { draw(vertex_array, lit_corners_, 1); }
 

@@ -27,8 +27,8 @@ class CullPass {
   // Draws the triangles with the vertex array and program in use.
   void draw_seen(GLuint vertex_array) const;
   void draw_lit(GLuint vertex_array) const;
-  // The face of each triangle that draw_seen() draws.
-  const Buffer& seen_faces() const { return seen_faces_; }
+  // Binds the command of draw_seen() and the numbers of the faces that it draws.
+  void bind_seen() const;
 
  private:
   void draw(GLuint vertex_array, const Buffer& corners, std::size_t command) const;

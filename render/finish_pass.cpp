@@ -6,7 +6,7 @@
 namespace mercury::render {
 
 FinishPass::FinishPass(const QualitySettings& settings)
-    : extract_("glow.frag"), blur_("blur.frag"), resolve_("resolve.frag", settings.defines()) {}
+    : extract_("glow.frag"), blur_("blur.frag"), resolve_(make_program({"resolve.comp"}, settings.defines())) {}
 
 void FinishPass::resize(int width, int height) {
   width_ = width;
@@ -19,7 +19,7 @@ void FinishPass::resize(int width, int height) {
   across_framebuffer_ = make_framebuffer({across_.get()});
 }
 
-void FinishPass::draw(GLuint samples, GLuint framebuffer, float vignette) const {
+void FinishPass::draw(GLuint samples, GLuint picture, float vignette) const {
   glBindTextureUnit(binding::source, samples);
   extract_.draw_into(glow_framebuffer_.get(), glow_width_, glow_height_);
   // The glow spreads by a fiftieth of the picture's height, whatever its size.
@@ -33,10 +33,9 @@ void FinishPass::draw(GLuint samples, GLuint framebuffer, float vignette) const 
 
   glBindTextureUnit(binding::source, samples);
   glBindTextureUnit(binding::glow, glow_.get());
-  glProgramUniform1f(resolve_.program(), 0, vignette);
-  glEnable(GL_FRAMEBUFFER_SRGB);
-  resolve_.draw_into(framebuffer, width_, height_);
-  glDisable(GL_FRAMEBUFFER_SRGB);
+  glProgramUniform1f(resolve_.get(), 0, vignette);
+  compute_texels(resolve_.get(), picture, GL_RGBA8, width_, height_);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 }  // namespace mercury::render

@@ -11,14 +11,15 @@ class FinishPass {
  public:
   explicit FinishPass(const QualitySettings& settings);
   void resize(int width, int height);
-  // `samples`: multisampled light; its alpha is the share that glows. Draws into an sRGB framebuffer.
-  void draw(GLuint samples, GLuint framebuffer, float vignette) const;
+  // `samples`: multisampled light; its alpha is the share that glows. Writes gamma-encoded bytes to `picture` (RGBA8).
+  void draw(GLuint samples, GLuint picture, float vignette) const;
 
  private:
   int width_ = 0, height_ = 0, glow_width_ = 0, glow_height_ = 0;
   Texture glow_, across_;
   Framebuffer glow_framebuffer_, across_framebuffer_;
-  Fullscreen extract_, blur_, resolve_;
+  Fullscreen extract_, blur_;
+  Program resolve_;
 };
 
 }  // namespace mercury::render

@@ -7,7 +7,8 @@ namespace mercury::render {
 
 FrontPass::FrontPass(const QualitySettings& settings)
     : with_light_(settings.front_light), floor_depth_("floor_depth.frag") {
-  if (with_light_) light_program_ = make_program({"front_light.comp"}, settings.skin_defines());
+  if (with_light_)
+    light_program_.emplace(std::initializer_list<std::string_view>{"front_light.comp"}, settings.skin_defines());
 }
 
 void FrontPass::resize(int width, int height) {
@@ -21,7 +22,9 @@ void FrontPass::resize(int width, int height) {
   faces_ = make_texture(GL_R32UI, width_, height_);
   glTextureParameteri(faces_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(faces_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  light_ = make_texture(GL_RGBA16F, width_, height_);
+  light_ = make_texture(GL_RG32UI, width_, height_);
+  glTextureParameteri(light_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(light_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   framebuffer_ = make_framebuffer({faces_.get()}, depths_.get());
 }
 
@@ -34,11 +37,11 @@ void FrontPass::begin() {
   glDepthFunc(GL_GREATER);
 }
 
-void FrontPass::find_light() const {
+void FrontPass::find_light(const std::string& variant) const {
   if (!with_light_) return;
   glBindTextureUnit(binding::source, depths_.get());
   glBindTextureUnit(binding::faces_seen, faces_.get());
-  compute_texels(light_program_->get(), light_.get(), GL_RGBA16F, width_, height_);
+  compute_texels(light_program_->get(variant), light_.get(), GL_RG32UI, width_, height_);
   glBindTextureUnit(binding::front_light, light_.get());
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "render/fullscreen.h"
+#include "render/program_variants.h"
 #include "render/quality.h"
 
 namespace mercury::render {
@@ -25,9 +26,9 @@ class FrontPass {
   }
   GLuint depths() const { return depths_.get(); }
 
-  // Computes how much of the key light reaches each surface and binds the result for the skins. Uses the shadow map and
-  // the normals that are bound.
-  void find_light() const;
+  // Computes how much light reaches each surface and binds the result for the skins. Uses the normals and the maps of
+  // shadows, caustics and occlusion that are bound. `variant`: defines of AROUND and OCTAVES.
+  void find_light(const std::string& variant) const;
 
  private:
   void begin();
@@ -37,7 +38,7 @@ class FrontPass {
   Texture depths_, faces_, light_;
   Framebuffer framebuffer_;
   Fullscreen floor_depth_;
-  std::optional<Program> light_program_;
+  std::optional<ProgramVariants> light_program_;
 };
 
 }  // namespace mercury::render

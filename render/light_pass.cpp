@@ -11,6 +11,9 @@ namespace {
 constexpr int sand_side = 512;
 constexpr int caustics_cells = 110;
 
+// 65,536 steps over the depth that the map covers are finer than its texels.
+constexpr GLenum shadow_format = GL_DEPTH_COMPONENT16;
+
 Texture make_tile(GLenum format, int side) {
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);
@@ -48,7 +51,7 @@ Texture comparing_view(GLuint depths) {
   GLuint name = 0;
   glGenTextures(1, &name);
   Texture view(name);
-  glTextureView(name, GL_TEXTURE_2D, depths, GL_DEPTH_COMPONENT32F, 0, 1, 0, 1);
+  glTextureView(name, GL_TEXTURE_2D, depths, shadow_format, 0, 1, 0, 1);
   glTextureParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTextureParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -61,8 +64,7 @@ Texture comparing_view(GLuint depths) {
 }  // namespace
 
 LightPass::LightPass(const QualitySettings& settings)
-    : settings_(settings),
-      shadow_depths_(make_texture(GL_DEPTH_COMPONENT32F, settings.shadow_side, settings.shadow_side)),
+    : settings_(settings), shadow_depths_(make_texture(shadow_format, settings.shadow_side, settings.shadow_side)),
       caustics_(make_tile(GL_R16F, settings.caustics_side)), sand_(make_sand()),
       ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),

@@ -98,11 +98,11 @@ void Renderer::Parts::draw_light(const Scene& scene) {
   timer.mark("light on the floor");
   passes->front.draw([&] { draw_sides(scene, [&](const char* side) { passes->skin.draw_depth(side); }); });
   timer.mark("nearest surfaces");
-  passes->front.find_light();
-  timer.mark("light on skins");
   glDisable(GL_CULL_FACE);
   passes->occlusion.draw(passes->front.depths(), 6 * bodies.typical_spring());
   timer.mark("occlusion");
+  passes->front.find_light(variant);
+  timer.mark("light on skins");
 }
 
 void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
@@ -153,7 +153,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   if (scene.surroundings == Surroundings::water)
     p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
   p.ghosts.draw(scene.ghosts);
-  p.passes->finish.draw(p.targets.light.get(), p.targets.finished.get(), scene.tiles.empty() ? style.vignette : 0);
+  p.passes->finish.draw(p.targets.light.get(), p.targets.bytes.get(), scene.tiles.empty() ? style.vignette : 0);
   p.outline.draw(p.bodies, scene, p.passes->lattice, p.bounds.boxes(), p.targets);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.
   const std::vector<Bounds> boxes =

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a Renderer consists of, and how it draws one picture.
 //
-//   positions           each body's box; each face's normal and axes; what the shadow map and the floor's light map
-//                       cover; the plane that cuts each body; lists of the faces that turn towards the eye and towards
-//                       the light
+//   positions           each body's box; each face's normal; what the shadow map and the floor's light map cover; the
+//                       plane that cuts each body; lists of the faces that turn towards the eye and towards the light
 //   shadow map          depth, seen from the key light
 //   light on the floor  soft shadows on the floor as a map; under water, a tile of caustics
 //   nearest surfaces    depth and face of the first surface in each pixel, one sample per pixel
-//   light on skins      soft shadows on those surfaces
 //   occlusion           ambient occlusion of those surfaces, at half the picture's size
+//   light on skins      how much light reaches those surfaces: soft shadows, caustics, occlusion
 //   skins, springs and masses, surroundings
 //                       linear light, 4 samples per pixel
 //   finish              paths and particles; then glow, tone curve, average of the samples; then outlines of selected

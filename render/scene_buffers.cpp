@@ -62,7 +62,7 @@ void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   require(scene.mass_values.size(), bodies.mass_count(), "mass_values");
   require(scene.spring_values.size(), bodies.spring_count(), "spring_values");
   if (!scene.positions.empty())
-    glNamedBufferSubData(bodies.positions.get(), 0, GLsizeiptr(scene.positions.size_bytes()), scene.positions.data());
+    positions_.write(bodies.positions, std::as_bytes(scene.positions));
   else
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // makes earlier writes to them visible

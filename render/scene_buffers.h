@@ -9,6 +9,7 @@
 #include "render/camera.h"
 #include "render/gl_objects.h"
 #include "render/scene.h"
+#include "render/upload_ring.h"
 
 namespace mercury::render {
 
@@ -20,6 +21,7 @@ class SceneBuffers {
   void bind(const Bodies& bodies) const;
 
  private:
+  UploadRing positions_;
   StreamBuffer placements_, materials_, face_values_, mass_values_;
 };
 

@@ -9,7 +9,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr std::size_t face_frame_bytes = 32;  // FaceFrame of shaders/bodies.glsl
+constexpr std::size_t seen_face_bytes = 64;  // SeenFace of shaders/seen_face.glsl
 
 }  // namespace
 
@@ -21,14 +21,15 @@ void dispatch(std::size_t count) {
 }
 
 SkinPass::SkinPass(const std::string& defines)
-    : corners_(make_vertex_array()), face_frames_program_(make_program({"face_frames.comp"})),
-      mass_normals_program_(make_program({"mass_normals.comp"})), shadow_(make_program({"shadow.vert", "depth.frag"})),
+    : corners_(make_vertex_array()), face_normals_program_(make_program({"face_normals.comp"})),
+      mass_normals_program_(make_program({"mass_normals.comp"})),
+      seen_faces_program_(make_program({"seen_faces.comp"})), shadow_(make_program({"shadow.vert", "depth.frag"})),
       depth_({"skin.vert", "surface.frag"}, define("COLOR_BY", 0)), skin_({"skin.vert", "skin.frag"}, defines) {}
 
 void SkinPass::attach(const Bodies& bodies) {
   attach_corners(corners_.get(), bodies);
   cull_.attach(bodies);
-  face_frames_.reserve(face_frame_bytes * bodies.face_count());
+  seen_faces_.reserve(seen_face_bytes * bodies.face_count());
   face_normals_.reserve(4 * bodies.face_count());
   face_areas_.reserve(4 * bodies.face_count());
   mass_normals_.reserve(16 * bodies.mass_count());
@@ -36,17 +37,26 @@ void SkinPass::attach(const Bodies& bodies) {
 
 void SkinPass::deform(const Bodies& bodies, bool smooth, bool cut) {
   cut_ = cut;
-  face_frames_.bind_storage(binding::face_frames);
   face_normals_.bind_storage(binding::face_normals);
   face_areas_.bind_storage(binding::face_areas);
   mass_normals_.bind_storage(binding::mass_normals);
   bodies.faces.bind_storage(binding::faces);
-  glUseProgram(face_frames_program_.get());
+  glUseProgram(face_normals_program_.get());
   glUniform1ui(0, GLuint(bodies.face_count()));
   dispatch(bodies.face_count());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   if (smooth) find_mass_normals(bodies);
   cull_.find(bodies, cut);
+  gather_seen_faces(bodies);
+}
+
+void SkinPass::gather_seen_faces(const Bodies& bodies) const {
+  seen_faces_.bind_storage(binding::seen_face_records);
+  face_normals_.bind_storage(binding::face_normals);
+  cull_.bind_seen();
+  glUseProgram(seen_faces_program_.get());
+  dispatch(bodies.face_count());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void SkinPass::find_mass_normals(const Bodies& bodies) const {
@@ -59,7 +69,8 @@ void SkinPass::find_mass_normals(const Bodies& bodies) const {
 }
 
 void SkinPass::draw_seen() const {
-  cull_.seen_faces().bind_storage(binding::seen_faces);
+  seen_faces_.bind_storage(binding::seen_face_records);
+  cull_.bind_seen();
   face_normals_.bind_storage(binding::face_normals);
   if (cut_) glEnable(GL_CLIP_DISTANCE0);
   cull_.draw_seen(corners_.get());

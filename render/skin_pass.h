@@ -15,8 +15,8 @@ class SkinPass {
   explicit SkinPass(const std::string& defines);
   // Call when the bodies have been replaced.
   void attach(const Bodies& bodies);
-  // Computes from the positions and the frame block: a FaceFrame per face, normals at masses if `smooth`, and the lists
-  // of faces to draw. `cut`: a plane cuts the bodies of this picture.
+  // Computes from the positions and the frame block: normals of faces, and at masses if `smooth`; the lists of faces to
+  // draw, and a SeenFace for each that is seen. `cut`: a plane cuts the bodies of this picture.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
   enum class ColorBy { materials, face_values, mass_values };
@@ -29,14 +29,15 @@ class SkinPass {
 
  private:
   void find_mass_normals(const Bodies& bodies) const;
+  void gather_seen_faces(const Bodies& bodies) const;
   void draw_seen() const;
 
   VertexArray corners_;
-  Program face_frames_program_, mass_normals_program_, shadow_;
+  Program face_normals_program_, mass_normals_program_, seen_faces_program_, shadow_;
   ProgramVariants depth_, skin_;
   CullPass cull_;
   bool cut_ = false;
-  Buffer face_frames_, face_normals_, face_areas_, mass_normals_;
+  Buffer seen_faces_, face_normals_, face_areas_, mass_normals_;
 };
 
 inline constexpr const char* cut_variant = "#define CUT\n";

@@ -20,13 +20,6 @@ struct FaceRecord {
   uint shape;
 };
 
-// Coordinates u and v on a face at this time: a point p in the body's coordinates has u = dot(p, along_u.xyz) + along_u.w
-// and v likewise. The first corner has u = v = 0, the second u = 1, the third v = 1.
-struct FaceFrame {
-  vec4 along_u;
-  vec4 along_v;
-};
-
 // A direction as two numbers from -1 to 1 (octahedral map; Meyer et al. 2010); packed_direction stores them in 32 bits.
 vec2 octahedral(vec3 n) {
   vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));

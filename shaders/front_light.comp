@@ -1,22 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of the key light reaches the nearest surface in each pixel. Soft shadows are too expensive for each of the 4
-// samples of a pixel, so this runs once per pixel.
+// How much light reaches the nearest surface in each pixel. Soft shadows, caustics and occlusion are too expensive for
+// each of the 4 samples of a pixel, so this runs once per pixel.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "shadow.glsl"
+#define CAUSTICS_IN_COMPUTE
+#include "caustics.glsl"
+#include "occlusion.glsl"
 #include "cut.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depths;
 layout(binding = 12) uniform usampler2D faces;  // of surface.frag
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
-layout(binding = 0, rgba16f) writeonly uniform image2D map;  // visibility, distance, normal (octahedral)
+// Halves: key light, share of ambient light; distance; then bytes: normal (octahedral).
+layout(binding = 0, rg32ui) writeonly uniform uimage2D map;
+
+void store(ivec2 texel, vec2 light, float range, vec3 normal) {
+  uint where = (packHalf2x16(vec2(range, 0.0)) & 0xffffu) | packSnorm4x8(vec4(0.0, 0.0, octahedral(normal)));
+  imageStore(map, texel, uvec4(packHalf2x16(light), where, 0u, 0u));
+}
+
+// The point of a plane that is seen through a place of the picture. `plane`: normal and offset, relative to the eye.
+vec3 seen_point(vec4 plane, vec2 uv) {
+  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  return frame.eye.xyz + sight * (plane.w / min(dot(plane.xyz, sight), -1e-3));
+}
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(map);
   if (any(greaterThanEqual(texel, size))) return;
   uint face = texelFetch(faces, texel, 0).r;
   if (face == 0u) {
-    imageStore(map, texel, vec4(1.0, 6e4, 0.0, 0.0));
+    store(texel, vec2(1.0), 6e4, vec3(0.0, 0.0, 1.0));
     return;
   }
   float range = distance_of_depth(texelFetch(depths, texel, 0).r);
@@ -28,8 +43,17 @@ void main() {
   else
     normal = normalize(unpacked_direction(face_normals[face - 1u]));
   if (dot(normal, sight) > 0.0) normal = -normal;
-  float visibility = 0.0;  // 0 for surfaces that turn away from the light
-  if (dot(normal, frame.to_key.xyz) > -0.6)
-    visibility = key_visibility(frame.eye.xyz + range * sight, normal, pixel_noise(vec2(texel) + 0.5));
-  imageStore(map, texel, vec4(visibility, range, octahedral(normal)));
+  float key = 0.0;  // for surfaces that turn away from the light
+  if (dot(normal, frame.to_key.xyz) > -0.6) {
+    vec3 point = frame.eye.xyz + range * sight;
+    key = key_visibility(point, normal, pixel_noise(vec2(texel) + 0.5));
+#if AROUND == AROUND_WATER
+    vec4 plane = vec4(normal, range * dot(normal, sight));
+    vec2 at = surface_point(point);
+    float across = distance(surface_point(seen_point(plane, uv + vec2(frame.screen.z, 0.0))), at);
+    float along = distance(surface_point(seen_point(plane, uv + vec2(0.0, frame.screen.w))), at);
+    key *= caustics(at, max(across, along), 1.0);
+#endif
+  }
+  store(texel, vec2(key, openness(vec2(texel) + 0.5, range)), range, normal);
 }

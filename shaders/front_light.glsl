@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the result of front_light.comp. Needs bodies.glsl.
-layout(binding = 11) uniform sampler2D front_light_map;
+layout(binding = 11) uniform usampler2D front_light_map;
 
-// How much of the key light reaches a point at that depth with that normal. At edges, the pixel's value may belong to
-// another surface; then the most similar of the neighbouring pixels get the most weight.
-float front_light(vec2 pixel, float range, vec3 normal) {
-  const ivec2 offsets[5] = ivec2[](ivec2(0), ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
-  ivec2 at = ivec2(pixel), last = textureSize(front_light_map, 0) - 1;
-  vec2 own = octahedral(normal);
-  float sum = 0.0, weights = 0.0;
-  for (int i = 0; i < 5; ++i) {
-    vec4 found = texelFetch(front_light_map, clamp(at + offsets[i], ivec2(0), last), 0);
-    vec2 turned = abs(found.zw - own);
-    float difference = abs(found.y - range) * (40.0 / range) + 4.0 * (turned.x + turned.y);
-    if (i == 0 && difference < 0.1) return found.x;
+// How different a surface of the map, by its distance and normal, is from one at that depth with that normal.
+float unlikeness(uint where, float range, vec2 normal) {
+  vec2 turned = abs(unpackSnorm4x8(where).zw - normal);
+  return abs(unpackHalf2x16(where).x - range) * (40.0 / range) + 4.0 * (turned.x + turned.y);
+}
+
+// How much of the key light, and what share of the ambient light, reach a point at that depth with that normal, as an
+// octahedral direction. At edges, the pixel's values may belong to another surface; then the most similar of the neighbouring pixels get the most
+// weight.
+vec2 front_light(ivec2 pixel, float range, vec2 normal) {
+  uvec2 found = texelFetch(front_light_map, pixel, 0).rg;
+  float difference = unlikeness(found.y, range, normal);
+  vec2 light = unpackHalf2x16(found.x);
+  if (difference < 0.1) return light;
+  float weights = 1.0 / (0.02 + difference * difference);
+  vec2 sum = weights * light;
+  ivec2 last = textureSize(front_light_map, 0) - 1, offset = ivec2(1, 0);
+  for (int i = 0; i < 4; ++i) {
+    found = texelFetch(front_light_map, clamp(pixel + offset, ivec2(0), last), 0).rg;
+    difference = unlikeness(found.y, range, normal);
     float weight = 1.0 / (0.02 + difference * difference);
-    sum += weight * found.x;
+    sum += weight * unpackHalf2x16(found.x);
     weights += weight;
+    offset = ivec2(-offset.y, offset.x);
   }
   return sum / weights;
 }

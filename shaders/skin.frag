@@ -4,25 +4,25 @@
 // COLOR_BY      0 materials, 1 face values, 2 mass values
 // ROUNDED       some bodies are smooth
 // MARKED        some bodies are faulty
-// FRONT_LIGHT   front_light.comp has computed how much key light arrives
+// FRONT_LIGHT   front_light.comp has computed how much light arrives
 // CUT           draws the backs of skins, in place of which the cut's plane shows
 #include "frame.glsl"
 #include "bodies.glsl"
+#include "seen_face.glsl"
 #include "values.glsl"
-#include "shadow.glsl"
 #include "shading.glsl"
-#include "caustics.glsl"
-#include "occlusion.glsl"
 #ifdef FRONT_LIGHT
 #include "front_light.glsl"
+#else
+#include "shadow.glsl"
+#include "caustics.glsl"
+#include "occlusion.glsl"
 #endif
 #ifdef CUT
 #include "cut.glsl"
 layout(binding = 10) uniform sampler2D section;  // colours of bodies' insides in the cut's plane
 #endif
-layout(std430, binding = 5) readonly buffer FaceFrames { FaceFrame face_frames[]; };
-layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
-layout(std430, binding = 15) readonly buffer SeenFaces { uint seen_faces[]; };  // the faces that are drawn
+layout(std430, binding = 5) readonly buffer SeenFaces { SeenFace seen[]; };
 
 layout(location = 0) in vec3 local;
 layout(location = 1) in vec3 skin_point;
@@ -46,15 +46,15 @@ layout(location = 0) out vec4 color;  // a = share of light that glows
 
 const float bevel = 0.11;  // of the shorter side
 
-vec3 face_normal(uint face) { return normalize(unpacked_direction(face_normals[face])); }
+vec3 normal_of(uint bits) { return normalize(unpacked_direction(bits)); }
 
 // The face's normal; towards the edges it is blended with the neighbours', so that both sides of an edge agree.
-vec3 beveled_normal(FaceRecord record, FaceFrame face, vec3 normal, out float seam) {
+vec3 beveled_normal(SeenFace face, vec3 normal, out float seam) {
   vec2 uv = vec2(dot(local, face.along_u.xyz) + face.along_u.w, dot(local, face.along_v.xyz) + face.along_v.w);
   vec2 height = 1.0 / vec2(length(face.along_u.xyz), length(face.along_v.xyz));
   vec4 off;  // distance from the edges of FaceRecord.neighbours [m]
   float size = min(height.x, height.y);
-  bool quadrilateral = record.shape < 3u;
+  bool quadrilateral = face.shape < 3u;
   if (quadrilateral) {
     off = vec4(uv.x * height.x, (1.0 - uv.x) * height.x, uv.y * height.y, (1.0 - uv.y) * height.y);
   } else {
@@ -70,16 +70,14 @@ vec3 beveled_normal(FaceRecord record, FaceFrame face, vec3 normal, out float se
   vec4 near = 1.0 - smoothstep(0.0, bevel * size, off);
   vec3 sum = normal;
   for (int i = 0; i < 4; ++i) {
-    uint neighbour = record.neighbours[i];
-    if (near[i] > 0.0 && neighbour != NO_FACE) sum += near[i] * face_normal(neighbour);
+    uint around = face.normals_around[i];
+    if (near[i] > 0.0 && around != NO_NORMAL) sum += near[i] * normal_of(around);
   }
   return sum;
 }
 
 void main() {
-  uint face = seen_faces[gl_PrimitiveID];
-  FaceRecord record = face_records[face];
-  FaceFrame face_frame = face_frames[face];
+  SeenFace face = seen[gl_PrimitiveID];
   vec3 world = skin_point;
 #ifdef CUT
   // Computed from the pixel and not from the skin, so that all faces of a body in its cut share one plane.
@@ -91,9 +89,14 @@ void main() {
   float range = length(from_eye);
   vec3 to_eye = -from_eye / range;
 
-  vec3 flat_normal = face_normal(face);
+  vec3 flat_normal = normal_of(face.normal);
+#ifdef CUT
+  vec2 stored = octahedral(cut.xyz);
+#else
+  vec2 stored = unpackSnorm2x16(face.normal);
+#endif
   float seam;
-  vec3 normal = beveled_normal(record, face_frame, flat_normal, seam);
+  vec3 normal = beveled_normal(face, flat_normal, seam);
 #ifdef ROUNDED
   if ((flags & PLACEMENT_SMOOTH) != 0u) {
     normal = smooth_normal;
@@ -108,15 +111,16 @@ void main() {
   if (dot(flat_normal, to_eye) < 0.0) {
     normal = -normal;
     flat_normal = -flat_normal;
+    stored = octahedral(flat_normal);
   }
 
 #if COLOR_BY == 0
-  vec4 material = material_at(record.material, flags);
+  vec4 material = material_at(face.material, flags);
   float activation = material.a;
   vec3 albedo = material.rgb * (1.0 + 0.25 * min(activation, 0.0));
 #else
 #if COLOR_BY == 1
-  float value = face_values[face];
+  float value = face_values[face.face];
 #else
   float value = mass_value;
 #endif
@@ -134,20 +138,20 @@ void main() {
 #endif
 
   float depth = dot(from_eye, -vec3(frame.view[0].z, frame.view[1].z, frame.view[2].z));
-  float open = openness(gl_FragCoord.xy, depth);
-  vec3 key = frame.key_light.rgb;
-  if (dot(normal, frame.to_key.xyz) > -0.25) {
+  vec3 key = vec3(0.0);
 #ifdef FRONT_LIGHT
-    key *= front_light(gl_FragCoord.xy, depth, flat_normal);
+  vec2 found = front_light(ivec2(gl_FragCoord.xy), depth, stored);
+  float open = found.y;
+  if (dot(normal, frame.to_key.xyz) > -0.25) key = frame.key_light.rgb * found.x;
 #else
-    key *= key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
-#endif
+  float open = openness(gl_FragCoord.xy, depth);
+  if (dot(normal, frame.to_key.xyz) > -0.25) {  // it turns towards the light
+    key = frame.key_light.rgb * key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
 #if AROUND == AROUND_WATER
-    key *= caustics(world, 1.0);
+    key *= caustics(surface_point(world), 0.0, 1.0);
 #endif
-  } else {
-    key = vec3(0.0);  // it turns away from the light
   }
+#endif
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open);
 
   float strength = max(activation, 0.0);

@@ -2,10 +2,10 @@
 // Resolves samples of linear light to one pixel. Applies the tone curve to each sample before averaging, so that edges of
 // bright things stay smooth.
 #include "frame.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DMS samples;
 layout(binding = 8) uniform sampler2D glow;
-layout(location = 0) in vec2 uv;
-layout(location = 0) out vec4 color;
+layout(binding = 0, rgba8) writeonly uniform image2D picture;  // gamma-encoded
 layout(location = 0) uniform float vignette;
 
 // Identity up to `shoulder`, so that colours of values keep their meaning; above it, bends towards 1 and towards white,
@@ -20,14 +20,21 @@ vec3 tone_mapped(vec3 light) {
   return mix(light * (bent / peak), vec3(bent), bleach);
 }
 
+vec3 gamma_encoded(vec3 light) {
+  return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+}
+
 void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(picture);
+  if (any(greaterThanEqual(texel, size))) return;
+  vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec3 spread = textureLod(glow, uv, 0.0).rgb;
   vec2 off = (uv - 0.5) * vec2(1.0, 0.8);
   float dim = 1.0 - vignette * smoothstep(0.1, 0.75, dot(off, off) * 2.0);
   vec3 light[SAMPLES];
   bool edge = false;
   for (int i = 0; i < SAMPLES; ++i) {
-    light[i] = texelFetch(samples, ivec2(gl_FragCoord.xy), i).rgb;
+    light[i] = texelFetch(samples, texel, i).rgb;
     edge = edge || light[i] != light[0];
   }
   vec3 mapped = tone_mapped(dim * (max(light[0], vec3(0.0)) + spread));
@@ -37,5 +44,6 @@ void main() {
   }
   // Dithering: one step of the 8-bit sRGB code, in linear light.
   vec3 step_size = (0.08 + 2.2 * sqrt(mapped)) / 255.0;
-  color = vec4(mapped + (pixel_noise(gl_FragCoord.xy) - 0.5) * step_size, 1.0);
+  vec3 dithered = mapped + (pixel_noise(vec2(texel) + 0.5) - 0.5) * step_size;
+  imageStore(picture, texel, vec4(gamma_encoded(clamp(dithered, 0.0, 1.0)), 1.0));
 }
