@@ -24,12 +24,12 @@ bool same_list(const std::vector<LiveRobot>& a, const std::vector<LiveRobot>& b)
   });
 }
 
-// One step of the robots must not become so many of the companion that the window cannot be used.
+// A step of the robots that takes a thousand steps of the companion would hold up the window.
 void require_comparable(const Configuration& own, const Configuration& first) {
   constexpr double most = 1000;
   if (own.dt * most < first.dt)
-    throw InputError("dt", fmt::format("{:g} s is less than 1/{:g} of the {:g} s that the robots have", own.dt, most,
-                                       first.dt));
+    throw InputError(
+        "dt", fmt::format("{:g} s is less than 1/{:g} of the {:g} s that the robots have", own.dt, most, first.dt));
 }
 
 bool is_land(const Configuration& configuration) { return std::holds_alternative<Land>(configuration.environment); }
