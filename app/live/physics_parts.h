@@ -124,8 +124,9 @@ struct Physics::Parts {
   std::int64_t steps_left = 0;                         // of step()
   std::uint64_t ticket = 0;                            // the latest one taken
   std::uint64_t resets = 0, stops = 0;
-  bool dirty = true;   // something changed after the last snapshot
-  std::thread thread;  // last: it starts when all other members exist
+  bool dirty = true;        // something changed after the last snapshot
+  bool is_watched = false;  // a snapshot was wanted when commands were last taken
+  std::thread thread;       // last: it starts when all other members exist
 
   // The time of a scene without robots stands still.
   bool is_running() const { return playing && simulation.size() > 0; }

@@ -19,9 +19,10 @@ void Physics::Parts::begin_pace() {
   gauge.mark(wall_now(), simulation.time());
 }
 
-// How many steps are worth a launch on a card: if it also draws, each launch interrupts the drawing.
+// A card that also draws switches to the steps and back in about 2 ms, so they come once per picture: when the window
+// wants a snapshot, else after this many.
 std::int64_t Physics::Parts::steps_at_once() const {
-  constexpr double launch_period = 0.004;  // wall time [s]
+  constexpr double launch_period = 0.05;  // wall time [s]
   if (cuda_device < 0 || !std::isfinite(speed)) return 1;
   return std::max<std::int64_t>(1, std::llround(launch_period * speed / simulation.configuration().dt));
 }
@@ -50,7 +51,7 @@ void Physics::Parts::advance() {
     return;
   }
   const std::int64_t due = pace.due(wall_now());
-  if (due < steps_at_once()) return;
+  if (due < (is_watched ? 1 : steps_at_once())) return;
   const std::int64_t count = std::min(affordable, due);
   take_steps(count);
   pace.done(count);

@@ -27,13 +27,19 @@ void Physics::Parts::run() {
   }
 }
 
-// Waits for commands or for the time of the next step. Returns false when the thread must end.
+// Waits for commands or for the time of the next step; on a card that the window watches, for that of its next picture.
+// Returns false when the thread must end.
 bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
-  const auto due = std::chrono::steady_clock::time_point(
-      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
-          playing && std::isfinite(speed) ? std::min(pace.next_due(steps_at_once()), wall_now() + 1) : 0)));
   std::unique_lock lock(mutex);
-  const auto ready = [&] { return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)); };
+  const bool runs_on_card = cuda_device >= 0 && is_running() && std::isfinite(speed), was_wanted = snapshot_wanted;
+  const double next_due = pace.next_due(was_wanted ? 1 : steps_at_once());
+  const auto due =
+      std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+          std::chrono::duration<double>(playing && std::isfinite(speed) ? std::min(next_due, wall_now() + 1) : 0)));
+  const auto ready = [&] {
+    return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)) ||
+           (runs_on_card && snapshot_wanted && !was_wanted);
+  };
   if (steps_left == 0 && !seek_target && !ready()) {
     tickets_done = ticket;
     done.notify_all();
@@ -42,6 +48,7 @@ bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
     else
       wake.wait(lock, ready);
   }
+  is_watched = snapshot_wanted;
   taken = std::exchange(pending, {});
   ticket = std::max(ticket, taken.ticket);
   return !taken.quit;

@@ -39,7 +39,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
-constexpr double rare_frame_time = 1.0 / 30;  // while the card is left to the steps [s]
+constexpr double rare_frame_time = 1.0 / 20;  // while the card is left to the steps [s]
 constexpr double idle_time = 0.2;             // between frames while nothing moves [s]
 // While input is waiting, the window skips pictures for this multiple of the time that drawing one takes.
 constexpr double skip_factor = 4;
@@ -385,7 +385,7 @@ bool Viewer::leaves_card_to_steps() const {
 }
 
 bool Viewer::waits_with_picture() const {
-  constexpr double share = 0.06;
+  constexpr double share = 0.05;
   return leaves_card_to_steps() && since(drawn_at_) < (1 / share - 1) * viewport_.draw_seconds();
 }
 
