@@ -93,7 +93,7 @@ struct Physics::Parts {
   std::vector<LivePerturbation> perturbations;
   std::vector<Telemetry> telemetry;
   std::set<RobotId> exploded;
-  EventLog events;
+  SceneEvents events;
   ReplayLog replay_log{events};
   std::uint64_t surroundings = 0;               // of the scene
   std::shared_ptr<const Repro> replayed_repro;  // or nothing

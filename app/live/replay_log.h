@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/event_log.h"
+#include "app/live/scene_events.h"
 #include "app/live/snapshot.h"
 #include "app/recording/repro.h"
 
@@ -31,7 +31,7 @@ namespace mercury {
 class ReplayLog {
  public:
   // Adds its events to the log, which others may read and shorten (needed_events()).
-  explicit ReplayLog(EventLog& events) : events_(events) {}
+  explicit ReplayLog(SceneEvents& events) : events_(events) {}
 
   // Forgets everything, the events too: time starts again at 0.
   void restart();
@@ -84,7 +84,7 @@ class ReplayLog {
   };
   std::shared_ptr<const Start> start(const Simulation& simulation, std::size_t index, const Materials& materials) const;
 
-  EventLog& events_;
+  SceneEvents& events_;
   std::map<RobotId, Track> tracks_;
   Configuration configuration_;
   std::vector<LivePerturbation> perturbations_;

@@ -3,7 +3,7 @@
 //
 //   keyframes    K0           K1      K2  K3 head
 //   steps     ---|------------|-------|---|--|--->
-//   events           ^   ^        ^                 parameters, materials, perturbations (event_log.h)
+//   events           ^   ^        ^                 parameters, materials, perturbations (scene_events.h)
 //
 // A moment is the keyframe before it, stepped on with the events in between. Keyframes are dense near the head and thin
 // out as they grow old: the one goes whose absence costs least against its age. Two neighbours never become so far

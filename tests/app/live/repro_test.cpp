@@ -155,7 +155,7 @@ TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
   const Configuration configuration = test::on_cpu().configuration;
   Simulation simulation(configuration, std::span(robot.get(), 1));
   LiveRobots robots{.robots = {{.id = 4, .name = "it", .robot = robot}}, .mass_offsets = {0, robot->masses.size()}};
-  EventLog events;
+  SceneEvents events;
   ReplayLog replay_log(events);
   replay_log.follow(simulation, robots, {});
   for (int i = 0; i < 5; ++i) {

@@ -23,7 +23,7 @@ struct SceneEvent {
 };
 
 // Events have consecutive numbers. Not thread-safe; the physics thread owns it.
-class EventLog {
+class SceneEvents {
  public:
   void clear();
   // A slider or the mouse makes many changes of one kind between two steps. Only the last one counts, unless a state in

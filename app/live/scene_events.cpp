@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/event_log.h"
+#include "app/live/scene_events.h"
 
 #include <algorithm>
 #include <cstddef>
 
 namespace mercury {
 
-void EventLog::clear() {
+void SceneEvents::clear() {
   events_.clear();
   copied_.reset();
   first_ = sealed_ = 0;
 }
 
-void EventLog::add(SceneEvent event) {
+void SceneEvents::add(SceneEvent event) {
   copied_.reset();
   if (!events_.empty() && end() > sealed_) {
     SceneEvent& last = events_.back();
@@ -28,7 +28,7 @@ void EventLog::add(SceneEvent event) {
   events_.push_back(std::move(event));
 }
 
-void EventLog::forget_before(std::uint64_t number) {
+void SceneEvents::forget_before(std::uint64_t number) {
   if (number <= first_) return;
   const std::uint64_t count = std::min<std::uint64_t>(number - first_, events_.size());
   events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(count));
@@ -36,14 +36,14 @@ void EventLog::forget_before(std::uint64_t number) {
   copied_.reset();
 }
 
-void EventLog::cut(std::uint64_t number) {
+void SceneEvents::cut(std::uint64_t number) {
   if (number >= end()) return;
   events_.resize(number > first_ ? number - first_ : 0);
   sealed_ = std::min(sealed_, end());
   copied_.reset();
 }
 
-std::shared_ptr<const std::vector<SceneEvent>> EventLog::copy() {
+std::shared_ptr<const std::vector<SceneEvent>> SceneEvents::copy() {
   if (!copied_) copied_ = std::make_shared<const std::vector<SceneEvent>>(events_);
   return copied_;
 }
