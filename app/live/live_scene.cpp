@@ -96,6 +96,7 @@ void LiveScene::reset() {
   const bool pins = std::ranges::any_of(parts_->document.attachments, [](const Attachment& one) {
     return one.spring.kind == LivePerturbation::Kind::pin;
   });
+  ++parts_->resets;
   if (pins) {
     parts_->pins_wait = parts_->snapshot->resets;
     parts_->send_perturbation();

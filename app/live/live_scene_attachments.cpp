@@ -56,13 +56,13 @@ void LiveScene::Parts::update_attachments() {
   if (document.attachments.empty()) return;
   const auto removed =
       std::erase_if(document.attachments, [&](const Attachment& one) { return !document.find(one.spring.robot); });
-  const bool back = pins_wait && snapshot->resets > *pins_wait;
+  const bool back = pins_wait && snapshot->resets > *pins_wait && !snapshot->timeline.viewing;
   if (back) {
     pins_wait.reset();
     for (Attachment& one : document.attachments)
       if (const auto now = position_of(*snapshot, one.spring.robot, one.spring.mass); is_pin(one) && now) {
         one.spring.target = *now;
-        one.resets = snapshot->resets;
+        one.resets = resets;
       }
   }
   if (removed > 0 || back) send_perturbation();
@@ -75,9 +75,9 @@ void LiveScene::Parts::aim_pins(const std::vector<Attachment>& before) {
         known != before.end()) {
       one = *known;
     } else if (const auto now = position_of(*snapshot, one.spring.robot, one.spring.mass);
-               now && one.resets != snapshot->resets) {
+               now && one.resets != resets) {
       one.spring.target = *now;
-      one.resets = snapshot->resets;
+      one.resets = resets;
     }
   }
   send_perturbation();
@@ -93,7 +93,7 @@ std::vector<Attachment> LiveScene::Parts::attachments_then() const {
       limited.stiffness = one.stiffness;
       return limited == one;
     });
-    then.push_back(known == document.attachments.end() ? Attachment{one, snapshot->resets} : *known);
+    then.push_back(known == document.attachments.end() ? Attachment{one, resets} : *known);
   }
   return then;
 }
@@ -127,7 +127,7 @@ void LiveScene::Parts::attach_opened(bool complete) {
       spring.stiffness = stiffest_pin(document.configuration);
       spring.kind = Kind::pin;
     }
-    document.attachments.push_back({spring, snapshot->resets});
+    document.attachments.push_back({spring, resets});
   }
   send_perturbation();
 }
@@ -137,7 +137,7 @@ void LiveScene::attach_perturbation() {
   parts_->edit("attach a spring");
   LivePerturbation spring = *parts_->perturbation;
   spring.kind = Kind::spring;
-  parts_->document.attachments.push_back({spring, parts_->snapshot->resets});
+  parts_->document.attachments.push_back({spring, parts_->resets});
   end_perturbation();
 }
 
@@ -150,7 +150,7 @@ void LiveScene::pin(const Hit& hit) {
                                            .target = *now,
                                            .stiffness = stiffest_pin(parts_->document.configuration),
                                            .kind = Kind::pin},
-                                          parts_->snapshot->resets});
+                                          parts_->resets});
   parts_->send_perturbation();
 }
 

@@ -50,7 +50,8 @@ struct LiveScene::Parts {
   std::optional<double> loop_begin;        // of a loop that is not closed yet [s]
   bool goes_on = false;                    // the moment shown becomes the present; physics has not done so yet
   std::vector<AttachedMass> to_attach;     // of a scene whose robots are not all there yet
-  std::optional<std::uint64_t> pins_wait;  // pins are off until a snapshot has more resets than this
+  std::uint64_t resets = 0;                // calls of reset()
+  std::optional<std::uint64_t> pins_wait;  // pins are off until a snapshot of the present has more resets than this
   std::uint64_t last_surroundings = 0;
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
