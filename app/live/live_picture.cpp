@@ -116,17 +116,20 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
   const bool others = !before || before->robots->revision != snapshot->robots->revision;
   const bool moved = before && before->configuration.environment.index() != snapshot->configuration.environment.index();
+  // The timeline jumps, too, but trails know where the robots were.
+  const bool restarted =
+      before && before->resets != snapshot->resets && !before->timeline.viewing && !snapshot->timeline.viewing;
   if (others) {
     const std::optional<GroupScene> old = std::exchange(parts.scene, std::nullopt);
     parts.scene.emplace(group_of(*snapshot), offsets_of(*snapshot, settings, aspect), fitting(settings, *snapshot));
-    if (old && before->resets == snapshot->resets) parts.keep_trails(*old, *before);
+    if (old && !restarted) parts.keep_trails(*old, *before);
     ++parts.revision;
   } else {
     parts.scene->set_settings(fitting(settings, *snapshot));
     if (before->configuration.environment != snapshot->configuration.environment)
       parts.scene->set_environment(snapshot->configuration.environment);
     if (moved || !same_layout(old_settings, settings)) lay_out(aspect);
-    if (before->resets != snapshot->resets) parts.scene->restart(snapshot->telemetry);
+    if (restarted) parts.scene->restart(snapshot->telemetry);
     for (std::size_t i = 0; i < snapshot->robots->size() && before->robots != snapshot->robots; ++i) {
       const LiveRobot &now = snapshot->robots->robots[i], &then = before->robots->robots[i];
       if (now.materials != then.materials) parts.scene->set_materials(i, materials_of(now));
@@ -140,6 +143,10 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   if (before != snapshot) parts.slow_motion.take(snapshot);
   parts.shown = parts.slow_motion.at(wall);
   parts.scene->hold(held ? snapshot->robots->index_of(*held) : std::nullopt, wall - std::exchange(parts.wall, wall));
+  // Steps that were not shown, as when a recording is dragged forward, leave no straight line in its path.
+  const bool jumped = before && std::abs(snapshot->steps - before->steps) > 1 && !snapshot->playing;
+  const bool returned = before && before->timeline.viewing && snapshot->time >= before->timeline.head;
+  parts.scene->set_later(!snapshot->timeline.viewing && !returned ? Later::forget : jumped ? Later::skip : Later::keep);
   parts.scene->update(parts.shown.time, parts.shown.telemetry, snapshot->details);
   const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};

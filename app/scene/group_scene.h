@@ -55,6 +55,8 @@ class GroupScene {
   void restart(std::span<const Telemetry> telemetry);
   const std::vector<Trail>& trails() const { return trails_; }
   void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
+  // What trails do when time goes back.
+  void set_later(Later later) { later_ = later; }
   // The mouse pulls at this robot; `elapsed` since the last call [s]. See HeldRobot.
   void hold(std::optional<std::size_t> robot, double elapsed) { held_.hold(robot, elapsed); }
 
@@ -100,7 +102,7 @@ class GroupScene {
   void place_boxes();
   void place_patches();
   void hide_wrecks(std::span<const Telemetry> telemetry);
-  void lengthen_paths();
+  void lengthen_paths(double time);
   void race(double time);
   void write_labels(std::span<const Telemetry> telemetry);
   void fit_scale(double time);
@@ -132,6 +134,7 @@ class GroupScene {
   std::vector<bool> smooth_;           // robots that are drawn smooth whatever the settings
   Environment environment_;
   std::vector<Trail> trails_;
+  Later later_ = Later::forget;
   std::vector<render::Path> paths_;
   std::vector<std::vector<float>> marks_;  // of the paths
   std::vector<render::Label> labels_;

@@ -39,7 +39,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   if (motion_.layout() == Layout::race)
     race(time);
   else if (settings_.shown.path)
-    lengthen_paths();
+    lengthen_paths(time);
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(time, std::move(details));
 }
@@ -93,21 +93,21 @@ void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
   for (std::size_t i = 0; i < placements_.size(); ++i) {
     torn_[i] = exploded_[i] && !(telemetry[i].largest_strain <= most_strain);
     placements_[i].hidden = hidden_[i] || (torn_[i] && !placements_[i].selected);
-    if (torn_[i] && !hidden_[i])
+    if (torn_[i] && placements_[i].hidden && !hidden_[i])
       shown_texts_.push_back({.at = eigen(trails_[i].last()) + shown_offsets_[i],
                               .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at)});
   }
   scene_.texts = shown_texts_;
 }
 
-void GroupScene::lengthen_paths() {
+void GroupScene::lengthen_paths(double time) {
   constexpr float step = 0.02f, reach = 1.2f, bar = 0.12f;  // of a room's radius
   paths_.clear();
   marks_.clear();
   marks_.reserve(trails_.size());  // paths refer to it
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     const float radius = rooms_[i].radius;
-    if (!exploded_[i]) trails_[i].lengthen(step * radius);
+    if (!exploded_[i]) trails_[i].lengthen(step * radius, time, later_);
     const bool wake = motion_.layout() == Layout::cells;
     const auto points = wake ? trails_[i].wake(reach * radius) : trails_[i].points();
     const auto body = static_cast<std::uint32_t>(i);

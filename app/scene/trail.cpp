@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/scene/eigen_vec3.h"
@@ -21,18 +22,30 @@ void Trail::pass(Vec3 place) {
   if (eigen(place).allFinite()) last_ = place;
 }
 
-void Trail::lengthen(float step) {
-  const std::size_t count = lengths_.size();
-  if (count == 0) {
-    points_ = {last_.x, last_.y, last_.z};
-    lengths_ = {0};
-    return;
-  }
-  const float moved = (eigen(last_) - point_at(points_, count - 1)).norm();
-  if (moved == 0 || moved < step) return;
+void Trail::lengthen(float step, double time, Later later) {
+  const bool jumps = later == Later::skip && time > known_until_;
+  if (jumps || (!times_.empty() && time < times_.front())) cut(0);
+  const auto until = [&](double end) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(times_, end) - times_.begin());
+  };
+  if (later == Later::forget) cut(until(std::min(now_, time)));
+  now_ = time;
+  shown_ = until(time);
+  if (shown_ < times_.size()) return;
+  known_until_ = later == Later::forget || shown_ == 0 ? time : std::max(known_until_, time);
+  const float moved = shown_ == 0 ? 0 : (eigen(last_) - point_at(points_, shown_ - 1)).norm();
+  if (shown_ > 0 && (moved == 0 || moved < step)) return;
   points_.insert(points_.end(), {last_.x, last_.y, last_.z});
-  lengths_.push_back(lengths_.back() + moved);
-  if (lengths_.size() > most_points) thin_out();
+  lengths_.push_back(shown_ == 0 ? 0 : lengths_.back() + moved);
+  times_.push_back(time);
+  if (times_.size() > most_points) thin_out();
+  shown_ = times_.size();
+}
+
+void Trail::cut(std::size_t count) {
+  points_.resize(3 * count);
+  lengths_.resize(count);
+  times_.resize(count);
 }
 
 void Trail::thin_out() {
@@ -40,16 +53,16 @@ void Trail::thin_out() {
   for (std::size_t i = 0; i < lengths_.size(); ++i) {
     if (i < most_points / 2 && i % 2 == 1) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) points_[3 * kept + axis] = points_[3 * i + axis];
+    times_[kept] = times_[i];
     lengths_[kept++] = lengths_[i];
   }
-  points_.resize(3 * kept);
-  lengths_.resize(kept);
+  cut(kept);
 }
 
 std::span<const float> Trail::wake(float reach) const {
-  std::size_t first = lengths_.size();
+  std::size_t first = shown_;
   while (first > 0 && (point_at(points_, first - 1) - eigen(last_)).norm() <= reach) --first;
-  return std::span(points_).subspan(3 * first);
+  return points().subspan(3 * first);
 }
 
 std::vector<float> marks_of(const Trail& trail, std::span<const float> wake, float distance, float size) {

@@ -11,6 +11,13 @@
 
 namespace mercury {
 
+// What a picture shows of the past when time goes back to an earlier moment.
+enum class Later {
+  forget,  // what came after it has not happened
+  keep,    // it is hidden until time has come so far again
+  skip     // the same, and if time jumps past all known points, the path begins there
+};
+
 // Keeps at most `most_points`: of a longer path, every second point of the older half is forgotten, so that it still
 // begins where it began.
 class Trail {
@@ -24,19 +31,26 @@ class Trail {
 
   // Where the robot is now. Places that are not finite are ignored. Keep it up to date also while no path is shown.
   void pass(Vec3 place);
-  // Appends the present place to the path if it is at least `step` from the last point [m].
-  void lengthen(float step);
+  // It is `time` [s]. Appends the present place to the path if it is at least `step` from the last point [m]. If time
+  // went back, the path ends where the robot was then.
+  void lengthen(float step, double time, Later later = Later::forget);
 
-  std::span<const float> points() const { return points_; }    // 3 each [m], the oldest first
-  std::span<const float> lengths() const { return lengths_; }  // of the path up to each point [m]
+  // The path up to the present: points, 3 numbers each [m], the oldest first; and its length up to each of them [m].
+  std::span<const float> points() const { return std::span(points_).first(3 * shown_); }
+  std::span<const float> lengths() const { return std::span(lengths_).first(shown_); }
   // The newest points, back to the first one that is farther than `reach` from the present place [m].
   std::span<const float> wake(float reach) const;
 
  private:
   void thin_out();
+  void cut(std::size_t count);
 
   Vec3 start_, last_;
   std::vector<float> points_, lengths_;
+  std::vector<double> times_;  // of the points, ascending [s]
+  double now_ = 0;             // the time of the last lengthen() [s]
+  double known_until_ = 0;     // the last time of lengthen(), without those that were forgotten [s]
+  std::size_t shown_ = 0;      // points up to the present
 };
 
 // Short bars across a wake wherever its length passes a multiple of `distance` [m]. `size` of a bar [m]; 6 numbers per

@@ -259,6 +259,41 @@ TEST_P(TimelineOn, ResetBeginsTheTimelineAgain) {
   EXPECT_EQ(scene.snapshot().timeline.head, 0);
 }
 
+TEST_P(TimelineOn, PathsEndWhereTheRobotsWereAtTheMomentShown) {
+  Ocean current;
+  current.flow = {0.5f, 0, 0};
+  LiveSceneOptions wanted = options(current);
+  wanted.view.shown.path = true;
+  LiveScene scene(wanted);
+  test::make_robots(scene, 1);
+  const auto points = [&] { return scene.picture().scene().paths[0].points; };
+  std::vector<float> earlier;
+  double moment = 0;
+  for (int i = 0; i < 40; ++i) {
+    make_steps(scene, 100);
+    if (i != 19) continue;
+    earlier.assign(points().begin(), points().end());
+    moment = scene.snapshot().time;
+  }
+  const std::vector<float> whole(points().begin(), points().end());
+  ASSERT_GT(whole.size(), earlier.size()) << "the robot has moved";
+  scene.seek(moment);
+  scene.wait_until_done();
+  scene.frame();
+  EXPECT_TRUE(std::ranges::equal(points(), earlier));
+  scene.seek(scene.snapshot().timeline.head);
+  scene.wait_until_done();
+  scene.frame();
+  EXPECT_TRUE(std::ranges::equal(points(), whole));
+  // What came later is forgotten when the robot goes on from an earlier moment.
+  scene.seek(moment);
+  scene.wait_until_done();
+  scene.go_on();
+  make_steps(scene, 1);
+  EXPECT_TRUE(std::ranges::equal(points().first(earlier.size()), earlier));
+  EXPECT_LE(points().size(), earlier.size() + 3);
+}
+
 // Recordings.
 
 class PlayedRecording : public test::FolderTest, public testing::WithParamInterface<DeviceKind> {

@@ -15,7 +15,7 @@ Trail straight(int count, float step) {
   Trail trail({0, 0, 0});
   for (int i = 0; i <= count; ++i) {
     trail.pass({step * static_cast<float>(i), 0, 0});
-    trail.lengthen(0.5f * step);
+    trail.lengthen(0.5f * step, i);
   }
   return trail;
 }
@@ -31,10 +31,51 @@ TEST(Trail, ALongPathKeepsItsBeginningAndItsLength) {
 
 TEST(Trail, AStepBelowTheLeastAddsNoPoint) {
   Trail trail({0, 0, 0});
-  trail.lengthen(0.1f);
+  trail.lengthen(0.1f, 0);
   trail.pass({0.05f, 0, 0});
-  trail.lengthen(0.1f);
+  trail.lengthen(0.1f, 1);
   EXPECT_EQ(trail.lengths().size(), 1u);
+}
+
+// Of a robot that is at x = time.
+void move_to(Trail& trail, double time, Later later) {
+  trail.pass({static_cast<float>(time), 0, 0});
+  trail.lengthen(0.5f, time, later);
+}
+
+TEST(Trail, EndsAtAnEarlierMomentAndIsThereAgainLater) {
+  Trail trail = straight(10, 1);
+  move_to(trail, 4.3, Later::skip);
+  EXPECT_EQ(trail.lengths().back(), 4);
+  EXPECT_EQ(trail.points().size(), 3 * 5u);
+  move_to(trail, 7.3, Later::skip);
+  EXPECT_EQ(trail.lengths().back(), 7);
+  EXPECT_EQ(trail.wake(2.5f).size(), 3 * 3u) << "5, 6 and 7";
+  move_to(trail, 10, Later::skip);
+  EXPECT_EQ(trail.lengths().size(), 11u);
+}
+
+TEST(Trail, WhatCameLaterIsForgottenWhenTheRobotGoesOnFromThere) {
+  Trail trail = straight(10, 1);
+  move_to(trail, 4.3, Later::keep);
+  trail.pass({4.3f, 1, 0});
+  trail.lengthen(0.5f, 5, Later::forget);
+  ASSERT_EQ(trail.points().size(), 3 * 6u);
+  EXPECT_EQ(trail.points()[3 * 5 + 1], 1);
+  move_to(trail, 9, Later::keep);
+  EXPECT_EQ(trail.points().size(), 3 * 7u);
+}
+
+TEST(Trail, AJumpIntoTheUnknownBeginsThePathThere) {
+  Trail trail = straight(10, 1);
+  move_to(trail, 30, Later::skip);
+  EXPECT_EQ(trail.points().size(), 3u);
+  EXPECT_EQ(trail.points()[0], 30);
+  EXPECT_EQ(trail.start(), (Vec3{0, 0, 0}));
+  move_to(trail, 31, Later::keep);
+  EXPECT_EQ(trail.points().size(), 3 * 2u);
+  move_to(trail, 2, Later::skip);
+  EXPECT_EQ(trail.points().size(), 3u) << "before all that is known";
 }
 
 TEST(Trail, PlacesThatAreNotFiniteAreIgnored) {
