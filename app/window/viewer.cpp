@@ -282,7 +282,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
-  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
+  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_, legend_.box());
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
@@ -321,7 +321,8 @@ void Viewer::use_mouse() {
 
 void Viewer::draw_text() {
   ViewportTextOptions options{.clock = !preferences_.panels,  // the play bar has its own clock
-                              .hovered = mouse_.hovered()};
+                              .hovered = mouse_.hovered(),
+                              .legend = legend_.box()};
   if (second_.area()) options.top = draw_side_titles(scene_, halves_of(whole_area_), log_);
   draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
   draw_ghost_figures(scene_, area_, shown_camera_, log_);
@@ -335,6 +336,7 @@ void Viewer::draw_text() {
 void Viewer::draw_handles() {
   ViewSettings view = scene_.view();
   bool changed = legend_.draw(scene_.picture().scene().legend, whole_area_, view, log_);
+  context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   if (changed) scene_.set_view(view);
 }

@@ -47,11 +47,15 @@ void Dialogs::draw_question(EventLog& log) {
   if (open_ && just_opened_) ImGui::OpenPopup(id.c_str());
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({screen.x / 2, 0.42f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  const bool low = screen.y < 26 * text;  // a form fills the screen
+  ImGui::SetNextWindowPos({screen.x / 2, (low ? 0.5f : 0.42f) * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 34 * text), 0});
+  const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {spacing.x, low ? 0.3f * spacing.y : spacing.y});
   if (!ImGui::BeginPopupModal(id.c_str(), nullptr,
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
     open_ = shown_ = false;
+    ImGui::PopStyleVar();
     return;
   }
   shown_ = open_;
@@ -77,6 +81,7 @@ void Dialogs::draw_question(EventLog& log) {
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
+  ImGui::PopStyleVar();
   answer(pressed);
 }
 

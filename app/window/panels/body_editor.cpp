@@ -62,7 +62,9 @@ void draw_body_editor(PanelContext& context, const ViewportArea& area) {
     return;
   }
   const float text = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({(area.low.x + area.high.x) / 2, area.low.y + 0.6f * text}, ImGuiCond_Always, {0.5f, 0});
+  const float caption = context.scene.picture().scene().caption.empty() ? 0 : 2 * text;
+  ImGui::SetNextWindowPos({(area.low.x + area.high.x) / 2, area.low.y + 0.6f * text + caption}, ImGuiCond_Always,
+                          {0.5f, 0});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(10 * text, area.width() - text), 20 * text});
   ImGui::Begin("##bodyedit", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |

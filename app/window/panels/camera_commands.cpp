@@ -103,10 +103,11 @@ void look_along(PanelContext& context, int axis, bool from_negative) {
   context.log.write("along", {{"axis", axis}, {"negative", from_negative}});
 }
 
-void draw_axes(PanelContext& context, const ViewportArea& area, const render::Camera& camera, float above) {
+Box draw_axes(PanelContext& context, const ViewportArea& area, const render::Camera& camera, float above) {
   const float text = ImGui::GetFontSize(), radius = 0.62f * text, reach = 1.9f * text, side = 2 * (reach + radius);
-  if (area.width() < 4 * side || area.height() < 3 * side) return;
-  const ImVec2 low{area.high.x - side - 0.5f * text, area.high.y - side - 0.5f * text - above};
+  if (area.width() < 4 * side || area.height() < 3 * side) return {};
+  ImVec2 low{area.high.x - side - 0.5f * text, area.high.y - side - 0.5f * text - above};
+  if (context.legend.meets({low, {low.x + side, low.y + side}})) low.x = context.legend.low.x - side - 0.5f * text;
   ImGui::SetNextWindowPos(low);
   ImGui::SetNextWindowSize({side, side});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
@@ -129,6 +130,7 @@ void draw_axes(PanelContext& context, const ViewportArea& area, const render::Ca
     draw_end(*ImGui::GetWindowDrawList(), end, middle, radius, hovered);
   }
   ImGui::End();
+  return {low, {low.x + side, low.y + side}};
 }
 
 }  // namespace mercury::window

@@ -19,6 +19,6 @@ void look_along(PanelContext& context, int axis, bool from_negative = false);
 
 // The axes in a corner of the picture, at its lower right; a click on an end looks from there. `above`: free room below
 // it [pixels].
-void draw_axes(PanelContext& context, const ViewportArea& area, const render::Camera& camera, float above);
+Box draw_axes(PanelContext& context, const ViewportArea& area, const render::Camera& camera, float above);
 
 }  // namespace mercury::window

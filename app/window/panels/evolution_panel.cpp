@@ -13,6 +13,7 @@
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/family_tree.h"
 #include "app/window/panels/individual_details.h"
+#include "app/window/panels/key_hint.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -40,7 +41,8 @@ void draw_commands(PanelContext& context) {
   ImGui::SameLine();
   if (ImGui::Button("Evolve these...", {width, 0})) evolve_selected(context);
   context.log.item("evolution.evolve");
-  tooltip("start an evolution from the selected robots, in the background (key E)");
+  tooltip(with_keys(context.keys, "start an evolution from the selected robots, in the background", Action::evolve)
+              .c_str());
 }
 
 void draw_empty(PanelContext& context) {

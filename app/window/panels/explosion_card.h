@@ -19,6 +19,7 @@ class ExplosionCard {
   void update(PanelContext& context, const ViewportArea& area, const render::Camera& camera);
   // Draws the card at the lower left of the picture, if there is an explosion that was not dismissed.
   void draw(PanelContext& context, const ViewportArea& area);
+  Box box() const { return {low_, high_}; }  // of the card; empty = not shown
 
  private:
   const ExplodedRobot* chosen() const;

@@ -38,9 +38,23 @@ void draw_chip(const Gesture& gesture, ImVec2 at, float opacity) {
                faded(ImGui::GetColorU32(ImGuiCol_Text), opacity), gesture.effect);
 }
 
+// Without what stands at the right or covers the lower end.
+ViewportArea free_part(ViewportArea area, std::initializer_list<Box> taken) {
+  const float rows = 5 * ImGui::GetFontSize();
+  for (const Box& box : taken) {
+    const bool at_right = box.low.x > (area.low.x + area.high.x) / 2;
+    if (!box.meets({{area.low.x, area.high.y - rows}, area.high})) continue;
+    if (at_right)
+      area.high.x = box.low.x;
+    else
+      area.high.y = box.low.y;
+  }
+  return area;
+}
+
 }  // namespace
 
-void FirstSteps::draw(PanelContext& context, const ViewportArea& area, double dt) {
+void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::initializer_list<Box> taken, double dt) {
   Preferences& preferences = context.preferences;
   const UsedGestures& used = context.gestures;
   const std::array now{used.turned, used.moved, used.zoomed, used.pulled};
@@ -55,6 +69,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& area, double dt
     if (opacity_[i] > 0) shown.push_back(i);
   }
   if (!context.preferences.panels) return;
+  const ViewportArea area = free_part(picture, taken);
   // As many rows as the width of the picture needs.
   const float text = ImGui::GetFontSize(), spacing = 0.5f * text, room = area.width() - 2 * text;
   std::vector<std::vector<std::size_t>> rows;
@@ -68,6 +83,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& area, double dt
     rows.back().push_back(i);
     filled += spacing + width;
   }
+  if (area.height() < 0.5f * picture.height()) return;
   float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
   for (const std::vector<std::size_t>& row : rows) {
     float width = -spacing;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 
 #include "app/window/panels/panel_context.h"
 #include "app/window/viewport/viewport_area.h"
@@ -11,9 +12,9 @@ namespace mercury::window {
 
 class FirstSteps {
  public:
-  // Draws the gestures that are new to the user at the bottom of the picture. Never takes the mouse. `dt`: time since
-  // the last frame [s].
-  void draw(PanelContext& context, const ViewportArea& area, double dt);
+  // Draws the gestures that are new to the user at the bottom of the picture, between what is `taken`, as far as there
+  // is room. Never takes the mouse. `dt`: time since the last frame [s].
+  void draw(PanelContext& context, const ViewportArea& area, std::initializer_list<Box> taken, double dt);
   bool fading() const { return fading_; }
 
  private:

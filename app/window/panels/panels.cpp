@@ -62,10 +62,11 @@ float Panels::draw_column(PanelColumn& column, Side side, float top, float botto
 }
 
 void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, double dt) {
-  draw_axes(context_, area, camera, context_.scene.view().shown.scale_bar ? 2.6f * ImGui::GetFontSize() : 0);
+  const Box axes =
+      draw_axes(context_, area, camera, context_.scene.view().shown.scale_bar ? 2.6f * ImGui::GetFontSize() : 0);
   explosions_.update(context_, area, camera);
   explosions_.draw(context_, area);
-  first_steps_.draw(context_, area, dt);
+  first_steps_.draw(context_, area, {axes, context_.legend, explosions_.box()}, dt);
   draw_body_editor(context_, area);
   draw_robot_menu(context_, [this](const Command& command) { execute(command); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/window/panels/key_hint.h"
 #include "app/window/panels/timeline_strip.h"
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/plot.h"
@@ -19,13 +20,13 @@ namespace {
 enum class Icon { play, pause, step, step_back, reset };
 
 // A button with a drawn icon, since the font has none.
-bool icon_button(const char* id, Icon icon, const char* help, bool lit = false) {
+bool icon_button(const char* id, Icon icon, const std::string& help, bool lit = false) {
   const float side = 1.15f * ImGui::GetFrameHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   if (lit) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
   const bool clicked = ImGui::Button(id, {side, side});
   if (lit) ImGui::PopStyleColor();
-  tooltip(help);
+  tooltip(help.c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 color = lit ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text);
   const ImVec2 c{corner.x + side / 2, corner.y + side / 2};
@@ -91,36 +92,39 @@ void draw_speed(PanelContext& context) {
     scene.set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
   context.log.item("speed");
-  tooltip("simulated seconds per second, 1/1000 to 100 (keys + and -)");
+  tooltip(fmt::format("simulated seconds per second, 1/1000 to 100 (keys {} and {})",
+                      context.keys.keys_of(Action::faster), context.keys.keys_of(Action::slower))
+              .c_str());
   ImGui::SameLine();
   if (toggle_button("\xc3\x97"
                     "1",
                     scene.speed() == 1))
     scene.set_speed(1);
   context.log.item("speed.one");
-  tooltip("real time (key 0)");
+  tooltip(with_keys(context.keys, "real time", Action::real_time).c_str());
   ImGui::SameLine();
   if (toggle_button("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
   context.log.item("speed.fastest");
-  tooltip("as fast as possible (key *)");
+  tooltip(with_keys(context.keys, "as fast as possible", Action::fastest).c_str());
   ImGui::SameLine();
   draw_achieved_speed(scene, unlimited);
 }
 
 void draw_buttons(PanelContext& context) {
   LiveScene& scene = context.scene;
-  if (icon_button("##reset", Icon::reset, "reset to the start (key R)")) scene.reset();
+  if (icon_button("##reset", Icon::reset, with_keys(context.keys, "reset to the start", Action::reset))) scene.reset();
   context.log.item("reset");
   ImGui::SameLine();
-  if (icon_button("##step_back", Icon::step_back, "one time step back (left arrow or ,)")) scene.step_back();
+  if (icon_button("##step_back", Icon::step_back, with_keys(context.keys, "one time step back", Action::step_back)))
+    scene.step_back();
   context.log.item("step_back");
   ImGui::SameLine();
   if (icon_button("##toggle", scene.playing() ? Icon::pause : Icon::play,
-                  scene.playing() ? "pause (Space)" : "play (Space)", true))
+                  with_keys(context.keys, scene.playing() ? "pause" : "play", Action::play_pause), true))
     scene.toggle();
   context.log.item("play");
   ImGui::SameLine();
-  if (icon_button("##step", Icon::step, "one time step (right arrow or .)")) scene.step();
+  if (icon_button("##step", Icon::step, with_keys(context.keys, "one time step", Action::step))) scene.step();
   context.log.item("step");
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/options/generator_options.h"
+#include "app/window/panels/key_hint.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
@@ -122,11 +123,7 @@ void RandomSection::draw(PanelContext& context) {
   whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, context, "generate.seed");
   generation.count = static_cast<std::size_t>(count);
   generation.seed = static_cast<std::uint64_t>(seed);
-  for (const GeneratorParameter& parameter : generator_in(generation).parameters) {
-    if (parameter.advanced && !advanced_) continue;
-    ParameterValue value = value_of(generation.values, parameter);
-    if (std::visit(Control{parameter, context}, value)) generation.values[parameter.name] = value;
-  }
+  // Above the parameters, so that a low window shows it, too.
   ImGui::Checkbox("Replace", &context.creation.replace);
   context.log.item("generate.replace");
   tooltip("the new robots replace those in the scene; otherwise they are added");
@@ -137,7 +134,12 @@ void RandomSection::draw(PanelContext& context) {
   ImGui::SameLine();
   if (ImGui::Button("Generate", {-1, 0})) generate_robots(context);
   context.log.item("generate");
-  tooltip("make the robots, and increment the seed (key N)");
+  tooltip(with_keys(context.keys, "make the robots, and increment the seed", Action::new_random).c_str());
+  for (const GeneratorParameter& parameter : generator_in(generation).parameters) {
+    if (parameter.advanced && !advanced_) continue;
+    ParameterValue value = value_of(generation.values, parameter);
+    if (std::visit(Control{parameter, context}, value)) generation.values[parameter.name] = value;
+  }
 }
 
 float RandomSection::height(const PanelContext& context) const {

@@ -7,6 +7,7 @@
 
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
+#include "app/window/panels/key_hint.h"
 #include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -49,43 +50,44 @@ void RobotsPanel::draw_strengths(PanelContext& context) {
 void RobotsPanel::draw_commands(PanelContext& context) {
   LiveScene& scene = context.scene;
   const std::vector<RobotId> selection = scene.selection();
+  const auto explain = [&](const char* text, Action action) { tooltip(with_keys(context.keys, text, action).c_str()); };
   const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
   ImGui::BeginDisabled(selection.empty());
   if (ImGui::Button("Duplicate", {width, 0})) scene.duplicate(selection);
   context.log.item("duplicate");
-  tooltip("add a copy of each selected robot (Ctrl D)");
+  explain("add a copy of each selected robot", Action::duplicate);
   ImGui::SameLine();
   if (ImGui::Button("Mutate", {width, 0})) mutate_selected(context);
   context.log.item("mutate");
-  tooltip("add a changed copy of each selected robot (key M)");
+  explain("add a changed copy of each selected robot", Action::mutate);
   ImGui::SameLine();
   if (ImGui::Button("Remove", {width, 0})) scene.remove(selection);
   context.log.item("remove");
-  tooltip("remove the selected robots (Delete)");
+  explain("remove the selected robots", Action::remove);
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   ImGui::BeginDisabled(selection.size() != 2);
   if (ImGui::Button("Breed from two", {half, 0})) breed_selected(context);
   ImGui::EndDisabled();
   context.log.item("breed");
-  tooltip("add a child of the two selected robots (key X)");
+  explain("add a child of the two selected robots", Action::breed);
   ImGui::SameLine();
   if (ImGui::Button("Evolve these...", {half, 0})) evolve_selected(context);
   context.log.item("evolve");
-  tooltip("let the selected robots evolve, in the background (key E)");
+  explain("let the selected robots evolve, in the background", Action::evolve);
   ImGui::EndDisabled();
   draw_strengths(context);
   if (ImGui::Button("Open...", {width, 0})) open_robots(context);
   context.log.item("open");
-  tooltip("open robot files (Ctrl O), or drop files and folders on the window");
+  explain("open robot files, or drop files and folders on the window", Action::open);
   ImGui::SameLine();
   ImGui::BeginDisabled(scene.robot_count() == 0);
   if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
   context.log.item("save");
-  tooltip("save the selected robots, or all if none is selected (Ctrl Shift S)");
+  explain("save the selected robots, or all if none is selected", Action::save);
   ImGui::SameLine();
   if (ImGui::Button("Clear", {width, 0})) scene.clear();
   context.log.item("clear");
-  tooltip("remove all robots (Ctrl Z to undo)");
+  tooltip("remove all robots; undo brings them back");
   ImGui::EndDisabled();
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/text_size.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,9 @@ void change_text_size(PanelContext& context, int tenths) {
 }
 
 void TextSizeRow::draw(PanelContext& context) {
-  row("text size", "of the panels (keys Ctrl + and Ctrl -)");
+  row("text size", fmt::format("of the panels (keys {} and {})", context.keys.keys_of(Action::larger_text),
+                               context.keys.keys_of(Action::smaller_text))
+                       .c_str());
   const float font = ImGui::GetFontSize(), width = 1.8f * font, height = ImGui::GetFrameHeight();
   const ImVec2 low = ImGui::GetCursorScreenPos();
   if (pinned_) {

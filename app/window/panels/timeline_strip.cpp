@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/window/panels/key_hint.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -115,17 +116,20 @@ float button_width(const char* text) {
 void draw_actions(PanelContext& context, const TimelineState& timeline) {
   // They are always there: the track must not change its length under the mouse.
   ImGui::BeginDisabled(!timeline.viewing);
-  if (strip_button(context, "Go on", "timeline.go_on", "go on from this moment; forget what came after it (key U)",
-                   false))
+  if (strip_button(context, "Go on", "timeline.go_on",
+                   with_keys(context.keys, "go on from this moment; forget what came after it", Action::go_on), false))
     change_timeline(context, Action::go_on);
   ImGui::EndDisabled();
   if (strip_button(context, "Fork", "timeline.fork",
-                   "go on from this moment, with copies of the selected robots (key Y)", false))
+                   with_keys(context.keys, "go on from this moment, with copies of the selected robots", Action::fork),
+                   false))
     change_timeline(context, Action::fork);
-  if (strip_button(context, "Loop", "timeline.loop", "begin a loop here, close it here, end it (key O)",
+  if (strip_button(context, "Loop", "timeline.loop",
+                   with_keys(context.keys, "begin a loop here, close it here, end it", Action::loop),
                    timeline.looping || context.scene.loop_begin()))
     change_timeline(context, Action::loop);
-  if (strip_button(context, "Mark", "timeline.mark", "set or remove a bookmark here (key X)", false))
+  if (strip_button(context, "Mark", "timeline.mark",
+                   with_keys(context.keys, "set or remove a bookmark here", Action::bookmark), false))
     change_timeline(context, Action::bookmark);
 }
 

@@ -108,7 +108,7 @@ bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Conf
   bool changed = solver_section(edited, log);
   changed |= environment_section(context, choice, edited);
   ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
-  if (ImGui::Button("Reset all to defaults")) {
+  if (ImGui::Button("Reset all")) {
     const Device device = edited.device;
     edited = Configuration{};
     edited.device = device;
@@ -116,6 +116,7 @@ bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Conf
     changed = true;
   }
   log.item("tune.reset");
+  tooltip("solver and environment have their defaults again");
   if (!changed) return false;
   try {
     validate(edited);

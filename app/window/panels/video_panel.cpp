@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/window/panels/key_hint.h"
 #include "app/window/panels/video_recorder.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -37,14 +38,14 @@ void draw_recording(PanelContext& context) {
     return;
   }
   combo("format", "of both kinds of video", settings.format, {"MP4", "WebM", "GIF"});
-  row("frames per second", nullptr);
+  row("frame rate", "frames per second");
   number_slider("##rate", settings.frames_per_second, 10, 60);
   settings.frames_per_second = std::clamp(settings.frames_per_second, 1, 120);
   ImGui::Checkbox("Without panels", &settings.hide_panels);
-  tooltip("hide the panels until the recording stops (key V)");
+  tooltip("hide the panels until the recording stops");
   if (ImGui::Button("Record", {-1, 0})) recorder.toggle(context);
   context.log.item("video.record");
-  tooltip("record the window until you stop it (key V)");
+  tooltip(with_keys(context.keys, "record the window until you stop it", Action::record).c_str());
 }
 
 void draw_group_options(VideoSettings& settings) {

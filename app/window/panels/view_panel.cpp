@@ -7,6 +7,7 @@
 
 #include "app/window/panels/camera_commands.h"
 #include "app/window/panels/color_section.h"
+#include "app/window/panels/key_hint.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
@@ -19,27 +20,29 @@ bool has_gravity(const Environment& environment) {
   return g.x != 0 || g.y != 0 || g.z != 0;
 }
 
-bool check(const char* text, const char* help, bool& value, const char* name, EventLog& log) {
+bool check(const char* text, const std::string& help, bool& value, const char* name, EventLog& log) {
   const bool changed = ImGui::Checkbox(text, &value);
   log.item(std::string("show.") + name);
-  tooltip(help);
+  tooltip(help.c_str());
   return changed;
 }
 
-bool draw_show_section(ViewSettings& view, EventLog& log) {
+bool draw_show_section(ViewSettings& view, const KeyMap& keys, EventLog& log) {
   Shown& shown = view.shown;
   bool changed = false;
   heading("Show");
   if (ImGui::BeginTable("show", 2, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
     changed |= check("Skin", "the faces", shown.skin, "skin", log);
-    changed |= check("Springs", "each spring as a rod (key S)", shown.springs, "springs", log);
+    changed |=
+        check("Springs", with_keys(keys, "each spring as a rod", Action::springs), shown.springs, "springs", log);
     changed |= check("Masses", "each mass as a ball", shown.masses, "masses", log);
     changed |= check("Rounded skin", "smooth the edges of the skin", view.smooth, "smooth", log);
     changed |= check("Path", "the path of each centre of mass", shown.path, "path", log);
     ImGui::TableNextColumn();
-    changed |= check("Names", "name, distance and rank above each robot (key L)", shown.labels, "labels", log);
-    changed |= check("Legend", "what the colours mean (key K)", shown.legend, "legend", log);
+    changed |= check("Names", with_keys(keys, "name, distance and rank above each robot", Action::labels), shown.labels,
+                     "labels", log);
+    changed |= check("Legend", with_keys(keys, "what the colours mean", Action::legend), shown.legend, "legend", log);
     changed |= check("Clock", "simulated time, in videos and while the panels are hidden", shown.clock, "clock", log);
     changed |= check("Scale bar", "a length in metres", shown.scale_bar, "scale_bar", log);
     ImGui::EndTable();
@@ -47,7 +50,7 @@ bool draw_show_section(ViewSettings& view, EventLog& log) {
   return changed;
 }
 
-bool draw_arrow_section(ViewSettings& view, const Environment& environment, EventLog& log) {
+bool draw_arrow_section(ViewSettings& view, const Environment& environment, const KeyMap& keys, EventLog& log) {
   Shown& shown = view.shown;
   bool changed = false;
   heading("Arrows");
@@ -55,8 +58,9 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, Even
     const bool ocean = is_ocean(environment);
     ImGui::TableNextColumn();
     ImGui::BeginDisabled(!ocean && !shown.arrows.drag);
-    changed |= check("Drag", "drag of the water on each face (key D); only in the ocean environment", shown.arrows.drag,
-                     "drag", log);
+    changed |= check(
+        "Drag", with_keys(keys, "drag of the water on each face; only in the ocean environment", Action::drag_arrows),
+        shown.arrows.drag, "drag", log);
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!ocean && !shown.arrows.lift);
     changed |=
@@ -129,23 +133,25 @@ void draw_bookmarks(PanelContext& context) {
   }
 }
 
-void draw_camera_section(OrbitController& camera, EventLog& log) {
+void draw_camera_section(OrbitController& camera, const KeyMap& keys, EventLog& log) {
   heading("Camera");
   struct Mode {
     CameraMode mode;
     const char* name;
     const char* meaning;
+    std::optional<Action> action;
   };
-  static constexpr Mode modes[] = {{CameraMode::still, "Free", "the mouse moves the camera"},
-                                   {CameraMode::group, "Group", "keeps all robots in view"},
-                                   {CameraMode::follow, "Follow", "follows the selected robot, or the group (key G)"},
-                                   {CameraMode::turntable, "Circle", "circles the group (key T)"},
-                                   {CameraMode::top, "Top", "looks straight down (key Z)"}};
+  static constexpr Mode modes[] = {
+      {CameraMode::still, "Free", "the mouse moves the camera", {}},
+      {CameraMode::group, "Group", "keeps all robots in view", {}},
+      {CameraMode::follow, "Follow", "follows the selected robot, or the group", Action::follow},
+      {CameraMode::turntable, "Circle", "circles the group", Action::turntable},
+      {CameraMode::top, "Top", "looks straight down", Action::top_view}};
   for (const Mode& mode : modes) {
     if (mode.mode != CameraMode::still) ImGui::SameLine(0, 0.3f * ImGui::GetFontSize());
     if (toggle_button(mode.name, camera.mode() == mode.mode)) camera.set_mode(mode.mode);
     log.item(std::string("camera.") + mode.name);
-    tooltip(mode.meaning);
+    tooltip((mode.action ? with_keys(keys, mode.meaning, *mode.action) : mode.meaning).c_str());
   }
   float degrees = camera.field_of_view * 57.29578f;
   if (slider("field of view", "vertical; a small angle acts like a telescope", degrees, 0.6f * 57.29578f,
@@ -183,7 +189,8 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view, TextSize
   Preferences& preferences = context.preferences;
   bool changed = draw_layout(view, static_cast<int>(context.scene.entries().size()), log);
   int theme = view.theme == render::Theme::dark ? 0 : 1;
-  if (combo("theme", "of the picture and the panels (key B)", theme, {"dark", "light"})) {
+  if (combo("theme", with_keys(context.keys, "of the picture and the panels", Action::theme).c_str(), theme,
+            {"dark", "light"})) {
     view.theme = theme == 0 ? render::Theme::dark : render::Theme::light;
     changed = true;
   }
@@ -203,9 +210,9 @@ void ViewPanel::draw(PanelContext& context) {
   const Environment& environment = context.scene.configuration().environment;
   const auto& scale = context.scene.picture().scene().scale;
   bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.log);
-  changed |= draw_show_section(view, context.log);
-  changed |= draw_arrow_section(view, environment, context.log);
-  draw_camera_section(context.camera, context.log);
+  changed |= draw_show_section(view, context.keys, context.log);
+  changed |= draw_arrow_section(view, environment, context.keys, context.log);
+  draw_camera_section(context.camera, context.keys, context.log);
   draw_bookmarks(context);
   changed |= draw_appearance_section(context, view, text_size_);
   changed |= draw_cut_section(view, context.log);

@@ -68,13 +68,6 @@ std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
   return lines;
 }
 
-struct Box {
-  ImVec2 low, high;
-  bool meets(const Box& other) const {
-    return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
-  }
-};
-
 // Finds room for text beside the ends of the line, or above or below its middle. Returns nothing if all positions are
 // taken.
 std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& line, const ViewportArea& area,
@@ -120,7 +113,9 @@ void draw_explosion_marks(std::span<const ExplodedRobot> robots, const Explosion
       drawn.emplace_back(&robot, *line);
   std::stable_partition(drawn.begin(), drawn.end(), [&](const auto& one) { return one.first->robot == marks.chosen; });
   ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
-  std::vector<Box> taken{{marks.covered_low, marks.covered_high}};
+  // The upper edge has the picture's caption.
+  const Box caption{area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}};
+  std::vector<Box> taken{{marks.covered_low, marks.covered_high}, caption};
   const float end = 0.7f * ImGui::GetFontSize();
   for (const auto& [robot, line] : drawn) {
     draw_mark(line, robot->robot == marks.chosen);

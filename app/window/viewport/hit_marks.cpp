@@ -19,6 +19,23 @@ std::optional<ImVec2> on_screen(const ViewportArea& area, const render::Camera& 
   return ImVec2(area.low.x + p.x(), area.low.y + p.y());
 }
 
+// Where a window of that size covers neither the two points nor the legend, if there is such a place.
+ImVec2 free_corner(const ViewportArea& area, ImVec2 size, ImVec2 a, ImVec2 b, const Box& legend) {
+  const float gap = 2 * ImGui::GetFontSize();
+  const float right = std::max(a.x, b.x) + gap, left = std::min(a.x, b.x) - gap - size.x;
+  const float above = std::min(a.y, b.y) - size.y - gap, below = std::max(a.y, b.y) + gap;
+  const auto inside = [&](float x, float y) {
+    return ImVec2(std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - size.x)),
+                  std::clamp(y, area.low.y, std::max(area.low.y, area.high.y - size.y)));
+  };
+  const ImVec2 corners[] = {inside(right, above), inside(left, above), inside(right, below), inside(left, below)};
+  for (const ImVec2& corner : corners) {
+    const Box box{corner, {corner.x + size.x, corner.y + size.y}};
+    if (!box.meets(legend) && !box.holds(a) && !box.holds(b)) return corner;
+  }
+  return corners[1];
+}
+
 }  // namespace
 
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
@@ -69,18 +86,19 @@ void write_figures(const LiveScene& scene, const Hit& hit) {
   ImGui::PopStyleColor();
 }
 
+float figures_height() { return 6 * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y; }
+
 bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
-                         const render::Camera& camera) {
+                         const render::Camera& camera, const Box& legend) {
   if (!scene.pointed_snapshot().robots->index_of(hit.robot)) return false;
   const auto at = draw_hit_mark(scene, hit, area, camera);
-  const float text = ImGui::GetFontSize(), width = 18 * text, height = 11 * text, gap = 2 * text;
+  const float text = ImGui::GetFontSize();
   const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));
   // Beside the point that was clicked, too, so that a second click there reaches the robot.
   const ImVec2 clicked = on_screen(area, camera, hit.point).value_or(mass);
-  const float right = std::max(mass.x, clicked.x) + gap, left = std::min(mass.x, clicked.x) - gap - width;
-  const float x = right + width < area.high.x ? right : left;
-  const ImVec2 corner{std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - width)),
-                      std::clamp(mass.y - height - gap, area.low.y, std::max(area.low.y, area.high.y - height))};
+  const ImVec2 size{18 * text, figures_height() + 1.6f * text};
+  const ImVec2 corner = free_corner(area, size, mass, clicked, legend);
+  const float width = size.x, x = corner.x;
   if (at)
     ImGui::GetBackgroundDrawList()->AddLine(*at, {corner.x + (x > mass.x ? 0 : width), corner.y + 2 * text},
                                             palette().warning, 0.06f * text);

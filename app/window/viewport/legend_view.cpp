@@ -128,6 +128,7 @@ bool LegendView::draw_scale(const render::Legend& legend, const Bar& bar, ViewSe
 bool LegendView::draw(const std::optional<render::Legend>& legend, const ViewportArea& area, ViewSettings& view,
                       EventLog& log) {
   if (!ImGui::IsMouseDown(0) || !legend || !legend->scale) held_.reset();
+  box_ = {};
   if (!legend) return false;
   const float text = ImGui::GetFontSize(), step = 1.35f * text;
   const std::vector<render::Tick> ticks =
@@ -138,6 +139,7 @@ bool LegendView::draw(const std::optional<render::Legend>& legend, const Viewpor
   const ImVec2 box_low{low.x - 0.6f * text, low.y - 0.5f * text};
   const ImVec2 box_high{low.x + width + 0.6f * text, low.y + (lines + 1) * step + 0.4f * text};
   if (box_low.x < area.low.x || box_high.y > area.high.y) return false;  // no room
+  box_ = {box_low, box_high};
   ImGui::SetNextWindowPos(box_low);
   ImGui::SetNextWindowSize({box_high.x - box_low.x, box_high.y - box_low.y});
   // Only a scale takes the mouse; swatches let it through to the picture.

@@ -17,12 +17,14 @@ class LegendView {
   // dragging an end sets it, and a double click on one lets the scale fit again. Call between begin_frame() and
   // end_frame() of ImGuiLayer, also without a legend.
   bool draw(const std::optional<render::Legend>& legend, const ViewportArea& area, ViewSettings& view, EventLog& log);
+  const Box& box() const { return box_; }  // of the last draw()
 
  private:
   struct Bar;
   bool draw_scale(const render::Legend& legend, const Bar& bar, ViewSettings& view, EventLog& log);
   bool drag_end(bool high, const render::Legend& legend, const Bar& bar, ViewSettings& view, EventLog& log);
 
+  Box box_;
   std::optional<render::Scale> held_;  // while an end is dragged: the scale when the drag began
 };
 

@@ -176,12 +176,12 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   if (rest_time_ >= mark_delay) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
 }
 
-void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
+void MouseController::draw(const ViewportArea& area, const render::Camera& camera, const Box& legend) {
   draw_springs(area, camera);
   draw_pull(area, camera);
   draw_box();
   if (pinned_ && !scene_.is_selected(pinned_->robot)) pinned_.reset();
-  if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera)) pinned_.reset();
+  if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera, legend)) pinned_.reset();
   if (!hovered_) return;
   draw_hit_mark(scene_, *hovered_, area, camera);
   const bool is_pinned = pinned_ && pinned_->robot == hovered_->robot && pinned_->mass == hovered_->mass;
@@ -233,13 +233,14 @@ void MouseController::draw_box() const {
 
 void MouseController::draw_details(const ViewportArea& area) const {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const float text_height = ImGui::GetFontSize();
-  const bool left = mouse.x + 18 * text_height > area.high.x, above = mouse.y + 11 * text_height > area.high.y;
-  ImGui::SetNextWindowPos(
-      {mouse.x + (left ? -text_height : text_height), mouse.y + (above ? -text_height : text_height)}, ImGuiCond_Always,
-      {left ? 1.0f : 0.0f, above ? 1.0f : 0.0f});
+  const float text_height = ImGui::GetFontSize(), width = 18 * text_height, height = figures_height();
+  const bool left = mouse.x + width > area.high.x, above = mouse.y + text_height + height > area.high.y;
+  // Beside the mouse where there is no room above or below.
+  const float y = above ? mouse.y - text_height - height : mouse.y + text_height;
+  ImGui::SetNextWindowPos({mouse.x + (left ? -text_height : text_height), std::max(y, 0.0f)}, ImGuiCond_Always,
+                          {left ? 1.0f : 0.0f, 0});
   // Dear ImGui widens a tooltip a frame late, and these numbers change in every frame.
-  ImGui::SetNextWindowSizeConstraints({18 * text_height, 0}, {FLT_MAX, FLT_MAX});
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {FLT_MAX, FLT_MAX});
   ImGui::BeginTooltip();
   write_figures(scene_, *hovered_);
   ImGui::EndTooltip();

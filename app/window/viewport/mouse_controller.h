@@ -35,7 +35,7 @@ class MouseController {
   // one the last picture was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
   // Draws the force of a pull and the details under the pointer.
-  void draw(const ViewportArea& area, const render::Camera& camera);
+  void draw(const ViewportArea& area, const render::Camera& camera, const Box& legend);
   // The robot under the pointer, by its index in the snapshot.
   std::optional<std::size_t> hovered() const;
   // True while a button is held.

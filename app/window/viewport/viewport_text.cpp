@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,26 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
   }
 }
 
+// In the upper left corner, as far as there is room.
+void draw_caption(const std::string& caption, const ViewportArea& area, const ViewportTextOptions& options,
+                  EventLog& log) {
+  if (caption.empty()) return;
+  const float text = ImGui::GetFontSize();
+  const ImVec2 at{area.low.x + text, area.low.y + options.top + text};
+  const Box& legend = options.legend;
+  const bool beside_legend = legend.meets({at, {area.high.x, at.y + 2 * text}});
+  const float room = (beside_legend ? legend.low.x : area.high.x) - text - at.x;
+  std::string fitting;
+  std::istringstream lines(caption);
+  for (std::string one; std::getline(lines, one);) {
+    if (!fitting.empty()) fitting += '\n';
+    fitting += shortened(one, std::max(3 * text, room));
+  }
+  line(at, fitting);
+  const ImVec2 size = ImGui::CalcTextSize(fitting.c_str());
+  log.item("caption", at, {at.x + size.x, at.y + size.y});
+}
+
 // The scale bar: a round length, to scale at the distance of the camera's target.
 void draw_scale_bar(const ViewportArea& area, const render::Camera& camera) {
   const float depth = (camera.target - camera.eye).norm();
@@ -97,8 +118,7 @@ void draw_viewport_text(const render::Scene& scene, std::span<const render::Boun
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
   draw_labels(scene, bounds, area, camera, options.hovered, log);
-  if (options.caption && !scene.caption.empty())
-    line({area.low.x + text, area.low.y + options.top + text}, shortened(scene.caption, area.width() - 2 * text));
+  if (options.caption) draw_caption(scene.caption, area, options, log);
   if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();

@@ -22,6 +22,7 @@ struct ViewportTextOptions {
   float top = 0;                       // of the picture that is taken [pixels]
   bool caption = true;                 // draw the caption
   std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
+  Box legend;                          // which the caption leaves free
 };
 
 // Draws the text of the scene over the picture, and logs where each name is as the item "label.BODY". `bounds`: one box

@@ -6,6 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "app/window/panels/key_hint.h"
 #include "tests/app/program.h"
 
 namespace mercury::window {
@@ -23,6 +24,16 @@ KeyPress with_control(char32_t character, bool shift = false) {
 std::optional<Action> action_of(const KeyMap& keys, const KeyPress& press) {
   const auto command = keys.command_of(press);
   return command ? std::optional(command->action) : std::nullopt;
+}
+
+TEST(KeyMap, TooltipsNameThePresentKeys) {
+  KeyMap map;
+  EXPECT_EQ(with_keys(map, "reset", Action::reset), "reset (key R)");
+  EXPECT_EQ(with_keys(map, "undo", Action::undo), "undo (Ctrl Z)");
+  EXPECT_EQ(with_keys(map, "step", Action::step), "step (Right or .)");
+  ASSERT_EQ(map.read("reset = Ctrl J\nundo =\n"), "");
+  EXPECT_EQ(with_keys(map, "reset", Action::reset), "reset (Ctrl J)");
+  EXPECT_EQ(with_keys(map, "undo", Action::undo), "undo");
 }
 
 TEST(KeyMap, EveryCommandHasItsOwnNameAndEveryKeyOneCommand) {

@@ -161,6 +161,44 @@ class ToolsTest(WindowCase):
         self.assertNotIn("gesture.zoom", again.items)
         self.finish(again)
 
+    def test_nothing_covers_another_in_a_low_window(self):
+        window = Window(PROGRAM, self.display, scratch(), str(SAMPLES / "eel.json"), "--paused", "--color", "strain", size="640x400")
+        self.addCleanup(window.kill)
+
+        def box(name):
+            item = window.items[name]
+            return (item["x"] - item["width"] / 2, item["y"] - item["height"] / 2,
+                    item["x"] + item["width"] / 2, item["y"] + item["height"] / 2)
+
+        def covered():
+            names = [name for name in window.items if name == "caption" or name.startswith(("gesture.", "axes.", "legend."))]
+            self.assertIn("legend.high", names)
+            boxes = {name: box(name) for name in names}
+            return [(a, b) for a in names for b in names if a < b and a.split(".")[0] != b.split(".")[0]
+                    and boxes[a][0] < boxes[b][2] and boxes[b][0] < boxes[a][2]
+                    and boxes[a][1] < boxes[b][3] and boxes[b][1] < boxes[a][3]]
+
+        for key in (None, "bracketleft", "bracketright"):  # no column, the left one, the right one
+            if key:
+                window.key(key)
+            window.until("settled", lambda: window.frame() and not covered())
+        window.key("bracketright", "ctrl+a")
+        window.frame(lambda frame: frame["selected"] == 1)
+        window.key("e")
+        window.place("dialog.accept")
+        window.until("all of the form in the window", lambda: window.frame() and box("dialog.accept")[3] < 400)
+        window.kill()
+
+    def test_the_button_that_makes_robots_is_in_view(self):
+        window = self.small("--paused")
+        item = window.items["generate"]
+        bottom = window.items["panel.Robots"]["y"] + window.items["panel.Robots"]["height"] / 2
+        self.assertLess(item["y"] + item["height"] / 2, bottom)
+        since = window.mark()
+        window.click("generate")
+        window.wait("robots", since, lambda event: event["count"] == 6)
+        self.finish(window)
+
     def test_keys_are_remapped_by_a_file(self):
         folder = scratch()
         settings = folder / "config/mercury/keys.txt"
