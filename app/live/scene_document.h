@@ -37,7 +37,7 @@ struct DocumentRobot {
 // A pin or a spring that stays attached to a mass.
 struct Attachment {
   LivePerturbation spring;
-  std::uint64_t resets = 0;  // so many there were when its target was set
+  std::uint64_t resets = 0;  // their number when its target was set
 };
 
 struct SceneDocument {
