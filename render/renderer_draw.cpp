@@ -96,6 +96,11 @@ void Renderer::Parts::draw_light(const Scene& scene) {
   timer.mark("shadow map");
   passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
   timer.mark("light on the floor");
+  if (draws_inside(scene))
+    section.find([&] {
+      draw_sides(scene,
+                 [&](const std::string& side) { passes->skin.draw_depth(side == cut_variant ? backs_variant : side); });
+    });
   passes->front.draw([&] { draw_sides(scene, [&](const char* side) { passes->skin.draw_depth(side); }); });
   timer.mark("nearest surfaces");
   glDisable(GL_CULL_FACE);
@@ -107,13 +112,7 @@ void Renderer::Parts::draw_light(const Scene& scene) {
 
 void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   glBindTextureUnit(binding::colormap, colormaps.get());
-  if (draws_inside(scene))
-    section.draw(bodies, scene, [&] {
-      glEnable(GL_CULL_FACE);
-      glCullFace(GL_FRONT);
-      passes->skin.draw_depth(cut_variant);
-      glCullFace(GL_BACK);
-    });
+  if (draws_inside(scene)) section.draw(bodies, scene);
   glBindFramebuffer(GL_FRAMEBUFFER, targets.drawing.get());
   glViewport(0, 0, width, height);
   const float farthest = 0;

@@ -22,7 +22,7 @@ void SectionPass::resize(int width, int height) {
   colors_ = Texture();
 }
 
-// Prepares the map of bodies in their cuts.
+// Prepares the map of nearest surfaces.
 void SectionPass::begin() {
   if (!colors_) {
     colors_ = make_texture(GL_RGBA16F, width_, height_);
@@ -43,14 +43,19 @@ void SectionPass::begin() {
   glDepthFunc(GL_GREATER);
 }
 
-void SectionPass::draw_springs(const Bodies& bodies, const Scene& scene) {
+void SectionPass::bind() const { glBindTextureUnit(binding::faces_seen, bodies_.get()); }
+
+void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
   const std::array<float, 4> plain{0.35f, 0.35f, 0.35f, 0};
   const float nothing = 0;
   glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 0, plain.data());
   glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, &nothing);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
-  glBindTextureUnit(binding::faces_seen, bodies_.get());
+  bind();
   bodies.springs.bind_storage(binding::first_free);
   bodies.spring_materials.bind_storage(binding::first_free + 1);
   glUseProgram(program_.get());

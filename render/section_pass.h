@@ -15,18 +15,20 @@ class SectionPass {
  public:
   SectionPass();
   void resize(int width, int height);
-  // Draws the map and binds it for the skins. Uses the buffers bound for the skins and the colour maps. `cuts`: draws
-  // the points in the cuts with the number of their body (surface.frag), and the nearest wins.
-  template <typename Cuts>
-  void draw(const Bodies& bodies, const Scene& scene, Cuts cuts) {
+  // First: finds where insides are seen (shaders/cut_map.glsl), and binds that map. `surfaces`: draws the skins behind
+  // the planes with their depth, and backs with the number of their body (surface.frag).
+  template <typename Surfaces>
+  void find(Surfaces surfaces) {
     begin();
-    cuts();
-    draw_springs(bodies, scene);
+    surfaces();
+    bind();
   }
+  // Draws the map of colours and binds both for the skins. Uses the buffers bound for the skins and the colour maps.
+  void draw(const Bodies& bodies, const Scene& scene);
 
  private:
   void begin();
-  void draw_springs(const Bodies& bodies, const Scene& scene);
+  void bind() const;
 
   VertexArray empty_;
   Program program_;

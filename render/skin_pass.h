@@ -23,7 +23,8 @@ class SkinPass {
   // `variant`: lines of #define; shaders/skin.frag explains them.
   void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
   // Draws depth and, into a colour attachment if there is one, the number of the face, counted from 1. `variant`: "",
-  // or cut_variant for the backs that show a cut; their number is the largest.
+  // or cut_variant for the plane in place of backs that show a cut, or backs_variant for these backs themselves; with
+  // both, the number is that of the body (shaders/cut.glsl).
   void draw_depth(const std::string& variant) const;
   void draw_shadow() const;
 
@@ -41,6 +42,7 @@ class SkinPass {
 };
 
 inline constexpr const char* cut_variant = "#define CUT\n";
+inline constexpr const char* backs_variant = "#define CUT\n#define BACKS\n";
 
 // Runs the current compute program, with a local size of 64, for at least `count` invocations.
 void dispatch(std::size_t count);

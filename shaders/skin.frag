@@ -20,6 +20,7 @@
 #endif
 #ifdef CUT
 #include "cut.glsl"
+#include "cut_map.glsl"
 layout(binding = 10) uniform sampler2D section;  // colours of bodies' insides in the cut's plane
 #endif
 layout(std430, binding = 5) readonly buffer SeenFaces { SeenFace seen[]; };
@@ -37,6 +38,7 @@ layout(location = 4) in float mass_value;
 #endif
 #ifdef CUT
 layout(location = 5) flat in vec4 cut;
+layout(location = 6) flat in uint body_index;
 #endif
 #if COLOR_BY != 0
 layout(binding = 7) uniform sampler2D colormap;
@@ -80,6 +82,7 @@ void main() {
   SeenFace face = seen[gl_PrimitiveID];
   vec3 world = skin_point;
 #ifdef CUT
+  if (!shows_inside(ivec2(gl_FragCoord.xy), body_index)) discard;
   // Computed from the pixel and not from the skin, so that all faces of a body in its cut share one plane.
   vec2 uv = gl_FragCoord.xy * frame.screen.zw;
   world = point_of_cut(cut, transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0));

@@ -237,5 +237,48 @@ TEST_F(CutTest, SectionsDoNotTakeTheColorsOfOtherBodies) {
   EXPECT_GT(far, 20);
 }
 
+// Two arms on a base, from -y to y: a cut across the arms must not fill the gap between them.
+struct Fork {
+  std::vector<float> positions;
+  std::vector<std::uint32_t> faces, springs, spring_materials;
+  Fork() {
+    constexpr float outline[8][2] = {{-1, -0.5f},   {1, -0.5f},     {1, 0.5f},     {0.5f, 0.5f},
+                                     {0.5f, -0.2f}, {-0.5f, -0.2f}, {-0.5f, 0.5f}, {-1, 0.5f}};  // x, z
+    for (const float y : {-0.3f, 0.3f})
+      for (const auto& [x, z] : outline) positions.insert(positions.end(), {x, y, z});
+    for (const auto& [a, b, c, d] : {std::array{0u, 1u, 4u, 5u}, {0u, 5u, 6u, 7u}, {1u, 2u, 3u, 4u}}) {
+      faces.insert(faces.end(), {a, b, c, a, c, d});
+      faces.insert(faces.end(), {a + 8, c + 8, b + 8, a + 8, d + 8, c + 8});
+    }
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      const std::uint32_t j = (i + 1) % 8;
+      faces.insert(faces.end(), {i, i + 8, j + 8, i, j + 8, j});
+    }
+    for (std::uint32_t a = 0; a < 16; ++a)
+      for (std::uint32_t b = a + 1; b < 16; ++b) springs.insert(springs.end(), {a, b});
+    spring_materials.assign(springs.size() / 2, 1);
+  }
+};
+
+TEST_F(CutTest, ACutOfAConcaveBodyLeavesItsGapsOpen) {
+  Renderer renderer = make_renderer();
+  const Fork fork;
+  renderer.set_bodies(std::array{Body{fork.positions, fork.faces, fork.springs, {}, fork.spring_materials}});
+  Scene scene = plain();
+  scene.materials = materials;
+  scene.cut = Cut{.axis = 2, .percent = 70};  // z = 0.2 of -0.5 to 0.5
+  const Camera above{.eye = {0, -2.5f, 3}};
+  const Image image = drawn(renderer, scene, above);
+  for (const float x : {-0.3f, 0.0f, 0.3f}) {
+    // The line of sight goes on to the base at y = 0.2, and leaves the body through its lower side.
+    const Vector2f gap = pinhole(above, {x, -0.15f, 0.2f}, 160, 120);
+    EXPECT_TRUE(is_red(pixel(image, int(gap.x()), int(gap.y())))) << x;
+  }
+  for (const float x : {-0.75f, 0.75f}) {
+    const Vector2f arm = pinhole(above, {x, -0.1f, 0.2f}, 160, 120);
+    EXPECT_TRUE(is_green(pixel(image, int(arm.x()), int(arm.y())))) << x;
+  }
+}
+
 }  // namespace
 }  // namespace mercury::render
