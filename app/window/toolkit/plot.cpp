@@ -77,12 +77,27 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
 }
 
-// A line in pieces: `on` pixels are drawn, `off` are not.
-void draw_pieces(const std::vector<ImVec2>& points, ImU32 color, float thickness, float on, float off) {
+// The parts of the way from a to b, from 0 to 1, between which x is in the frame; none = the second is not larger.
+std::pair<float, float> shares_within(const Frame& frame, ImVec2 a, ImVec2 b) {
+  if (a.x == b.x) return {0.0f, a.x < frame.low.x || a.x > frame.high.x ? 0.0f : 1.0f};
+  const auto [enter, leave] = std::minmax({(frame.low.x - a.x) / (b.x - a.x), (frame.high.x - a.x) / (b.x - a.x)});
+  return {std::max(enter, 0.0f), std::min(leave, 1.0f)};
+}
+
+// A line in pieces: `on` pixels are drawn, `off` are not. Only inside the frame: a zoomed line may be a million times
+// as long.
+void draw_pieces(const Frame& frame, const std::vector<ImVec2>& points, ImU32 color, float thickness, float on,
+                 float off) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   float along = 0;  // of the present piece and the gap behind it
   for (std::size_t i = 1; i < points.size(); ++i) {
-    const ImVec2 a = points[i - 1], b = points[i];
+    const ImVec2 from = points[i - 1], to = points[i];
+    const auto [enter, leave] = shares_within(frame, from, to);
+    if (!(leave > enter)) continue;
+    const auto point_at = [&](float share) {
+      return ImVec2{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
+    };
+    const ImVec2 a = point_at(enter), b = point_at(leave);
     const float length = std::hypot(b.x - a.x, b.y - a.y);
     const auto at = [&](float way) {
       const float share = length > 0 ? way / length : 0;
@@ -104,7 +119,8 @@ void draw_line(const Frame& frame, const PlotLine& line) {
   const float thickness = 1.6f * ImGui::GetFontSize() / 17;
   const auto flush = [&] {
     if (points.size() > 1 && line.stroke != Stroke::solid)
-      draw_pieces(points, packed(line.color), thickness, line.stroke == Stroke::dashed ? 5 * thickness : thickness,
+      draw_pieces(frame, points, packed(line.color), thickness,
+                  line.stroke == Stroke::dashed ? 5 * thickness : thickness,
                   line.stroke == Stroke::dashed ? 3 * thickness : 2 * thickness);
     else if (points.size() > 1)
       list.AddPolyline(points.data(), static_cast<int>(points.size()), packed(line.color), 0, thickness);

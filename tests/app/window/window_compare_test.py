@@ -116,6 +116,20 @@ class CompareTest(WindowCase):
                                delta=0.02 * (head - begin))
         self.finish(window)
 
+    def test_dashed_lines_of_a_zoomed_plot_are_drawn_only_inside_it(self):
+        window = self.small("--compare", "damping=1")
+        window.frame(lambda frame: frame["time"] > 1 and frame["second"])
+        self.pause(window)
+        window.click("tab.Measure")
+        window.do("mousemove", *window.place("plot.speed"))
+        window.frame()
+        # Each click shows 0.8 of the time before, so that the lines become a million times as long as the plot.
+        since = window.mark()
+        window.do("click", "--repeat", 70, "--delay", 30, 4)
+        window.wait("plot", since, lambda event: event["to"] - event["from"] < 1e-5)
+        window.frame()
+        self.finish(window)
+
     def test_a_scene_keeps_its_two_views(self):
         window = self.small("--paused", "--compare", "solver=xpbd")
         window.frame(lambda frame: frame["second"])
