@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies positions from CUDA's memory into OpenGL's, on the GPU that both use.
 //
-//   simulating thread   steps, and copy into a Store's memory      (CUDA, the simulation's stream)
+//   simulating thread   steps, and copy into a Store's memory     (CUDA, the simulation's stream)
 //   drawing thread      wait for the mark; copy from the same     (OpenGL)
 //                       memory into the renderer's buffer; fence
 //

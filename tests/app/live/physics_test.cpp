@@ -44,6 +44,15 @@ std::vector<Vec3> positions_of(const Simulation& simulation) {
   return positions;
 }
 
+// The robots have just been put in; their first steps are those of a simulation.
+void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) {
+  physics.step(5);
+  physics.wait_until_done();
+  Simulation simulation = alone(robots, on_cpu());
+  simulation.step(5);
+  EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
+}
+
 TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;
@@ -78,11 +87,7 @@ TEST(LivePhysics, TimeStandsStillWithoutRobots) {
   const auto robots = some_robots(1);
   physics.pause();
   physics.set_scene(robots, on_cpu());
-  physics.step(5);
-  physics.wait_until_done();
-  Simulation simulation = alone(robots, on_cpu());
-  simulation.step(5);
-  EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
+  expect_first_steps(physics, robots);
 }
 
 TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
@@ -209,11 +214,7 @@ TEST(LivePhysics, FailedSceneIsReportedAndTheNextOneIsSimulated) {
   EXPECT_EQ(physics.newest()->robots->size(), 0u);
   EXPECT_EQ(physics.newest()->positions.size(), 0u);
   physics.set_scene(robots, on_cpu());
-  physics.step(5);
-  physics.wait_until_done();
-  Simulation simulation = alone(robots, on_cpu());
-  simulation.step(5);
-  EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
+  expect_first_steps(physics, robots);
   EXPECT_TRUE(messages.take().empty());
 }
 
