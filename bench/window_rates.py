@@ -49,7 +49,7 @@ def frames_of(report):
 
 
 def window_rates(program, robots, arguments, seconds, extra, environment):
-    """Frames per second, picture time [ms], and steps per second of the window's second half."""
+    """Per second: frames, drawn pictures, steps; and the time of each part of a frame [ms]."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.jsonl"
         window = subprocess.Popen([program, "view", robots, "--fresh", "--unpaced", "--device", arguments.device, "--size",
@@ -75,7 +75,7 @@ def window_rates(program, robots, arguments, seconds, extra, environment):
     wall = frames[-1]["clock"] - frames[0]["clock"]
     return {"pictures_per_second": (frames[-1]["number"] - frames[0]["number"]) / wall,
             "robots_drawn_per_second": (frames[-1]["drawn"] - frames[0]["drawn"]) / wall,
-            "picture_ms": 1e3 * median(f["picture"] for f in frames),
+            **{f"{part}_ms": 1e3 * median(f["cost"][part] for f in frames) for part in frames[0]["cost"]},
             "steps_per_second": (frames[-1]["steps"] - frames[0]["steps"]) / wall,
             "on_card": int(frames[-1]["on_card"])}
 

@@ -65,7 +65,7 @@ void SectionPass::draw(const Bodies& bodies, const Scene& scene) {
   set_scale(2, scene.scale);
   for (std::size_t first = 0; first < bodies.spring_count(); first += most_quads_per_call) {
     glUniform1ui(3, GLuint(first));
-    glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * std::min(most_quads_per_call, bodies.spring_count() - first)));
+    glDrawArrays(GL_TRIANGLES, 0, GLsizei(3 * std::min(most_quads_per_call, bodies.spring_count() - first)));
   }
   glBindTextureUnit(binding::section, colors_.get());
 }

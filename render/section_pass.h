@@ -10,7 +10,7 @@ namespace mercury::render {
 
 // Draws a map of the cuts' planes at the picture's size: each point takes the material, or the value's colour, of the
 // nearest spring of the body that is cut there. This is a Voronoi diagram, drawn with the depth test as in Hoff et al.
-// 1999: each spring draws a square whose depth is the distance to the spring's middle, and the nearest wins.
+// 1999: each spring draws a triangle whose depth is the distance to the spring's middle, and the nearest wins.
 class SectionPass {
  public:
   SectionPass();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spring near the cut: a square of 6 vertices in the cut's plane, around the point nearest to the spring's middle.
+// A spring near the cut: a triangle in the cut's plane that holds the circle in which the spring counts.
 #include "frame.glsl"
 #include "bodies.glsl"
 #include "values.glsl"
-#include "ribbon.glsl"
 layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; };
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
 layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
@@ -26,8 +25,9 @@ vec4 material_of(uint spring, uint a, uint b, uint flags) {
 }
 
 void main() {
-  uint spring = first + uint(gl_VertexID) / 6u;
-  vec2 corner = vec2(2.0, 1.0) * ribbon_corner(gl_VertexID % 6) - vec2(1.0, 0.0);
+  uint spring = first + uint(gl_VertexID) / 3u;
+  int third = gl_VertexID % 3;
+  vec2 corner = third == 2 ? vec2(0.0, 2.0) : vec2(third == 0 ? -sqrt(3.0) : sqrt(3.0), -1.0);
   uint a = springs[2u * spring], b = springs[2u * spring + 1u];
   body = mass_bodies[a];
   Placement placement = placements[body];
@@ -35,8 +35,8 @@ void main() {
   vec3 normal = placement.cut.xyz;
   float height = dot(normal, middle) - placement.cut.w;
   vec3 across = normalize(cross(abs(normal.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 0.0, 1.0), normal));
-  float half_side = sqrt(max(0.0, reach * reach - height * height));
-  offset = half_side * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
+  float radius = sqrt(max(0.0, reach * reach - height * height));
+  offset = radius * (corner.x * across + corner.y * cross(normal, across)) - height * normal;
   material = material_of(spring, a, b, placement.flags);
   gl_Position = frame.view_projection * vec4(middle + offset, 1.0);
   bool seen = dot(normal, frame.eye.xyz) > placement.cut.w;

@@ -102,7 +102,8 @@ CommandLine command_line(CLI::App& program, std::vector<std::string> arguments) 
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
     // Of "help run --json", the options mean nothing.
-    std::ranges::stable_partition(arguments, [](const std::string& word) { return !word.starts_with("-"); });
+    std::stable_partition(arguments.begin(), arguments.end(),
+                          [](const std::string& word) { return !word.starts_with("-"); });
   }
   return Reordering(program, arguments).result();
 }

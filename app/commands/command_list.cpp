@@ -119,7 +119,8 @@ std::vector<OptionDescription> options_of(const CLI::App& command) {
   std::vector<OptionDescription> options;
   for (const CLI::Option* option : command.get_options())
     if (!option->get_group().empty()) options.push_back(description_of(*option));
-  std::ranges::stable_partition(options, [](const OptionDescription& option) { return option.positional; });
+  std::stable_partition(options.begin(), options.end(),
+                        [](const OptionDescription& option) { return option.positional; });
   return options;
 }
 

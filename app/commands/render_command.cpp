@@ -93,7 +93,8 @@ class Filming {
     ViewSettings view = task_.view;
     if (view.caption.empty()) view.caption = clip.title;
     view.camera.zoom *= clip.zoom;
-    VideoPipeline pipeline(*offscreen_, task_.subject.simulation_of(clip), view, clip.captions);
+    VideoPipeline pipeline(*offscreen_, task_.subject.simulation_of(clip), view, clip.captions,
+                           task_.subject.second_of(clip, task_.view));
     if (first) report_start(pipeline, writer);
     for (const std::string& note : pipeline.simulation().notes()) say(note);
     return pipeline.run(writer, task_.plan.pixels, task_.plan.timing, false);
@@ -104,6 +105,11 @@ class Filming {
     say(fmt::format("{} {} {} ({}) on {}", task_.subject.recording ? "playing" : "simulating", count,
                     count == 1 ? "robot" : "robots", name_of(task_.subject.configuration.environment),
                     pipeline.simulation().device_name()));
+    if (task_.view.compare) {
+      const Configuration& first = task_.subject.configuration;
+      const auto [left, right] = differences(first, task_.view.compare->over(first));
+      say(left.empty() ? "both sides have the same settings" : fmt::format("comparing {} | {}", left, right));
+    }
     say(fmt::format("drawing with {}, {} quality{}", offscreen_->context->describe(),
                     name_of(offscreen_->renderer.quality()),
                     pipeline.positions_on_card() ? ", positions stay on the card" : ""));
@@ -154,6 +160,7 @@ int describe_work(const RenderOptions& options, const RenderTask& task, const st
     intentions.emplace_back("simulate",
                             time_text(subject.configuration, std::llround(last / subject.configuration.dt)));
     intentions.emplace_back("in", environment_text(subject.configuration));
+    if (task.view.compare) intentions.emplace_back("beside", task.view.compare->text());
     intentions.emplace_back("on", device_text(subject.configuration.device));
   }
   const std::int64_t frames = task.plan.timing.frames * static_cast<std::int64_t>(clips);
@@ -206,6 +213,7 @@ void add_render_command(CLI::App& program, const Choose& choose) {
       "  mercury render my-robots --environment land --size 1080p --seconds 20 --speed 2 -o land.webm\n"
       "  mercury render my-robots --layout race --environment land -o race.mp4\n"
       "  mercury render eel.json --camera turntable --color strain --seconds 4 -o eel.gif\n"
+      "  mercury render eel.json --compare solver=xpbd -o sides.mp4\n"
       "  mercury render my-robots --contact-sheet 5x2 --seconds 9 -o poster.png\n"
       "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/base/work_progress.h"
+#include "app/video/side_by_side.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -37,6 +38,7 @@ Subject robots_of(const RenderOptions& options) {
 void set_view_of_run(const RenderOptions& options, const RunFilm& film, ViewSettings& view) {
   view.board = film.board;
   if (film.board) {
+    if (view.compare) throw InputError("--compare", "not together with --map");
     if (view.color->has_values()) throw InputError("--color", "not together with --map, where colors show scores");
     if (view.camera.mode != CameraMode::group)
       throw InputError("--camera", "not together with --map; --azimuth and --elevation turn the robots");
@@ -111,6 +113,11 @@ Simulation Subject::simulation_of(const Clip& clip) const {
   return recording ? playback(recording) : Simulation(configuration, clip.robots, shown_work());
 }
 
+std::optional<Simulation> Subject::second_of(const Clip& clip, const ViewSettings& view) const {
+  if (!view.compare) return std::nullopt;
+  return Simulation(view.compare->over(configuration), clip.robots, shown_work());
+}
+
 void check_options(RenderOptions& options) {
   if (options.film.map()) options.video.set_usual_still(0);
   options.video.plan(options.simulation.seconds());
@@ -120,7 +127,10 @@ void check_options(RenderOptions& options) {
 RenderTask render_task(RenderOptions& options) {
   RenderTask task{.view = options.view.settings()};
   task.subject = subject_of(options, task.view);
+  if (task.subject.recording && task.view.compare)
+    throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);
+  if (task.view.compare) halves_of(task.plan.size, true);
   require_moment(options.video, task.subject);
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();

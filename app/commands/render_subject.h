@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct Subject {
   std::vector<std::string> notes;
 
   Simulation simulation_of(const Clip& clip) const;
+  // The second side of a comparison.
+  std::optional<Simulation> second_of(const Clip& clip, const ViewSettings& view) const;
 };
 
 // What the options ask for, checked before expensive work begins.

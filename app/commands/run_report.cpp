@@ -22,9 +22,11 @@ std::vector<std::string> labels_of(const std::vector<RobotResult>& robots) {
   std::map<std::string_view, int> uses;
   for (const RobotResult& robot : robots) ++uses[robot.identity.name];
   std::vector<std::string> labels;
-  for (const auto& [index, name, file, random] : std::views::transform(robots, &RobotResult::identity))
+  for (const RobotResult& robot : robots) {
+    const auto& [index, name, file, random] = robot.identity;
     labels.push_back(
         printable(uses[name] > 1 && !file.empty() ? fmt::format("{} ({})", name, file) : name, longest_label));
+  }
   return labels;
 }
 

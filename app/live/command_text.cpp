@@ -207,7 +207,8 @@ OptionValues append_random_robots(const SceneDocument& document, CommandText& co
 void append_attachments(const SceneDocument& document, CommandText& command) {
   SceneDocument named = document;
   std::erase_if(named.robots, [](const auto& robot) { return robot.source.file.empty() && !robot.source.generation; });
-  std::ranges::stable_partition(named.robots, [](const auto& robot) { return !robot.source.file.empty(); });
+  std::stable_partition(named.robots.begin(), named.robots.end(),
+                        [](const auto& robot) { return !robot.source.file.empty(); });
   for (const AttachedMass& one : attached_in(named)) command.text += " --attach=" + text_of(one);
 }
 

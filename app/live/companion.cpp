@@ -146,7 +146,7 @@ std::shared_ptr<Snapshot> Companion::snapshot(bool with_velocities) {
   next->time = simulation_.time();
   next->steps = simulation_.steps();
   next->resets = jumps_;
-  next->stops = 0;
+  next->stops = next->failed_seconds = next->failed_ghosts = 0;
   simulation_.read_positions(next->positions.set_on_host(simulation_.mass_count()));
   next->velocities.resize(with_velocities ? simulation_.mass_count() : 0);
   if (with_velocities) simulation_.read_velocities(next->velocities);

@@ -41,6 +41,14 @@ void LiveScene::frame(float aspect) {
     parts.stops = parts.snapshot->stops;
     parts.playing = false;
   }
+  if (parts.snapshot->failed_seconds != parts.failed_seconds) {
+    parts.failed_seconds = parts.snapshot->failed_seconds;
+    set_second(std::nullopt);
+  }
+  if (parts.snapshot->failed_ghosts != parts.failed_ghosts) {
+    parts.failed_ghosts = parts.snapshot->failed_ghosts;
+    hide_ghosts();
+  }
   if (!parts.selected.empty()) {
     std::unordered_set<RobotId> there;
     for (const DocumentRobot& robot : parts.document.robots) there.insert(robot.body.id);

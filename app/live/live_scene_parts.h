@@ -42,7 +42,7 @@ struct LiveScene::Parts {
   std::vector<RobotId> selected;  // in the order of selection
   std::set<RobotId> hidden;
   bool playing = false;
-  std::uint64_t stops = 0;
+  std::uint64_t stops = 0, failed_seconds = 0, failed_ghosts = 0;  // of the last snapshot
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
   std::optional<LivePerturbation> perturbation;

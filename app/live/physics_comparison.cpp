@@ -22,22 +22,39 @@ CompanionRobots Physics::Parts::robots_for(const Companion& companion) const {
   return wanted;
 }
 
-// Calls use(companion) for each companion. One that fails, such as for lack of memory, ends; the robots go on.
-void Physics::Parts::for_companions(const std::function<void(Companion&)>& use) {
+// A companion that fails, such as for lack of memory, ends; the robots go on.
+void Physics::Parts::guard_second(const std::function<void()>& attempt) {
   try {
-    if (second) use(*second);
+    attempt();
   } catch (const std::exception& error) {
     messages.add(Severity::error, fmt::format("the second view ended: {}", error.what()));
     second.reset();
     difference.reset();
+    ++failed_seconds;
+    dirty = true;
   }
+}
+
+void Physics::Parts::guard_ghosts(const std::function<void()>& attempt) {
   try {
-    if (ghosts) use(*ghosts);
+    attempt();
   } catch (const std::exception& error) {
     messages.add(Severity::error, fmt::format("the ghosts ended: {}", error.what()));
     ghosts.reset();
     ghost_list.clear();
+    ++failed_ghosts;
+    dirty = true;
   }
+}
+
+// Calls use(companion) for each companion.
+void Physics::Parts::for_companions(const std::function<void(Companion&)>& use) {
+  guard_second([&] {
+    if (second) use(*second);
+  });
+  guard_ghosts([&] {
+    if (ghosts) use(*ghosts);
+  });
 }
 
 void Physics::Parts::take_comparison(PendingCommands& taken) {
@@ -63,17 +80,12 @@ void Physics::Parts::begin_companions() {
   const auto begin = [&](std::unique_ptr<Companion>& companion, Measurements& measured) {
     finish_seek();
     companion = std::make_unique<Companion>(simulation.configuration(), measured, ++companion_count);
-  };
-  const bool make_second = difference && !second, make_ghosts = !ghost_list.empty() && !ghosts;
-  if (make_second) begin(second, second_measurements);
-  if (make_ghosts) begin(ghosts, ghost_measurements);
-  for_companions([&](Companion& companion) {
-    const bool is_second = &companion == second.get();
-    if (is_second ? !make_second : !make_ghosts) return;
-    if (is_second) companion.watch(view);
-    companion.begin(robots_for(companion), leader());
+    if (&companion == &second) companion->watch(view);
+    companion->begin(robots_for(*companion), leader());
     begin_pace();
-  });
+  };
+  if (difference && !second) guard_second([&] { begin(second, second_measurements); });
+  if (!ghost_list.empty() && !ghosts) guard_ghosts([&] { begin(ghosts, ghost_measurements); });
 }
 
 void Physics::Parts::restart_companions() {

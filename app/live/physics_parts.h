@@ -123,7 +123,7 @@ struct Physics::Parts {
   double stepping_seconds = 0, measuring_seconds = 0;  // since the last limit_measuring() [s]
   std::int64_t steps_left = 0;                         // of step()
   std::uint64_t ticket = 0;                            // the latest one taken
-  std::uint64_t resets = 0, stops = 0;
+  std::uint64_t resets = 0, stops = 0, failed_seconds = 0, failed_ghosts = 0;
   bool dirty = true;        // something changed after the last snapshot
   bool is_watched = false;  // a snapshot was wanted when commands were last taken
   std::thread thread;       // last: it starts when all other members exist
@@ -165,6 +165,8 @@ struct Physics::Parts {
   TimelineState timeline_state() const;
   Leader leader() const;
   CompanionRobots robots_for(const Companion& companion) const;
+  void guard_second(const std::function<void()>& attempt);
+  void guard_ghosts(const std::function<void()>& attempt);
   void for_companions(const std::function<void(Companion&)>& use);
   void take_comparison(PendingCommands& taken);
   void begin_companions();

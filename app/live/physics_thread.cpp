@@ -220,6 +220,8 @@ void Physics::Parts::publish_snapshot() {
   next->steps = simulation.steps();
   next->resets = resets;
   next->stops = stops;
+  next->failed_seconds = failed_seconds;
+  next->failed_ghosts = failed_ghosts;
   // On a GPU, velocities are a copy, and the steps wait for it.
   const bool with_velocities = !playing || velocities_wanted || ticket > tickets_done;
   next->velocities.resize(with_velocities ? simulation.mass_count() : 0);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "app/scene/eigen_vec3.h"
 #include "mercury/observables.h"
@@ -17,6 +18,10 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
+
+std::span<const float> floats(std::span<const Vec3> points) {
+  return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
+}
 
 // Distance along the ray to a triangle, from either side; infinity if the ray misses it (Moeller and Trumbore 1997).
 float distance_to_triangle(const render::Ray& ray, const Vector3f& a, const Vector3f& b, const Vector3f& c) {
@@ -54,8 +59,9 @@ Nearest nearest_to_segment(const render::Ray& ray, const Vector3f& a, const Vect
   return nearest_to_point(ray, a + s * d);
 }
 
-bool misses(const render::Ray& ray, const render::Bounds& box) {
-  if (box.empty()) return true;
+// Where a ray enters a box; infinity if it misses it.
+float distance_to_box(const render::Ray& ray, const render::Bounds& box) {
+  if (box.empty()) return far_away;
   float enter = 0, leave = far_away;
   for (int axis = 0; axis < 3; ++axis) {
     const float inverse = 1 / ray.direction[axis];
@@ -66,7 +72,39 @@ bool misses(const render::Ray& ray, const render::Bounds& box) {
     leave = std::min(leave, b);
   }
   // The tolerance lets a ray hit flat boxes despite rounding.
-  return enter > leave + 1e-4f * (1 + std::abs(leave));
+  return enter > leave + 1e-4f * (1 + std::abs(leave)) ? far_away : enter;
+}
+
+// How near the ray must pass a spring or mass.
+float room_around(const Robot& robot, float wanted) {
+  if (wanted > 0) return wanted;
+  float longest = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(robot.springs.size(), 64); ++i)
+    longest = std::max(longest, robot.springs[i].rest_length);
+  return longest > 0 ? 0.12f * longest : 0.05f;
+}
+
+// A robot whose box the ray meets.
+struct Candidate {
+  std::size_t index;
+  float enter, room;  // [m]
+};
+
+// Nearest first. A look at each position costs little beside a look at each face.
+std::vector<Candidate> candidates_on(const Snapshot& snapshot, std::span<const Vector3f> offsets,
+                                     const render::Ray& ray, const PickOptions& options) {
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
+    if (!options.hidden.empty() && options.hidden[i]) continue;
+    const float room = room_around(*snapshot.robots->robots[i].robot, options.radius);
+    render::Bounds box = render::bounds_of(floats(snapshot.positions_of(i))).moved(offsets[i]);
+    box.low.array() -= room;
+    box.high.array() += room;
+    const float enter = distance_to_box(ray, box);
+    if (enter < far_away) candidates.push_back({i, enter, room});
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::enter);
+  return candidates;
 }
 
 // One robot that the ray may hit.
@@ -80,24 +118,7 @@ class Target {
       cut_.offset += cut_.normal.dot(offset);
     }
     points_.reserve(positions.size());
-    for (const Vec3 p : positions) {
-      points_.push_back(eigen(p) + offset);
-      if (points_.back().allFinite()) box_.extend(points_.back());
-    }
-  }
-
-  float radius(float wanted) const {
-    if (wanted > 0) return wanted;
-    float longest = 0;
-    for (std::size_t i = 0; i < std::min<std::size_t>(robot_.springs.size(), 64); ++i)
-      longest = std::max(longest, robot_.springs[i].rest_length);
-    return longest > 0 ? 0.12f * longest : 0.05f;
-  }
-  bool missed_by(const render::Ray& ray, float room) const {
-    render::Bounds roomy = box_;
-    roomy.low.array() -= room;
-    roomy.high.array() += room;
-    return box_.empty() || misses(ray, roomy);
+    for (const Vec3 p : positions) points_.push_back(eigen(p) + offset);
   }
 
   void meet_skin(const render::Ray& ray, Hit& best) const {
@@ -156,14 +177,9 @@ class Target {
                                      [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
   }
 
-  static std::span<const float> floats(std::span<const Vec3> points) {
-    return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
-  }
-
   const Robot& robot_;
   render::CutPlane cut_;  // in the picture's coordinates
   std::vector<Vector3f> points_;
-  render::Bounds box_;
 };
 
 }  // namespace
@@ -171,12 +187,10 @@ class Target {
 std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Vector3f> offsets, const render::Ray& ray,
                         const PickOptions& options) {
   std::optional<Hit> nearest;
-  for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
-    if (!options.hidden.empty() && options.hidden[i]) continue;
+  for (const auto& [i, enter, room] : candidates_on(snapshot, offsets, ray, options)) {
+    if (nearest && enter > nearest->distance) break;
     const Robot& robot = *snapshot.robots->robots[i].robot;
     const Target target(robot, snapshot.positions_of(i), offsets[i], options.cut);
-    const float room = target.radius(options.radius);
-    if (target.missed_by(ray, room)) continue;
     Hit best{.distance = nearest ? nearest->distance : far_away};
     const bool skin = options.skin && !robot.faces.empty();
     if (skin) target.meet_skin(ray, best);

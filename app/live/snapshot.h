@@ -73,6 +73,8 @@ struct Snapshot {
   std::int64_t steps = 0;
   std::uint64_t resets = 0;          // number of jumps in time, such as returns to time 0
   std::uint64_t stops = 0;           // number of pauses by an explosion or a failure
+  std::uint64_t failed_seconds = 0;  // number of second sides that ended by a failure
+  std::uint64_t failed_ghosts = 0;   // the same of ghosts
   SnapshotPositions positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
   std::vector<Vec3> velocities;      // [m/s], as many; empty while robots play, unless requested
   std::vector<Telemetry> telemetry;  // per robot

@@ -65,7 +65,7 @@ void ViewOptions::add_to(CLI::App& command) {
   add(add_value(command, "--bookmarks", words_.bookmarks,
                 "Cameras of the window's keys F5 to F8, as a JSON list of camera files' members", "JSON", text_from));
   add(add_value(command, "--compare", words_.compare,
-                "Of the window: a second view of the same robots under other settings, as in solver=xpbd or "
+                "A second side with the same robots under other settings, as in solver=xpbd or "
                 "environment=land,dt=0.0005",
                 "NAME=VALUE,...", text_from));
   add(command.add_flag("--follow", follow_, "The same as --camera follow"));

@@ -42,7 +42,7 @@ struct ViewSettings {
   std::optional<Grid> grid;
   CameraPlan camera;
   CameraBookmarks bookmarks;              // of the window
-  std::optional<SideDifference> compare;  // of the window: a second view, and what it simulates differently
+  std::optional<SideDifference> compare;  // a second side, and what it simulates differently
   std::string caption;                    // text in the upper left corner; further lines are smaller
   std::shared_ptr<const Board> board;     // the robots are drawn in its cells; nullptr = no board
   bool interop = true;                    // let CUDA write into OpenGL's memory if possible

@@ -30,7 +30,7 @@ struct ViewWords {
   std::optional<float> azimuth, elevation;       // where the eye is [degrees]
   std::optional<float> zoom;                     // above 1 = closer
   std::optional<std::string> bookmarks;          // of the window: see bookmarks_from()
-  std::optional<std::string> compare;            // of the window: a second view, as SideDifference says
+  std::optional<std::string> compare;            // a second side, as SideDifference says
 };
 
 // `usual`: the layout without another word. Throws ParameterError that names the member that cannot be used.

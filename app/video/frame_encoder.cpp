@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "app/video/side_by_side.h"
+
 namespace mercury {
 namespace {
 
@@ -30,10 +32,18 @@ FrameEncoder::~FrameEncoder() {
   if (thread_.joinable()) thread_.join();
 }
 
-bool FrameEncoder::take(render::Readback& readback) {
+bool FrameEncoder::take(render::Readback& readback) { return take(std::span(&readback, 1)); }
+
+bool FrameEncoder::take(std::span<render::Readback> readbacks) {
   std::optional<render::Image> picture = spare_.pop();
   if (!picture) return false;
-  readback.finish(*picture);
+  if (readbacks.size() == 1) {
+    readbacks.front().finish(*picture);
+  } else {
+    parts_.resize(readbacks.size());
+    for (std::size_t i = 0; i < readbacks.size(); ++i) readbacks[i].finish(parts_[i]);
+    join(parts_, *picture);
+  }
   return pictures_.push(std::move(*picture));
 }
 

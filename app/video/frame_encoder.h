@@ -7,7 +7,9 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "app/base/bounded_queue.h"
 #include "app/video/frame_writer.h"
@@ -26,6 +28,8 @@ class FrameEncoder {
   // Passes the oldest picture that is being read back to the encoder. Waits while the encoder is behind. False when it
   // has failed or was abandoned.
   bool take(render::Readback& readback);
+  // The same for the parts of a picture, from left to right.
+  bool take(std::span<render::Readback> readbacks);
   // Writes all frames that were taken, and ends. Throws what the writer threw. The caller finishes the writer.
   void finish();
   // Drops the frames that are not written yet; take() returns false from now on.
@@ -41,6 +45,7 @@ class FrameEncoder {
   FrameWriter& writer_;
   std::function<void(std::int64_t)> on_frame_;
   BoundedQueue<render::Image> pictures_;  // drawn, not yet written
+  std::vector<render::Image> parts_;      // of the picture that is taken
   BoundedQueue<render::Image> spare_;     // written; their memory is used again
   std::atomic<std::int64_t> frames_ = 0;
   std::mutex mutex_;

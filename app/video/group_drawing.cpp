@@ -49,7 +49,7 @@ render::Insets free_edges(const ViewSettings& settings) {
 
 GroupDrawing::GroupDrawing(const Simulation& simulation, const ViewSettings& settings, float aspect,
                            std::span<const std::string> names)
-    : simulation_(simulation), placement_(placement_of(simulation, settings, aspect)),
+    : simulation_(simulation), settings_(settings), placement_(placement_of(simulation, settings, aspect)),
       scene_(simulation, placement_.offsets, settings),
       camera_(placement_.camera, {.aspect = aspect, .free = free_edges(settings), .on_ground = on_land(simulation)},
               names_of(simulation)),
@@ -66,9 +66,25 @@ FrameSnapshot GroupDrawing::take(PositionBridge& bridge) {
 }
 
 void GroupDrawing::draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed) {
+  show(snapshot, bridge, renderer);
+  renderer.draw(scene(), camera(camera_boxes(), elapsed));
+}
+
+void GroupDrawing::show(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer) {
   scene_.update(snapshot.time, snapshot.telemetry, std::move(snapshot.details));
   bridge.show(*snapshot.positions, renderer, scene_.scene());
-  renderer.draw(scene_.scene(), camera_.at(scene_.camera_boxes(), elapsed));
+}
+
+void GroupDrawing::set_shown(const Shown& shown) {
+  settings_.shown = shown;
+  scene_.set_settings(settings_);
+}
+
+void GroupDrawing::share_scale(GroupDrawing& other) {
+  const render::Scale& scale = other.scene().scale;
+  if (settings_.color != other.settings_.color || !settings_.color->has_values() || !(scale.low < scale.high)) return;
+  settings_.scale = std::pair(scale.low, scale.high);
+  scene_.set_settings(settings_);
 }
 
 }  // namespace mercury

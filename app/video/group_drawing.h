@@ -43,8 +43,20 @@ class GroupDrawing {
   // Draws it. `bridge`: that of take(). `elapsed`: since the previous picture, for the camera [s of video].
   void draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed);
 
+  // draw() in parts, for groups that share a camera and a scale of colours. show() makes it the picture that is drawn.
+  void show(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer);
+  const render::Scene& scene() { return scene_.scene(); }
+  std::span<const render::Bounds> camera_boxes() const { return scene_.camera_boxes(); }
+  // The camera that keeps these boxes in view.
+  render::Camera camera(std::span<const render::Bounds> boxes, double elapsed) { return camera_.at(boxes, elapsed); }
+  // What is shown from the next show() on.
+  void set_shown(const Shown& shown);
+  // Takes the ends of the scale that another group with the same colours had in its last show().
+  void share_scale(GroupDrawing& other);
+
  private:
   const Simulation& simulation_;
+  ViewSettings settings_;
   GroupPlacement placement_;
   GroupScene scene_;
   CameraController camera_;

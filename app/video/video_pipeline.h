@@ -3,12 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "app/scene/view_settings.h"
-#include "app/video/group_drawing.h"
 #include "app/video/video_stages.h"
 #include "render/context.h"
 #include "render/renderer.h"
@@ -29,25 +29,27 @@ OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize 
 // renderer.
 class VideoPipeline {
  public:
-  // `names`: one per robot, shown instead of its own; empty = its own. Throws InputError for a setting that does not
-  // suit the robots or their environment.
+  // `names`: one per robot, shown instead of its own; empty = its own. `second`: the same robots under other settings,
+  // as settings.compare says; the picture then has two sides. Throws InputError for a setting that does not suit the
+  // robots or their environment, ParameterError("size", ...) for pictures too narrow for two sides.
   VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
-                std::span<const std::string> names = {});
+                std::span<const std::string> names = {}, std::optional<Simulation> second = {});
+  ~VideoPipeline();
+  VideoPipeline(const VideoPipeline&) = delete;
+  VideoPipeline& operator=(const VideoPipeline&) = delete;
 
-  const Simulation& simulation() const { return simulation_; }
+  const Simulation& simulation() const;  // the first
   // Whether positions go from the simulation to the picture without leaving the GPU.
-  bool positions_on_card() const { return bridge_.on_card; }
+  bool positions_on_card() const;
   // Why they pass through the host although a GPU simulates; empty if there is nothing to say.
-  const std::string& bridge_note() const { return bridge_.note; }
+  const std::string& bridge_note() const;
   // See run_video_stages().
   VideoResult run(FrameWriter& writer, render::PixelFormat pixels, const VideoTiming& timing, bool quiet,
                   VideoControl* control = nullptr);
 
  private:
-  OffscreenRenderer& offscreen_;
-  Simulation simulation_;
-  GroupDrawing drawing_;
-  ChosenBridge bridge_;
+  struct Side;
+  std::vector<std::unique_ptr<Side>> sides_;
 };
 
 }  // namespace mercury

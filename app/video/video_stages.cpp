@@ -19,6 +19,8 @@
 namespace mercury {
 namespace {
 
+using Moment = std::vector<FrameSnapshot>;  // one per side
+
 constexpr std::size_t waiting_snapshots = 4;  // simulated, not yet drawn
 
 class VideoStages {
@@ -61,35 +63,58 @@ class VideoStages {
   }
 
   void simulate() {
-    Stepper stepper(parts_.simulation);
-    const std::int64_t first = parts_.simulation.steps();
-    const double dt = parts_.simulation.configuration().dt;
-    for (std::int64_t frame = 0; frame < timing_.frames; ++frame) {
-      if (control_.stop || !stepper.advance_to(first + step_of_frame(frame, timing_, dt))) {
-        interrupted_ = true;
-        break;
+    std::vector<Stepper> steppers;
+    std::vector<std::int64_t> first;
+    for (const VideoSide& side : parts_.sides) {
+      steppers.emplace_back(side.simulation);
+      first.push_back(side.simulation.steps());
+    }
+    for (std::int64_t frame = 0; frame < timing_.frames && !interrupted_; ++frame) {
+      Moment moment;
+      for (std::size_t i = 0; i < steppers.size() && !interrupted_; ++i) {
+        const VideoSide& side = parts_.sides[i];
+        const std::int64_t step = step_of_frame(frame, timing_, side.simulation.configuration().dt);
+        interrupted_ = control_.stop || !steppers[i].advance_to(first[i] + step);
+        if (!interrupted_) moment.push_back(side.drawing.take(side.bridge));
       }
-      if (!snapshots_.push(parts_.drawing.take(parts_.bridge))) return;
+      if (!interrupted_ && !snapshots_.push(std::move(moment))) return;
     }
     snapshots_.close();
   }
 
   void draw() {
-    render::Readback readback(parts_.pixels, parts_.renderer.width(), parts_.renderer.height());
-    while (auto snapshot = snapshots_.pop()) {
-      parts_.drawing.draw(*snapshot, parts_.bridge, parts_.renderer, timing_.pace);
-      if (readback.full() && !encoder_.take(readback)) return;
-      readback.start(parts_.renderer);
+    std::vector<render::Readback> readbacks;
+    for (const VideoSide& side : parts_.sides)
+      readbacks.emplace_back(parts_.pixels, side.renderer.width(), side.renderer.height());
+    while (auto moment = snapshots_.pop()) {
+      draw(*moment);
+      if (readbacks.front().full() && !encoder_.take(readbacks)) return;
+      for (std::size_t i = 0; i < readbacks.size(); ++i) readbacks[i].start(parts_.sides[i].renderer);
     }
-    while (readback.pending() > 0)
-      if (!encoder_.take(readback)) return;
+    while (readbacks.front().pending() > 0)
+      if (!encoder_.take(readbacks)) return;
+  }
+
+  void draw(Moment& moment) {
+    const VideoSide& first = parts_.sides.front();
+    if (parts_.sides.size() == 1) return first.drawing.draw(moment.front(), first.bridge, first.renderer, timing_.pace);
+    std::vector<render::Bounds> boxes;
+    for (std::size_t i = 0; i < moment.size(); ++i) {
+      const VideoSide& side = parts_.sides[i];
+      if (i > 0) side.drawing.share_scale(first.drawing);
+      side.drawing.show(moment[i], side.bridge, side.renderer);
+      const auto of_side = side.drawing.camera_boxes();
+      boxes.insert(boxes.end(), of_side.begin(), of_side.end());
+    }
+    const render::Camera camera = first.drawing.camera(boxes, timing_.pace);
+    for (const VideoSide& side : parts_.sides) side.renderer.draw(side.drawing.scene(), camera);
   }
 
   const VideoParts& parts_;
   const VideoTiming& timing_;
   VideoControl& control_;
   std::optional<Progress> progress_;
-  BoundedQueue<FrameSnapshot> snapshots_{waiting_snapshots};
+  BoundedQueue<Moment> snapshots_{waiting_snapshots};
   FrameEncoder encoder_;
   bool interrupted_ = false;
 };

@@ -17,6 +17,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include "app/video/frame_writer.h"
 #include "app/video/group_drawing.h"
@@ -54,12 +55,18 @@ struct VideoResult {
 // not add up.
 std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double dt);
 
-// What the stages work with; the caller owns all of it.
-struct VideoParts {
+// A simulation and how it is drawn.
+struct VideoSide {
   Simulation& simulation;
   PositionBridge& bridge;
   GroupDrawing& drawing;  // of the simulation; the renderer has its bodies
   render::Renderer& renderer;
+};
+
+// What the stages work with; the caller owns all of it.
+struct VideoParts {
+  // From left to right, of one height. They show the same times with the camera and the colours' scale of the first.
+  std::vector<VideoSide> sides;
   FrameWriter& writer;
   render::PixelFormat pixels;
 };

@@ -39,6 +39,13 @@ nlohmann::json second_of(const Snapshot& snapshot) {
           {"environment", name_of(configuration.environment)}};
 }
 
+// GPU time of each part of a picture [ms].
+nlohmann::json passes_of(const render::Renderer& renderer) {
+  nlohmann::json passes = nlohmann::json::object();
+  for (const render::PassTime& pass : renderer.times()) passes[pass.name] = pass.milliseconds;
+  return passes;
+}
+
 }  // namespace
 
 void FrameReport::write_gl_messages(PanelContext& context) {
@@ -95,7 +102,6 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"cursor", context.cursor.time ? nlohmann::json(*context.cursor.time) : nlohmann::json()},
                       {"selected", scene.selection().size()},
                       {"attached", scene.attachments().size()},
-                      {"panel_seconds", cost.panels},
                       {"panels", context.preferences.panels},
                       {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},
@@ -108,7 +114,14 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"drawn", picture.drawn},
                       {"clock", seconds()},
                       {"seconds", dt},
-                      {"picture", cost.picture}});
+                      {"cost",
+                       {{"scene", cost.scene},
+                        {"thumbnails", cost.thumbnails},
+                        {"panels", cost.panels},
+                        {"positions", cost.positions},
+                        {"picture", cost.picture},
+                        {"present", cost.present}}},
+                      {"passes", passes_of(context.viewport.renderer())}});
 }
 
 }  // namespace mercury::window

@@ -15,11 +15,13 @@
 #include "app/base/interrupt.h"
 #include "app/live/live_run.h"
 #include "app/live/live_scene.h"
-#include "app/live/session_settings.h"
 #include "app/scene/camera_controller.h"
 #include "app/window/frame_report.h"
+#include "app/window/kept_settings.h"
+#include "app/window/pacing.h"
 #include "app/window/panels/body_editor.h"
 #include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/messages_panel.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_menu.h"
 #include "app/window/panels/video_recorder.h"
@@ -38,32 +40,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
-constexpr double rare_frame_time = 1.0 / 20;  // while the card is left to the steps [s]
-constexpr double idle_time = 0.2;             // between frames while nothing moves [s]
-// While input is waiting, the window skips pictures for this multiple of the time that drawing one takes.
-constexpr double skip_factor = 4;
-
+constexpr double idle_time = 0.2;  // between frames while nothing moves [s]
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-Preferences preferences_for(const ViewerOptions& options, const std::filesystem::path& folder) {
-  Preferences preferences;
-  if (options.remember && !folder.empty()) load(preferences, folder / "window.json");
-  if (options.size.width > 0) preferences.size = options.size;
-  if (options.quality != render::Quality::automatic) preferences.quality = options.quality;
-  return preferences;
-}
-
-Tone tone_of(Severity severity) {
-  switch (severity) {
-    case Severity::warning:
-      return Tone::warning;
-    case Severity::error:
-      return Tone::error;
-    default:
-      return Tone::info;
-  }
-}
 
 // True for key presses that a text field handles while the user types in it.
 bool is_text_edit(const KeyPress& press, Action action) {
@@ -78,8 +56,6 @@ class Viewer {
   int run();
 
  private:
-  void load_settings();
-  void save_settings();
   void fill_scene();
   void frame(double dt);
   void handle_input(const std::vector<InputEvent>& events);
@@ -88,17 +64,13 @@ class Viewer {
   void draw_text();
   void use_mouse();
   void draw_handles();
-  bool skips_picture() const;
   void update_renderer();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
   void draw_picture(double dt);
   void present();
   void update_screenshot();
   bool anything_moves() const;
-  double wait_after(double spent) const;
   bool leaves_card_to_steps() const;
-  bool waits_with_picture() const;
-  std::filesystem::path settings(const char* name) const { return folder_.empty() ? folder_ : folder_ / name; }
 
   FrameReport report_;  // first member, since it measures the time from the start
   ViewerOptions options_;
@@ -127,6 +99,7 @@ class Viewer {
 
   ViewportArea area_{{0, 0}, {16, 9}};        // of the robots, or of the first side
   ViewportArea whole_area_{{0, 0}, {16, 9}};  // of both sides
+  float titles_ = 0;                          // height of the titles of two sides [pixels]
   EventLog no_log_;                           // for what the second side shows again
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
   bool camera_moved_ = false;                 // between the last two pictures
@@ -137,60 +110,29 @@ class Viewer {
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
-  Clock::time_point shown_at_, drawn_at_;  // present() ended; the robots were drawn
-  double draw_seconds_ = 0;                // what drawing it took
-  std::int64_t pictures_ = 0;              // of the robots, drawn so far
+  std::int64_t pictures_ = 0;  // of the robots, drawn so far
 
+  Pacing pacing_;
   FrameTimes times_;  // of this frame
 };
 
 Viewer::Viewer(ViewerOptions options)
     : options_(std::move(options)), folder_(options_.remember ? settings_folder() : std::filesystem::path()),
-      preferences_(preferences_for(options_, folder_)),
+      preferences_(kept_preferences(options_, folder_)),
       log_(options_.report.empty() ? EventLog() : EventLog(options_.report)),
-      window_("Mercury", preferences_.size, options_.paced), imgui_(window_, settings("window.ini")),
+      window_("Mercury", preferences_.size, options_.paced),
+      imgui_(window_, folder_.empty() ? folder_ : folder_ / "window.ini"),
       viewport_(window_.gl_context(), preferences_.quality), second_(window_.gl_context()),
-      scene_({.configuration = options_.configuration, .view = options_.view}) {
+      scene_({.configuration = options_.configuration, .view = options_.view}), pacing_(options_.paced) {
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
     scene_.set_bridge(std::move(chosen.bridge));
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
                       .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
-  load_settings();
+  load_session(context_, keys_, options_, folder_);
   fill_scene();
 }
 
-Viewer::~Viewer() { save_settings(); }
-
-void Viewer::save_settings() {
-  if (folder_.empty()) return;
-  Messages ignored;  // no window is left to show them
-  ViewSettings view = scene_.view();
-  view.camera = {.mode = camera_.mode()};  // the rest of the camera belongs to this scene
-  view.bookmarks = {};
-  view.compare.reset();
-  save_session_settings(session_settings_path(),
-                        {.view = view,
-                         .generation = context_.creation.generation,
-                         .pause_on_explosion = preferences_.pause_on_explosion,
-                         .folder = preferences_.folder},
-                        ignored);
-  if (const WindowSize size = window_.size(); size.width > 0) preferences_.size = size;
-  save(preferences_, settings("window.json"));
-}
-
-// Options of the command line take precedence over saved settings.
-void Viewer::load_settings() {
-  if (folder_.empty()) return;
-  Messages messages;
-  const SessionSettings last = load_session_settings(session_settings_path(), messages);
-  for (const Message& message : messages.take()) toasts_.show(tone_of(message.severity), message.text);
-  if (options_of(options_.view, Layout::cells).empty()) scene_.set_view(last.view);
-  std::error_code unknown;
-  if (std::filesystem::exists(session_settings_path(), unknown)) context_.creation.generation = last.generation;
-  preferences_.pause_on_explosion = last.pause_on_explosion;
-  if (const std::string problem = load_keys(keys_, settings("keys.txt")); !problem.empty())
-    toasts_.show(Tone::warning, problem);
-}
+Viewer::~Viewer() { save_session(context_, folder_); }
 
 void Viewer::fill_scene() {
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
@@ -211,19 +153,15 @@ int Viewer::run() {
       panels_.quit();
     }
     const double spent = since(last);
-    window_.poll(window_.input().has_backlog() ? 0 : anything_moves() ? wait_after(spent) : idle_time);
+    window_.poll(window_.input().has_backlog() ? 0
+                 : anything_moves()            ? pacing_.wait(spent, leaves_card_to_steps())
+                                               : idle_time);
     const double dt = since(last);
     last = Clock::now();
     if (window_.take_activity()) redraws_ = std::max(redraws_, 3);
     frame(std::min(dt, 0.5));
   }
   return 0;
-}
-
-// How long the next frame can wait for events [s].
-double Viewer::wait_after(double spent) const {
-  if (leaves_card_to_steps()) return std::max(0.0, rare_frame_time - spent);
-  return options_.paced ? std::max(0.0, frame_time - spent) : 0;
 }
 
 bool Viewer::anything_moves() const {
@@ -261,8 +199,8 @@ void Viewer::frame(double dt) {
   scene_.frame(area_.aspect());
   run_.frame();
   if (scene_.take_camera()) camera_placed_ = false;
-  for (const Message& message : scene_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
-  for (const Message& message : run_.take_messages()) toasts_.show(tone_of(message.severity), message.text);
+  show_messages(toasts_, scene_.take_messages());
+  show_messages(toasts_, run_.take_messages());
   times_.scene = since(scene_begin);
   const auto work_begin = Clock::now();
   panels_.work(0.004);
@@ -286,15 +224,16 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
-  if (skips_picture()) {
+  if (pacing_.leaves_out_frame(window_.input().has_backlog())) {
     imgui_.discard_frame();
     return;
   }
   const auto drawing = Clock::now();
   draw_picture(dt);
+  const auto presenting = Clock::now();
   present();
-  shown_at_ = Clock::now();
-  draw_seconds_ = since(drawing);
+  times_.present = since(presenting);
+  pacing_.showed_frame(since(drawing));
 }
 
 // Two sides have a half each, and pictures of the same size.
@@ -323,8 +262,10 @@ void Viewer::draw_text() {
   ViewportTextOptions options{.clock = !preferences_.panels,  // the play bar has its own clock
                               .hovered = mouse_.hovered(),
                               .legend = legend_.box()};
-  if (second_.area()) options.top = draw_side_titles(scene_, halves_of(whole_area_), log_);
-  draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
+  titles_ = second_.area() ? draw_side_titles(scene_, halves_of(whole_area_), log_) : 0;
+  options.top = titles_;
+  context_.caption =
+      draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
   draw_ghost_figures(scene_, area_, shown_camera_, log_);
   LivePicture* const second = scene_.second_picture();
   if (!second || !second_.area()) return;
@@ -335,15 +276,13 @@ void Viewer::draw_text() {
 // What the mouse moves in the picture besides robots and camera.
 void Viewer::draw_handles() {
   ViewSettings view = scene_.view();
-  bool changed = legend_.draw(scene_.picture().scene().legend, whole_area_, view, log_);
+  ViewportArea place = second_.area().value_or(area_);
+  // Where a side is too narrow for title and legend beside each other, the legend is below.
+  if (place.width() < 30 * ImGui::GetFontSize()) place.low.y += titles_;
+  bool changed = legend_.draw(scene_.picture().scene().legend, place, view, log_);
   context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   if (changed) scene_.set_view(view);
-}
-
-// If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
-bool Viewer::skips_picture() const {
-  return window_.input().has_backlog() && since(shown_at_) < skip_factor * draw_seconds_;
 }
 
 // The index of the robot that a plan names, by name or number; none = the group, or no such robot.
@@ -379,16 +318,9 @@ void Viewer::update_renderer() {
   }
 }
 
-// At unlimited speed, what a card spends on pictures is missing in the steps. While the user only watches, drawing gets
-// a small share of its time.
 bool Viewer::leaves_card_to_steps() const {
   if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
   return redraws_ == 0 && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
-}
-
-bool Viewer::waits_with_picture() const {
-  constexpr double share = 0.05;
-  return leaves_card_to_steps() && since(drawn_at_) < (1 / share - 1) * viewport_.draw_seconds();
 }
 
 void Viewer::draw_picture(double dt) {
@@ -403,12 +335,13 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
-  if (waits_with_picture()) return;
+  if (pacing_.keeps_picture(leaves_card_to_steps(), viewport_.draw_seconds())) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
+  times_.positions = since(begin);
   viewport_.draw(without_text(live.scene()), camera, moving);
   second_.draw(scene_, camera, moving);
-  drawn_at_ = Clock::now();
+  pacing_.drew_robots();
   ++pictures_;
   times_.picture = since(begin);
   shown_camera_ = camera;

@@ -162,7 +162,7 @@ TEST_P(BatchEdits, ManyGenerationsLeaveTheElderUntouched) {
   std::vector<std::size_t> kept{0, 1, 2, 3, 4};
   for (std::size_t generation = 0; generation < 5; ++generation) {
     for (Simulation* simulation : {&alone, &edited}) simulation->step(10);
-    std::ranges::rotate(kept, kept.begin() + 1);  // robot 0 gets another index each time
+    std::rotate(kept.begin(), kept.begin() + 1, kept.end());  // robot 0 gets another index each time
     const auto elder = static_cast<std::size_t>(std::ranges::find(kept, std::size_t{0}) - kept.begin());
     edited.keep(kept);
     edited.add(std::span(robots).subspan(8 + 3 * generation, 3));

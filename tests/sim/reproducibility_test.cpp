@@ -83,8 +83,8 @@ TEST_P(Reproducibility, TheOrderOfTheBatchDoesNotMatter) {
   std::ranges::reverse(robots);
   std::ranges::reverse(hashes);
   EXPECT_EQ(run(configuration(), robots), hashes);
-  std::ranges::rotate(robots, robots.begin() + 3);
-  std::ranges::rotate(hashes, hashes.begin() + 3);
+  std::rotate(robots.begin(), robots.begin() + 3, robots.end());
+  std::rotate(hashes.begin(), hashes.begin() + 3, hashes.end());
   EXPECT_EQ(run(configuration(), robots), hashes);
 }
 

@@ -60,7 +60,7 @@ void Dialogs::draw_question(EventLog& log) {
   }
   shown_ = open_;
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(question_.text.c_str());
+  ImGui::TextUnformatted(brief(question_.text, 2000).c_str());
   ImGui::PopTextWrapPos();
   // Not in the first frame: the text field has yet to receive what was typed before Enter.
   bool accepted = accepted_ && !just_opened_;

@@ -37,7 +37,7 @@ void show_details(const RobotFolderEntry& entry) {
     ImGui::PopStyleColor();
   } else {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
-    ImGui::TextUnformatted(entry.error.c_str());
+    ImGui::TextUnformatted(brief(entry.error, 2000).c_str());
     ImGui::PopStyleColor();
   }
   ImGui::PopTextWrapPos();

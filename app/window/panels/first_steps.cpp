@@ -84,6 +84,8 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::i
     filled += spacing + width;
   }
   if (area.height() < 0.5f * picture.height()) return;
+  // A narrow side has other texts there.
+  if (rows.size() > 1 && (context.scene.second() || !context.scene.ghosts().empty())) return;
   float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
   for (const std::vector<std::size_t>& row : rows) {
     float width = -spacing;

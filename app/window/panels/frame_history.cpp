@@ -15,9 +15,11 @@ FrameTimes FrameHistory::mean() const {
     const double share = 1.0 / static_cast<double>(frames_.size());
     mean.whole += share * times.whole;
     mean.scene += share * times.scene;
+    mean.positions += share * times.positions;
     mean.picture += share * times.picture;
     mean.panels += share * times.panels;
     mean.thumbnails += share * times.thumbnails;
+    mean.present += share * times.present;
   }
   return mean;
 }

@@ -8,11 +8,13 @@ namespace mercury::window {
 
 // The parts of one frame [s].
 struct FrameTimes {
-  double whole = 0;    // from one frame to the next
-  double scene = 0;    // taking over the newest state from the physics
-  double picture = 0;  // drawing the robots
-  double panels = 0;   // drawing the panels
+  double whole = 0;      // from one frame to the next
+  double scene = 0;      // taking over the newest state from the physics
+  double positions = 0;  // part of the picture: bringing positions to the renderer
+  double picture = 0;    // drawing the robots
+  double panels = 0;     // drawing the panels
   double thumbnails = 0;
+  double present = 0;  // bringing picture and panels to the display
 };
 
 class FrameHistory {

@@ -79,7 +79,7 @@ void show_individual(const Individual& individual, const EvolutionSettings& sett
   }
   if (!assessment.problem.empty()) {
     ImGui::PushTextWrapPos(24 * text);
-    ImGui::TextUnformatted(assessment.problem.c_str());
+    ImGui::TextUnformatted(brief(assessment.problem, 2000).c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);

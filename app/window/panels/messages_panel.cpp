@@ -12,6 +12,8 @@
 namespace mercury::window {
 namespace {
 
+constexpr std::size_t longest = 4000;  // of what is drawn [letters]; a copy has the rest
+
 std::string line_of(const PastMessage& message) {
   return fmt::format("{}  {}  {}{}", clock_text(message.time), name_of(message.tone), message.text,
                      message.count > 1 ? fmt::format("  (x{})", message.count) : "");
@@ -22,7 +24,22 @@ void copy(PanelContext& context, const std::string& text) {
   context.log.write("copied", {{"text", text}});
 }
 
+Tone tone_of(Severity severity) {
+  switch (severity) {
+    case Severity::warning:
+      return Tone::warning;
+    case Severity::error:
+      return Tone::error;
+    default:
+      return Tone::info;
+  }
+}
+
 }  // namespace
+
+void show_messages(Toasts& toasts, const std::vector<Message>& messages) {
+  for (const Message& message : messages) toasts.show(tone_of(message.severity), message.text);
+}
 
 void MessagesPanel::draw(PanelContext& context) {
   const std::deque<PastMessage>& history = context.toasts.history();
@@ -63,7 +80,8 @@ void MessagesPanel::draw_row(PanelContext& context, const PastMessage& message, 
   const float text = ImGui::GetFontSize(), indent = 0.6f * text;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x - indent;
-  const std::string shown = message.count > 1 ? fmt::format("{}  (x{})", message.text, message.count) : message.text;
+  const std::string shown =
+      brief(message.text, longest) + (message.count > 1 ? fmt::format("  (x{})", message.count) : "");
   const float height = text + ImGui::CalcTextSize(shown.c_str(), nullptr, false, width).y + 0.3f * text;
   if (ImGui::Selectable("##message", false, 0, {0, height})) copy(context, line_of(message));
   if (row < 20 && ImGui::IsItemVisible()) context.log.item(fmt::format("message.{}", row));

@@ -3,10 +3,15 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "app/live/messages.h"
 #include "app/window/panels/panel.h"
 
 namespace mercury::window {
+
+// Shows the messages of a background part as toasts.
+void show_messages(Toasts& toasts, const std::vector<Message>& messages);
 
 class MessagesPanel : public Panel {
  public:

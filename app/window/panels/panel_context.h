@@ -62,7 +62,7 @@ struct PanelContext {
   BodyEdit body_edit = {};
   RobotMenu robot_menu = {};
   UsedGestures gestures = {};         // of this session
-  Box legend = {};                    // over the viewport, in the last frame
+  Box legend = {}, caption = {};      // over the viewport, in the last frame
   float aspect = 16.0f / 9;           // width / height of the viewport in this frame
   bool screenshot_requested = false;  // set it to take one at the end of the frame
 };

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/window/panels/body_editor.h"
@@ -12,6 +13,16 @@
 #include "app/window/panels/robot_menu.h"
 
 namespace mercury::window {
+namespace {
+
+// The upper edge of messages, which are in the middle of the picture.
+float below_caption(const Box& caption, const ViewportArea& area) {
+  const float text = ImGui::GetFontSize(), middle = (area.low.x + area.high.x) / 2;
+  const float half = std::min(area.width() / 2, 19 * text);
+  return caption.high.x > middle - half ? std::max(area.low.y, caption.high.y - 0.4f * text) : area.low.y;
+}
+
+}  // namespace
 
 ViewportArea Panels::draw_frame() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -70,7 +81,7 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   draw_body_editor(context_, area);
   draw_robot_menu(context_, [this](const Command& command) { execute(command); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
-  context_.toasts.draw(area.low, area.high, dt, context_.log);
+  context_.toasts.draw({area.low.x, below_caption(context_.caption, area)}, area.high, dt, context_.log);
   if (context_.dialogs.open()) palette_.close();
   palette_.draw(context_);
   if (context_.toasts.take_click()) show("Messages");

@@ -53,6 +53,7 @@ void draw_frame_times(PanelContext& context) {
   figure("picture", milliseconds(mean.picture), "drawing the robots, including the wait for the GPU");
   figure("panels", milliseconds(mean.panels), "drawing the panels");
   figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
+  figure("display", milliseconds(mean.present), "bringing picture and panels to the display");
   figure("picture size",
          fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
                      100 * viewport.share()),

@@ -8,11 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {
 
 constexpr std::size_t max_count = 5, max_history = 1000;
+constexpr std::size_t longest = 400;  // of what is drawn [letters]; the history has the rest
 
 }  // namespace
 
@@ -60,7 +62,7 @@ void Toasts::remember(Tone tone, const std::string& text) {
 
 void Toasts::show(Tone tone, std::string text) {
   remember(tone, text);
-  const double duration = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(text.size());
+  const double duration = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(std::min(text.size(), longest));
   for (Toast& toast : toasts_)
     if (toast.text == text) {
       toast.seconds_left = duration;
@@ -86,7 +88,7 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
     if (!toast.logged) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
     toast.logged = true;
     const float width = std::min(high.x - low.x - 2 * line, 34 * line);
-    const std::string text = toast.count > 1 ? fmt::format("{}  (x{})", toast.text, toast.count) : toast.text;
+    const std::string text = brief(toast.text, longest) + (toast.count > 1 ? fmt::format("  (x{})", toast.count) : "");
     const float needed = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).x + 2.4f * line;
     ImGui::SetNextWindowPos({(low.x + high.x) / 2, y}, ImGuiCond_Always, {0.5f, 0});
     ImGui::SetNextWindowSize({std::min(needed, width + 2.4f * line), 0});

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <string_view>
 
 #include "app/window/toolkit/theme.h"
 
@@ -16,6 +18,18 @@ namespace {
 constexpr float name_share = 0.42f;  // of a row's width
 constexpr double rest_time = 0.4;    // of the pointer before a tooltip appears [s]
 constexpr const char* reset_tooltip = "reset to the default";
+constexpr const char* dots = "\xe2\x80\xa6";
+constexpr std::size_t longest_tooltip = 2000;  // [letters]
+
+// The last place up to `at`, and the first from `at`, that does not cut a UTF-8 letter in two.
+std::size_t letter_end(const std::string& text, std::size_t at) {
+  while (at > 0 && at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80) --at;
+  return at;
+}
+std::size_t letter_begin(const std::string& text, std::size_t at) {
+  while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80) ++at;
+  return at;
+}
 
 // Like row(), with a reset button beside the name if `differs`. Returns true when that button was clicked.
 bool row_with_reset(const char* name, const char* text, bool differs) {
@@ -52,19 +66,32 @@ float knob_place(float value, float low, float high, bool logarithmic) {
   return std::clamp(std::log(std::max(value, least) / least) / std::log(high / least), 0.0f, 1.0f);
 }
 
-// Draws the number of the slider that was just drawn: in the middle, or beside the knob if that is there.
-void draw_number(const char* text, float place) {
+// Where a number of this width is drawn on a slider: in the middle, or beside the knob if that is there. None = it fits
+// on neither side.
+std::optional<float> number_place(float low, float high, float knob, float gap, float width) {
+  const float middle = (low + high - width) / 2;
+  if (knob + gap <= middle || knob - gap >= middle + width) return middle;
+  const bool left_fits = knob - gap - width > low, right_fits = knob + gap + width < high;
+  if (right_fits && (knob < (low + high) / 2 || !left_fits)) return knob + gap;
+  return left_fits ? std::optional(knob - gap - width) : std::nullopt;
+}
+
+// Draws the number of the slider that was just drawn, without its unit if only that has room beside the knob.
+void draw_number(std::string_view text, float place) {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  const float grab = ImGui::GetStyle().GrabMinSize, width = ImGui::CalcTextSize(text).x;
+  const float grab = ImGui::GetStyle().GrabMinSize;
   const float knob = low.x + 2 + grab / 2 + place * (high.x - low.x - 4 - grab);
   const float gap = grab / 2 + 0.3f * ImGui::GetFontSize();
-  float x = (low.x + high.x - width) / 2;
-  const bool left_fits = knob - gap - width > low.x, right_fits = knob + gap + width < high.x;
-  if (knob + gap > x && knob - gap < x + width && (left_fits || right_fits))
-    x = right_fits && (place < 0.5f || !left_fits) ? knob + gap : knob - gap - width;
+  const auto width = [](std::string_view words) { return ImGui::CalcTextSize(words.begin(), words.end()).x; };
+  std::optional<float> x = number_place(low.x, high.x, knob, gap, width(text));
+  if (!x && !text.starts_with("\xc3\x97")) {  // "× 1.5" has its number last
+    text = text.substr(0, text.find(' '));
+    x = number_place(low.x, high.x, knob, gap, width(text));
+  }
   ImGui::PushClipRect(low, high, true);
-  ImGui::GetWindowDrawList()->AddText({x, (low.y + high.y - ImGui::GetFontSize()) / 2},
-                                      ImGui::GetColorU32(ImGuiCol_Text), text);
+  ImGui::GetWindowDrawList()->AddText(
+      {x.value_or((low.x + high.x - width(text)) / 2), (low.y + high.y - ImGui::GetFontSize()) / 2},
+      ImGui::GetColorU32(ImGuiCol_Text), text.begin(), text.end());
   ImGui::PopClipRect();
 }
 
@@ -130,7 +157,7 @@ void tooltip(const char* text) {
   if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !pointer_rests()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
-  ImGui::TextUnformatted(text);
+  ImGui::TextUnformatted(brief(text, longest_tooltip).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
@@ -212,25 +239,25 @@ bool text_field(const char* id, std::string& text, const char* placeholder) {
   return entered;
 }
 
+std::string brief(const std::string& text, std::size_t letters) {
+  if (text.size() <= letters) return text;
+  return text.substr(0, letter_end(text, letters / 2)) + dots +
+         text.substr(letter_begin(text, text.size() - letters / 2));
+}
+
 std::string shortened(const std::string& text, float width, bool middle) {
   if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-  const char* dots = "\xe2\x80\xa6";
-  // Do not cut a UTF-8 character in two.
-  const auto whole_end = [&](std::size_t length) {
-    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
-    return length;
+  const auto cut = [&](std::size_t kept) {
+    const std::size_t head = letter_end(text, middle ? kept / 3 : kept);
+    return text.substr(0, head) + dots +
+           (middle ? text.substr(letter_begin(text, text.size() - (kept - kept / 3))) : "");
   };
-  const auto whole_begin = [&](std::size_t start) {
-    while (start < text.size() && (static_cast<unsigned char>(text[start]) & 0xc0) == 0x80) ++start;
-    return start;
-  };
-  for (std::size_t kept = text.size() - 1; kept > 0; --kept) {
-    const std::size_t head = whole_end(middle ? kept / 3 : kept);
-    const std::string shorter =
-        text.substr(0, head) + dots + (middle ? text.substr(whole_begin(text.size() - (kept - kept / 3))) : "");
-    if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
+  std::size_t fits = 0, too_much = text.size();
+  while (too_much - fits > 1) {
+    const std::size_t kept = (fits + too_much) / 2;
+    (ImGui::CalcTextSize(cut(kept).c_str()).x <= width ? fits : too_much) = kept;
   }
-  return dots;
+  return fits > 0 ? cut(fits) : dots;
 }
 
 }  // namespace mercury::window

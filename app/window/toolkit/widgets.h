@@ -57,6 +57,10 @@ bool combo(const char* name, const char* help, int& index, const std::vector<con
 // A text field over a string; ImGui::SetNextItemWidth sets its width. Returns true when Enter was pressed.
 bool text_field(const char* id, std::string& text, const char* placeholder = "");
 
+// A text of at most about `letters` bytes: of a longer one, its beginning and its end. ImGui ends the program when one
+// wrapped text has more than 16,383 letters.
+std::string brief(const std::string& text, std::size_t letters);
+
 // Shortens a text to a width, with an ellipsis at its end or, for paths, in its middle.
 std::string shortened(const std::string& text, float width, bool middle = false);
 

@@ -21,15 +21,16 @@ std::span<const float> floats(std::span<const Vec3> points) {
 // The index in the snapshot of the first selected robot, or of the first one that is visible.
 std::optional<std::size_t> robot_with_handle(LiveScene& scene) {
   const Snapshot& snapshot = scene.snapshot();
-  std::optional<std::size_t> first;
-  for (const RobotEntry& entry : scene.entries()) {
-    const auto index = snapshot.robots->index_of(entry.id);
-    if (!index || entry.hidden || snapshot.telemetry[*index].exploded) continue;
-    if (*index >= scene.picture().offsets().size()) continue;
-    if (entry.selected) return index;
-    if (!first) first = index;
-  }
-  return first;
+  const auto shown = [&](RobotId id) {
+    const auto index = snapshot.robots->index_of(id);
+    const bool seen = index && *index < scene.picture().offsets().size() && !snapshot.telemetry[*index].exploded;
+    return seen && !scene.is_hidden(id) ? index : std::nullopt;
+  };
+  for (const RobotId id : scene.selection())
+    if (const auto index = shown(id)) return index;
+  for (const DocumentRobot& robot : scene.document().robots)
+    if (const auto index = shown(robot.body.id)) return index;
+  return std::nullopt;
 }
 
 ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {

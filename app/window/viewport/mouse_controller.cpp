@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double details_delay = 0.25;  // the pointer rests this long before details appear [s]
 constexpr double mark_delay = 0.05;     // the same for its name and for marks [s]
+constexpr double pick_share = 0.1;      // of the time, for looking what is under a mouse that rests
 constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
 
 bool inside(const ViewportArea& area, ImVec2 p) {
@@ -168,12 +170,16 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   const ImGuiIO& io = ImGui::GetIO();
   if (io.MousePos.x != last_position_.x || io.MousePos.y != last_position_.y) {
     last_position_ = io.MousePos;
-    rest_time_ = 0;
+    rest_time_ = next_pick_ = 0;
     hovered_.reset();
     return;
   }
   rest_time_ += static_cast<double>(io.DeltaTime);
-  if (rest_time_ >= mark_delay) hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+  if (rest_time_ < mark_delay || ImGui::GetTime() < next_pick_) return;
+  const auto begin = std::chrono::steady_clock::now();
+  hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  next_pick_ = ImGui::GetTime() + seconds / pick_share;
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera, const Box& legend) {

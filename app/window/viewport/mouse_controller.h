@@ -72,6 +72,7 @@ class MouseController {
   std::optional<Hit> pinned_;  // its figures stay
   ImVec2 last_position_{-1, -1};
   double rest_time_ = 0;  // since the mouse last moved [s]
+  double next_pick_ = 0;  // when hovered_ is looked up again, in ImGui's time [s]
 };
 
 }  // namespace mercury::window

@@ -63,9 +63,9 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
 }
 
 // In the upper left corner, as far as there is room.
-void draw_caption(const std::string& caption, const ViewportArea& area, const ViewportTextOptions& options,
-                  EventLog& log) {
-  if (caption.empty()) return;
+Box draw_caption(const std::string& caption, const ViewportArea& area, const ViewportTextOptions& options,
+                 EventLog& log) {
+  if (caption.empty()) return {};
   const float text = ImGui::GetFontSize();
   const ImVec2 at{area.low.x + text, area.low.y + options.top + text};
   const Box& legend = options.legend;
@@ -79,7 +79,9 @@ void draw_caption(const std::string& caption, const ViewportArea& area, const Vi
   }
   line(at, fitting);
   const ImVec2 size = ImGui::CalcTextSize(fitting.c_str());
-  log.item("caption", at, {at.x + size.x, at.y + size.y});
+  const Box box{at, {at.x + size.x, at.y + size.y}};
+  log.item("caption", box.low, box.high);
+  return box;
 }
 
 // The scale bar: a round length, to scale at the distance of the camera's target.
@@ -112,16 +114,17 @@ render::Scene without_text(const render::Scene& scene) {
   return bare;
 }
 
-void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log) {
+Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
+                       const render::Camera& camera, const ViewportTextOptions& options, EventLog& log) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
   draw_labels(scene, bounds, area, camera, options.hovered, log);
-  if (options.caption) draw_caption(scene.caption, area, options, log);
+  const Box caption = options.caption ? draw_caption(scene.caption, area, options, log) : Box{};
   if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);
   list.PopClipRect();
+  return caption;
 }
 
 }  // namespace mercury::window

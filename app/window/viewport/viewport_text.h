@@ -26,8 +26,8 @@ struct ViewportTextOptions {
 };
 
 // Draws the text of the scene over the picture, and logs where each name is as the item "label.BODY". `bounds`: one box
-// per body, in the coordinates of the picture.
-void draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);
+// per body, in the coordinates of the picture. Returns the box of the caption; without one it is empty.
+Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
+                       const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);
 
 }  // namespace mercury::window

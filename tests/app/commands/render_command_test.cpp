@@ -146,6 +146,50 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
   }
 }
 
+// The columns of a picture from `first` on.
+render::Image columns(const render::Image& image, int first, int count) {
+  render::Image part{count, image.height, image.format, {}};
+  for (int row = 0; row < image.height; ++row) {
+    const auto begin = image.bytes.begin() + 3 * (row * image.width + first);
+    part.bytes.insert(part.bytes.end(), begin, begin + 3 * count);
+  }
+  return part;
+}
+
+// A camera that stays where the start put it, when both sides are alike, is the same for one side and for two.
+TEST_F(RenderCommand, EachSideOfAComparisonIsThePictureOfItsSettings) {
+  const auto picture = [this](const std::string& name, const std::string& size, std::vector<std::string> more) {
+    more.insert(more.end(), {"--size", size, "--fps", "2", "--seconds", "1", "--camera", "still", "--color", "strain",
+                             "--scale", "-0.2,0.2", "--show", "skin", "--dt", "0.0005"});
+    const Outcome outcome = mercury(command(name, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    return render::read_png(path(name + "/frame-00001.png"));
+  };
+  const render::Image both = picture("both", "320x90", {"--compare", "solver=xpbd"});
+  EXPECT_EQ(both.width, 320);
+  EXPECT_EQ(columns(both, 0, 160).bytes, picture("force", "160x90", {"--caption", "force solver"}).bytes);
+  EXPECT_EQ(columns(both, 160, 160).bytes, picture("xpbd", "160x90", {"--solver", "xpbd", "--caption", "XPBD"}).bytes);
+  EXPECT_NE(columns(both, 0, 160).bytes, columns(both, 160, 160).bytes);
+}
+
+TEST_F(RenderCommand, SidesOfAFilmShareCameraAndScale) {
+  // Equal settings: whatever the camera and the colours do over time, both sides do it.
+  ASSERT_EQ(mercury(command("even", {"--fps", "4", "--seconds", "1", "--size", "320x90", "--color", "speed", "--show",
+                                     "skin", "--compare", "dt=0.001"}))
+                .status,
+            0);
+  for (const std::string& frame : listing("even")) {
+    const render::Image picture = render::read_png(path("even/" + frame));
+    EXPECT_EQ(columns(picture, 0, 160).bytes, columns(picture, 160, 160).bytes) << frame;
+  }
+  // Different settings: a film of both in one file.
+  const Outcome film = mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5", "--compare", "environment=land"}));
+  ASSERT_EQ(film.status, 0) << film.messages;
+  EXPECT_THAT(film.messages, HasSubstr("comparing ocean | land"));
+  EXPECT_EQ(probe(path("a.mp4"))["width"], 160);
+  EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "10");
+}
+
 TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {
   write("dying", "#!/bin/sh\necho 'out of ink' >&2\nexit 4\n", true);
   const Outcome outcome = mercury(command("a.mp4", {"--quiet", "--seconds", "1", "--ffmpeg", path("dying")}));
@@ -315,7 +359,7 @@ TEST_F(RefusedVideo, NumbersThatCannotBeUsedAreReportedBeforeAnyWork) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
-TEST_F(RefusedVideo, StillBeyondARecordingIsRefused) {
+TEST_F(RefusedVideo, WhatARecordingDoesNotHaveIsRefused) {
   ASSERT_EQ(mercury({"run", "--random", "voxel:1", "--seconds", "0.5", "--record", path("a.h5")}).status, 0);
   const auto still = [&](const std::string& moment, const std::string& name) {
     return mercury({"render", path("a.h5"), "--still", moment, "--size", "160x90", "-o", path(name)});
@@ -324,6 +368,10 @@ TEST_F(RefusedVideo, StillBeyondARecordingIsRefused) {
   EXPECT_EQ(beyond.status, 2);
   EXPECT_EQ(beyond.messages, "mercury: --still: 0.6 is not accepted; the recording has 0.495 s\n");
   EXPECT_EQ(still("0.5", "end.png").status, 0);
+  const Outcome sides = mercury({"render", path("a.h5"), "--compare", "solver=xpbd", "-o", path("c.mp4")});
+  EXPECT_EQ(sides.status, 2);
+  EXPECT_EQ(sides.messages,
+            "mercury: --compare: not together with a recording, which has one side; give its robots' files\n");
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.h5", "end.png"}));
 }
 

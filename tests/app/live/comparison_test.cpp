@@ -323,6 +323,7 @@ TEST(Comparison, ASecondSideThatWouldHoldUpTheWindowEndsWithAMessage) {
   scene.set_second(SideDifference("dt=1e-9"));
   make_steps(scene, 3);
   EXPECT_FALSE(scene.snapshot().second);
+  EXPECT_FALSE(scene.second()) << "the key that switches it on would be needed twice";
   const std::vector<Message> messages = scene.take_messages();
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_THAT(messages[0].text, testing::HasSubstr("the second view ended: dt: 1e-09 s is less than 1/1000"));

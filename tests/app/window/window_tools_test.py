@@ -30,6 +30,25 @@ class ToolsTest(WindowCase):
         window.until("no warnings", lambda: "message.0" not in window.items)
         self.finish(window)
 
+    def test_a_message_of_forty_thousand_letters(self):
+        """ImGui ends the program at 16,384 letters of one wrapped text: a command with many long paths is longer."""
+        folder = scratch().joinpath(*["a-folder-deep-down"] * 100)
+        folder.mkdir(parents=True)
+        robots = [shutil.copy(SAMPLES / "eel.json", folder / f"eel{i}.json") for i in range(20)]
+        window = self.open(*map(str, robots), "--paused")
+        window.click("tab.Tune")
+        since = window.mark()
+        window.click("tune.copy")
+        command = window.wait("copied", since)["text"]
+        self.assertGreater(len(command), 38000)
+        self.assertEqual(window.wait("message", since)["text"], "copied: " + command)
+        window.click("toast.0")
+        window.place("panel.Messages")
+        since = window.mark()
+        window.click("messages.copy")
+        self.assertIn(command, window.wait("copied", since)["text"])
+        self.finish(window)
+
     def test_columns_collapse_by_key_and_in_a_narrow_window(self):
         window = self.small("--paused")
 
@@ -188,6 +207,17 @@ class ToolsTest(WindowCase):
         window.place("dialog.accept")
         window.until("all of the form in the window", lambda: window.frame() and box("dialog.accept")[3] < 400)
         window.kill()
+
+    def test_messages_leave_the_caption_free(self):
+        window = self.small("--paused", "--caption", "Two swimmers that nobody should confuse with each other")
+        since = window.mark()
+        window.key("F5")  # a camera bookmark that is not set
+        window.wait("message", since)
+        window.until("the message is shown", lambda: window.frame() and "toast.0" in window.items)
+        caption, toast = window.items["caption"], window.items["toast.0"]
+        self.assertGreater(caption["x"] + caption["width"] / 2, toast["x"] - toast["width"] / 2, "they would meet side by side")
+        self.assertGreater(toast["y"] - toast["height"] / 2, caption["y"] + caption["height"] / 2)
+        self.finish(window)
 
     def test_the_button_that_makes_robots_is_in_view(self):
         window = self.small("--paused")

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// When the window draws: how long it waits between two frames, and which pictures it leaves out.
+#pragma once
+
+#include <chrono>
+
+namespace mercury::window {
+
+class Pacing {
+ public:
+  // `paced`: at most as often as displays show pictures; otherwise as often as possible.
+  explicit Pacing(bool paced) : paced_(paced) {}
+
+  // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `card_for_steps`: the user
+  // only watches robots that step as fast as a card can, and what drawing takes of its time is missing there.
+  double wait(double spent, bool card_for_steps) const;
+  // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
+  bool leaves_out_frame(bool backlog) const;
+  // Whether the robots of the last picture stay: then pictures get a small share of the card's time.
+  bool keeps_picture(bool card_for_steps, double draw_seconds) const;
+
+  void drew_robots() { drawn_at_ = Clock::now(); }
+  void showed_frame(double seconds);  // that drawing and showing it took
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+  bool paced_;
+  Clock::time_point shown_at_, drawn_at_;
+  double frame_seconds_ = 0;  // of the last frame that was shown
+};
+
+}  // namespace mercury::window
