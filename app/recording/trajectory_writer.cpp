@@ -31,6 +31,7 @@ constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of one chunk of th
 // 2,000, minutes for 20,000.
 constexpr std::size_t most_robots_flushed = 2000;
 constexpr std::size_t longest_block = 64;  // frames
+constexpr hsize_t page_bytes = 4096;       // of the memory in which the kernel keeps files
 
 // The user's name, which H5MD requires.
 std::string author() {
@@ -50,12 +51,19 @@ std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t e
   return (frames - 1) / blocks + 1;  // equal blocks, so that the last one has little padding
 }
 
-Handle create_file(const std::filesystem::path& path) {
+Handle create_file(const std::filesystem::path& path, bool survives_kill) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
   // This version of the format has checksums for metadata, so that the reader detects damage.
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST));
   checked(H5Pset_file_locking(access, true, true));  // some network drives lack locks
-  return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE));
+  if (survives_kill) {
+    // A program that is killed while it writes leaves whole pages. So no piece of metadata may lie on two pages: half
+    // of it would make the file unreadable.
+    checked(H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_PAGE, false, 1));
+    checked(H5Pset_file_space_page_size(creation, page_bytes));
+  }
+  return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation, access));
 }
 
 std::runtime_error write_failure(const std::filesystem::path& path, const Error& error) {
@@ -97,14 +105,6 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     throw InputError(option, "\"" + path.string() + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw InputError(option, path.string() + " is a folder");
-  prepare();
-  try {
-    file_ = create_file(unfinished_.path());
-  } catch (const Error& error) {
-    if (error.number() == ENOSPC || error.number() == EDQUOT) throw write_failure(path_, error);
-    const char* reason = error.number() != 0 ? std::strerror(error.number()) : error.what();
-    throw InputError(option, path.string() + " cannot be written: " + reason);
-  }
 
   std::vector<std::string> names;
   std::size_t largest = 1;
@@ -115,6 +115,14 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     largest = std::max(largest, robot->masses.size());
   }
   groups_ = group_names(names);
+  prepare();
+  try {
+    file_ = create_file(unfinished_.path(), survives_kill());
+  } catch (const Error& error) {
+    if (error.number() == ENOSPC || error.number() == EDQUOT) throw write_failure(path_, error);
+    const char* reason = error.number() != 0 ? std::strerror(error.number()) : error.what();
+    throw InputError(option, path.string() + " cannot be written: " + reason);
+  }
   frames_per_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
   positions_.resize(frames_per_block_ * offsets_.back());
   velocities_.resize(frames_per_block_ * offsets_.back());

@@ -57,6 +57,14 @@ std::size_t FileOperations::size() const { return operations.size(); }
 
 std::size_t FileOperations::length(std::size_t operation) const { return operations.at(operation).bytes.size(); }
 
+std::vector<std::size_t> FileOperations::breaks(std::size_t operation) const {
+  constexpr std::size_t page = 4096;
+  const auto start = static_cast<std::size_t>(operations.at(operation).at);
+  std::vector<std::size_t> breaks;
+  for (std::size_t at = page - start % page; at < length(operation); at += page) breaks.push_back(at);
+  return breaks;
+}
+
 void FileOperations::apply(std::size_t operation, std::string& content, std::size_t most) const {
   const auto& [at, bytes, truncates] = operations.at(operation);
   const auto start = static_cast<std::size_t>(at);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace mercury::test {
 
@@ -17,6 +18,9 @@ class FileOperations {
 
   std::size_t size() const;
   std::size_t length(std::size_t operation) const;  // bytes that it writes
+  // Where the kernel may stop when the program is killed while it writes: after the last byte of a page of the file.
+  // Bytes from the operation's first.
+  std::vector<std::size_t> breaks(std::size_t operation) const;
   // Does the operation to the content of a file: at most the first `most` bytes of it.
   void apply(std::size_t operation, std::string& content, std::size_t most = std::string::npos) const;
 };

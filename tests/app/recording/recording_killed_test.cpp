@@ -105,24 +105,34 @@ class KilledRecording : public FolderTest {
     return "";
   }
 
-  // Replays what the program did to the file. After each operation, a reader of the file must find all frames that the
-  // operations before had shown.
+  // The frames of a file with these bytes, of which a reader must find at least as many as before.
+  std::size_t read_frames(const std::string& bytes, std::size_t before) {
+    write("copy.h5.1-0.part", bytes);
+    TrajectoryReader reader(path("copy.h5.1-0.part"));
+    const std::size_t found = expect_frames(reader);
+    EXPECT_GE(found, before);
+    return found;
+  }
+
+  // Replays what the program did to the file. After each operation, also one that is cut short, a reader of the file
+  // must find all frames that the operations before had shown.
   void expect_readable_after_every(const FileOperations& operations, std::size_t from) {
-    const std::string name = path("copy.h5.1-0.part");
     std::string bytes;
     std::size_t frames = 0;
     for (std::size_t i = 0; i < operations.size(); ++i) {
+      SCOPED_TRACE("operation " + std::to_string(i));
+      for (const std::size_t end : i < from ? std::vector<std::size_t>() : operations.breaks(i)) {
+        SCOPED_TRACE("cut short after byte " + std::to_string(end));
+        std::string torn = bytes;
+        operations.apply(i, torn, end);
+        read_frames(torn, frames);
+      }
       operations.apply(i, bytes);
       if (i < from) continue;
-      SCOPED_TRACE("operation " + std::to_string(i));
-      write("copy.h5.1-0.part", bytes);
-      TrajectoryReader reader(name);
-      const std::size_t found = expect_frames(reader);
-      ASSERT_GE(found, frames);
+      frames = read_frames(bytes, frames);
       ASSERT_FALSE(HasFailure());
-      frames = found;
     }
-    EXPECT_EQ(TrajectoryReader(name).unfinished(), false);
+    EXPECT_EQ(TrajectoryReader(path("copy.h5.1-0.part")).unfinished(), false);
     frames_ = frames;
   }
 
