@@ -130,7 +130,7 @@ RenderTask render_task(RenderOptions& options) {
   if (task.subject.recording && task.view.compare)
     throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);
-  if (task.view.compare) halves_of(task.plan.size, true);
+  if (task.view.compare) halves_of(task.plan.size);
   require_moment(options.video, task.subject);
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();

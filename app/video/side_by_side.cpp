@@ -26,11 +26,11 @@ std::vector<Plane> planes_of(const render::Image& image) {
 
 }  // namespace
 
-std::vector<PictureSize> halves_of(PictureSize whole, bool even) {
-  const int step = even ? 2 : 1, left = whole.width / 2 / step * step;
+std::vector<PictureSize> halves_of(PictureSize whole) {
+  const int left = whole.width / 4 * 2;
   if (left == 0)
-    throw ParameterError("size", fmt::format("{}x{} is not accepted; two sides need at least {} pixels across",
-                                             whole.width, whole.height, 2 * step));
+    throw ParameterError("size", fmt::format("{}x{} is not accepted; two sides need at least 4 pixels across",
+                                             whole.width, whole.height));
   return {{left, whole.height}, {whole.width - left, whole.height}};
 }
 

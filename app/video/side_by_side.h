@@ -10,9 +10,9 @@
 
 namespace mercury {
 
-// The sizes of two halves of a picture, from left to right: even widths if `even`, as yuv420 needs them. Throws
-// ParameterError("size", ...) for a picture that is too narrow.
-std::vector<PictureSize> halves_of(PictureSize whole, bool even);
+// The sizes of two halves of a picture of even width, from left to right, with even widths, as yuv420 needs them.
+// Throws ParameterError("size", ...) for a picture that is too narrow.
+std::vector<PictureSize> halves_of(PictureSize whole);
 
 // Puts pictures of one height and format beside each other. `into` keeps its memory if that is large enough.
 void join(std::span<const render::Image> parts, render::Image& into);

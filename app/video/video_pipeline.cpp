@@ -71,7 +71,7 @@ VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation
     sides_.push_back(std::make_unique<Side>(std::move(simulation), offscreen, std::nullopt, settings, names));
     return;
   }
-  const auto sizes = halves_of({offscreen.renderer.width(), offscreen.renderer.height()}, true);
+  const auto sizes = halves_of({offscreen.renderer.width(), offscreen.renderer.height()});
   const SideSettings of_sides = settings_of_sides(settings, simulation.configuration(), second->configuration());
   sides_.push_back(std::make_unique<Side>(std::move(simulation), offscreen, sizes[0], of_sides[0], names));
   sides_.push_back(std::make_unique<Side>(std::move(*second), offscreen, sizes[1], of_sides[1], names));

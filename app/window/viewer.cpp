@@ -177,9 +177,9 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
   }
   const bool typing = ImGui::GetIO().WantTextInput;
   for (const KeyPress& press : key_presses_in(events)) {
-    const std::optional<Command> command = keys_.command_of(press);
+    const std::optional<Action> command = keys_.command_of(press);
     if (dialogs_.open()) {
-      if (command && command->action == Action::deselect)
+      if (command == Action::deselect)
         panels_.execute(*command);
       else
         dialogs_.press(press);
@@ -187,7 +187,7 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
     }
     if (panels_.press_in_palette(press, command)) continue;
     if (!command) continue;
-    if (!typing || !is_text_edit(press, command->action)) panels_.execute(*command);
+    if (!typing || !is_text_edit(press, *command)) panels_.execute(*command);
   }
 }
 

@@ -3,24 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/window/panels/key_hint.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {
-
-// Shows the legend for quantities with values, as the command line does.
-void color(ViewSettings& view, const ColorQuantity& quantity) {
-  view.color = &quantity;
-  view.scale.reset();
-  view.shown.legend = quantity.has_values();
-}
 
 bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log) {
   bool changed = false;
@@ -58,33 +53,38 @@ bool draw_map(ViewSettings& view, EventLog& log) {
   return changed;
 }
 
+std::string text_with_keys(const KeyMap& keys, const std::string& text, const ColorQuantity& quantity) {
+  const auto colors_by_it = [&](const KeyBinding& binding) { return quantity_of(binding.action) == &quantity; };
+  const auto binding = std::ranges::find_if(key_bindings(), colors_by_it);
+  return binding == key_bindings().end() ? text : with_keys(keys, text, binding->action);
+}
+
 }  // namespace
 
 bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const Environment& environment,
-                        EventLog& log) {
+                        const KeyMap& keys, EventLog& log) {
   heading("Colour by");
   bool changed = false;
   constexpr int columns = 3;
   const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x;
   const float width = (ImGui::GetContentRegionAvail().x - (columns - 1) * gap) / columns;
-  int number = 0;
+  int place = 0;
   for (const ColorQuantity& quantity : color_quantities()) {
-    if (number++ % columns != 0) ImGui::SameLine(0, gap);
+    if (place++ % columns != 0) ImGui::SameLine(0, gap);
     const bool offered = quantity.exists_in(environment), on = view.color == &quantity;
     ImGui::BeginDisabled(!offered);
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
     if (on) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
     if (ImGui::Button(std::string(quantity.name).c_str(), {width, 0}) && !on) {
-      color(view, quantity);
+      color_by(view, quantity);
       changed = true;
     }
     if (on) ImGui::PopStyleColor(2);
     ImGui::EndDisabled();
     log.item(fmt::format("color.{}", quantity.key));
     std::string text(quantity.help);
-    if (number <= 9) text += fmt::format(" (key {})", number);
     if (!offered) text += fmt::format("; only in: {}", environments_of(quantity));
-    tooltip(text.c_str());
+    tooltip(text_with_keys(keys, text, quantity).c_str());
   }
   if (!view.color->has_values()) return changed;
   changed |= draw_map(view, log);
@@ -92,13 +92,15 @@ bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const
   return changed;
 }
 
-bool color_by_number(ViewSettings& view, int number, const Environment& environment) {
-  const auto quantities = color_quantities();
-  if (number < 1 || number > static_cast<int>(quantities.size())) return false;
-  const ColorQuantity& quantity = quantities[static_cast<std::size_t>(number - 1)];
-  if (!quantity.exists_in(environment)) return false;
-  color(view, quantity);
-  return true;
+void color_by(ViewSettings& view, const ColorQuantity& quantity) {
+  view.color = &quantity;
+  view.scale.reset();
+  view.shown.legend = quantity.has_values();
+}
+
+const ColorQuantity* quantity_of(Action action) {
+  if (action < Action::color_material || action > Action::color_power) return nullptr;
+  return &color_quantities()[static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::color_material)];
 }
 
 }  // namespace mercury::window

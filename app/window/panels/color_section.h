@@ -6,6 +6,7 @@
 
 #include "app/scene/view_settings.h"
 #include "app/window/toolkit/event_log.h"
+#include "app/window/toolkit/key_map.h"
 #include "mercury/configuration.h"
 
 namespace mercury::window {
@@ -13,10 +14,12 @@ namespace mercury::window {
 // Draws one button per quantity of color_quantities(), and the scale, which is fixed as it is `shown` now. Returns true
 // if `view` changed.
 bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const Environment& environment,
-                        EventLog& log);
+                        const KeyMap& keys, EventLog& log);
 
-// Colours by the quantity with this number, counted from 1 in the order of color_quantities(). Returns false if the
-// environment does not have it.
-bool color_by_number(ViewSettings& view, int number, const Environment& environment);
+// Colours by a quantity, with its usual scale. Shows the legend if it has values, as the command line does.
+void color_by(ViewSettings& view, const ColorQuantity& quantity);
+
+// The quantity that a command colours by; nullptr if it does not colour.
+const ColorQuantity* quantity_of(Action action);
 
 }  // namespace mercury::window

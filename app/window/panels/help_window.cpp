@@ -62,10 +62,11 @@ void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
       ImGui::TableNextColumn();
       mouse();
       group("Time", keys);
-      group("Camera", keys);
       group("Picture", keys);
+      group("Colours", keys);
       ImGui::TableNextColumn();
       group("Robots", keys);
+      group("Camera", keys);
       group("Window", keys);
       ImGui::EndTable();
     }

@@ -13,7 +13,7 @@
 namespace mercury::window {
 
 void Panels::menu_item(const char* name, Action action, bool enabled, bool checked) {
-  if (ImGui::MenuItem(name, context_.keys.keys_of(action).c_str(), checked, enabled)) execute({action});
+  if (ImGui::MenuItem(name, context_.keys.keys_of(action).c_str(), checked, enabled)) execute(action);
 }
 
 void Panels::draw_menu() {

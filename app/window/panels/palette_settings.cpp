@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/scene/color_quantity.h"
+#include "app/window/panels/color_section.h"
 #include "app/window/panels/command_palette.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/robot_commands.h"
@@ -45,7 +46,7 @@ void add_switches(PanelContext& context, std::vector<PaletteEntry>& entries) {
       entries.push_back({fmt::format("colour by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
                          [&context, &quantity] {
                            ViewSettings now = context.scene.view();
-                           now.color = &quantity;
+                           color_by(now, quantity);
                            context.scene.set_view(now);
                          }});
 }

@@ -24,8 +24,8 @@
 
 namespace mercury::window {
 
-void Panels::execute(const Command& command) {
-  switch (command.action) {
+void Panels::execute(Action action) {
+  switch (action) {
     case Action::play_pause:
     case Action::step:
     case Action::faster:
@@ -33,7 +33,7 @@ void Panels::execute(const Command& command) {
     case Action::real_time:
     case Action::fastest:
     case Action::reset:
-      change_time(command.action);
+      change_time(action);
       break;
     case Action::step_back:
     case Action::first_moment:
@@ -44,7 +44,7 @@ void Panels::execute(const Command& command) {
     case Action::previous_bookmark:
     case Action::go_on:
     case Action::fork:
-      change_timeline(context_, command.action);
+      change_timeline(context_, action);
       break;
     case Action::new_random:
     case Action::duplicate:
@@ -64,7 +64,7 @@ void Panels::execute(const Command& command) {
     case Action::open:
     case Action::save_scene:
     case Action::save:
-      change_robots(command.action);
+      change_robots(action);
       break;
     case Action::frame:
     case Action::follow:
@@ -80,16 +80,24 @@ void Panels::execute(const Command& command) {
     case Action::set_bookmark_2:
     case Action::set_bookmark_3:
     case Action::set_bookmark_4:
-      change_camera(command.action);
+      change_camera(action);
       break;
     case Action::drag_arrows:
-    case Action::color:
+    case Action::color_material:
+    case Action::color_activation:
+    case Action::color_strain:
+    case Action::color_force:
+    case Action::color_speed:
+    case Action::color_pressure:
+    case Action::color_energy:
+    case Action::color_stiffness:
+    case Action::color_power:
     case Action::cells:
     case Action::springs:
     case Action::labels:
     case Action::legend:
     case Action::theme:
-      change_view(command.action, command.number);
+      change_view(action);
       break;
     case Action::compare:
       toggle_second_view(context_);
@@ -99,7 +107,7 @@ void Panels::execute(const Command& command) {
       break;
     case Action::left_panels:
     case Action::right_panels: {
-      const Side side = command.action == Action::left_panels ? Side::left : Side::right;
+      const Side side = action == Action::left_panels ? Side::left : Side::right;
       open_column(side, !context_.preferences.panels || !column_open(side));
       context_.preferences.panels = true;
       break;
@@ -179,17 +187,18 @@ void Panels::change_robots(Action action) {
   }
 }
 
-void Panels::change_view(Action action, int number) {
+void Panels::change_view(Action action) {
   ViewSettings view = context_.scene.view();
   const Environment& environment = context_.scene.configuration().environment;
+  if (const ColorQuantity* quantity = quantity_of(action)) {
+    if (!quantity->exists_in(environment)) return;
+    color_by(view, *quantity);
+    context_.toasts.show(Tone::info, fmt::format("coloured by {}", quantity->key));
+  }
   switch (action) {
     case Action::drag_arrows:
       toggle_drag_arrows(context_);
       return;
-    case Action::color:
-      if (!color_by_number(view, number, environment)) return;
-      context_.toasts.show(Tone::info, fmt::format("coloured by {}", view.color->key));
-      break;
     case Action::cells:
       set_layout(view, view.layout == Layout::cells ? Layout::grid : Layout::cells);
       context_.toasts.show(Tone::info, view.layout == Layout::cells ? "robots stay in their cells" : "robots travel");
@@ -209,7 +218,7 @@ void Panels::change_view(Action action, int number) {
       view.theme = view.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
       break;
     default:
-      return;
+      break;
   }
   context_.scene.set_view(view);
 }
@@ -240,9 +249,9 @@ std::vector<PaletteEntry> Panels::palette_entries() {
   std::vector<PaletteEntry> entries;
   for (const KeyBinding& binding : key_bindings()) {
     const Action action = binding.action;
-    if (action == Action::color || action == Action::deselect || action == Action::palette) continue;
+    if (quantity_of(action) || action == Action::deselect || action == Action::palette) continue;
     entries.push_back(
-        {binding.meaning, binding.group, context_.keys.keys_of(action), [this, action] { execute({action}); }});
+        {binding.meaning, binding.group, context_.keys.keys_of(action), [this, action] { execute(action); }});
   }
   entries.push_back({"open a run of an evolution", "File", "", [this] { choose_run(context_); }});
   entries.push_back({"export the pose for other programs", "File", "", [this] { export_pose(context_); }});
@@ -259,9 +268,9 @@ void Panels::open_palette() {
   palette_.open([this] { return palette_entries(); });
 }
 
-bool Panels::press_in_palette(const KeyPress& press, const std::optional<Command>& command) {
+bool Panels::press_in_palette(const KeyPress& press, std::optional<Action> command) {
   if (!palette_.is_open()) return false;
-  if (command && (command->action == Action::deselect || command->action == Action::palette))
+  if (command == Action::deselect || command == Action::palette)
     palette_.close();
   else
     palette_.press(press);

@@ -79,7 +79,7 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   explosions_.draw(context_, area);
   first_steps_.draw(context_, area, {axes, context_.legend, explosions_.box()}, dt);
   draw_body_editor(context_, area);
-  draw_robot_menu(context_, [this](const Command& command) { execute(command); });
+  draw_robot_menu(context_, [this](Action action) { execute(action); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw({area.low.x, below_caption(context_.caption, area)}, area.high, dt, context_.log);
   if (context_.dialogs.open()) palette_.close();

@@ -38,9 +38,9 @@ class Panels {
   // Draws the open dialog. Call it after everything else that draws windows or tooltips.
   void draw_dialogs();
   // Executes a command of a key or menu.
-  void execute(const Command& command);
+  void execute(Action action);
   // Hands a key press to the command palette. Returns false if it is not open.
-  bool press_in_palette(const KeyPress& press, const std::optional<Command>& command);
+  bool press_in_palette(const KeyPress& press, std::optional<Action> command);
   // Opens a panel by its title.
   void show(const std::string& panel);
   // Background work of panels, for about `seconds` (panel.h).
@@ -63,7 +63,7 @@ class Panels {
   void menu_item(const char* name, Action action, bool enabled = true, bool checked = false);
   void change_time(Action action);
   void change_robots(Action action);
-  void change_view(Action action, int number);
+  void change_view(Action action);
   void change_camera(Action action);
   bool is_narrow() const;
   bool column_open(Side side) const;

@@ -19,10 +19,10 @@ void request(PanelContext& context, RobotId robot, std::optional<Hit> hit) {
 
 struct Items {
   PanelContext& context;
-  const std::function<void(const Command&)>& execute;
+  const std::function<void(Action)>& execute;
 
   void command(const char* name, Action action, bool enabled = true) const {
-    if (ImGui::MenuItem(name, context.keys.keys_of(action).c_str(), false, enabled)) execute({action});
+    if (ImGui::MenuItem(name, context.keys.keys_of(action).c_str(), false, enabled)) execute(action);
     context.log.item(fmt::format("robot_menu.{}", name));
   }
   bool item(const char* name, bool enabled = true) const {
@@ -52,7 +52,7 @@ void robot_menu_of_row(PanelContext& context, RobotId robot) {
 
 void open_robot_menu(PanelContext& context, const Hit& hit) { request(context, hit.robot, hit); }
 
-void draw_robot_menu(PanelContext& context, const std::function<void(const Command&)>& execute) {
+void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& execute) {
   RobotMenu& menu = context.robot_menu;
   if (std::exchange(menu.requested, false)) ImGui::OpenPopup(id);
   if (!ImGui::BeginPopup(id)) return;

@@ -16,6 +16,6 @@ void robot_menu_of_row(PanelContext& context, RobotId robot);
 // Opens the menu for what was right-clicked in the picture.
 void open_robot_menu(PanelContext& context, const Hit& hit);
 // Draws the menu that is open. `execute` carries out a command.
-void draw_robot_menu(PanelContext& context, const std::function<void(const Command&)>& execute);
+void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& execute);
 
 }  // namespace mercury::window

@@ -209,7 +209,7 @@ void ViewPanel::draw(PanelContext& context) {
   ViewSettings view = context.scene.view();
   const Environment& environment = context.scene.configuration().environment;
   const auto& scale = context.scene.picture().scene().scale;
-  bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.log);
+  bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.keys, context.log);
   changed |= draw_show_section(view, context.keys, context.log);
   changed |= draw_arrow_section(view, environment, context.keys, context.log);
   draw_camera_section(context.camera, context.keys, context.log);

@@ -144,9 +144,14 @@ void ImGuiLayer::draw_on_top(const std::function<void(ImDrawList& list)>& draw) 
   list.PushTextureID(ImGui::GetIO().Fonts->TexID);
   list.PushClipRectFullScreen();
   draw(list);
-  ImDrawList* lists = &list;
   ImDrawData data = *ImGui::GetDrawData();  // for the size of the display
+#if IMGUI_VERSION_NUM < 18980
+  ImDrawList* lists = &list;
   data.CmdLists = &lists;
+#else
+  data.CmdLists.resize(0);
+  data.CmdLists.push_back(&list);
+#endif
   data.CmdListsCount = 1;
   data.TotalVtxCount = list.VtxBuffer.Size;
   data.TotalIdxCount = list.IdxBuffer.Size;

@@ -63,7 +63,6 @@ constexpr KeyBinding table[] = {
     {Action::save, "save", "Ctrl Shift S", "save robots", "Robots"},
 
     {Action::drag_arrows, "drag_arrows", "D", "drag arrows", "Picture"},
-    {Action::color, "color", "1 - 9", "colour by a quantity, numbered as in the View panel", "Picture"},
     {Action::cells, "cells", "C", "robots stay in their cells, or travel", "Picture"},
     {Action::springs, "springs", "S", "springs instead of the skin", "Picture"},
     {Action::labels, "labels", "L", "names and distances", "Picture"},
@@ -71,6 +70,16 @@ constexpr KeyBinding table[] = {
     {Action::theme, "theme", "B", "dark or light theme", "Picture"},
     {Action::compare, "compare", "I", "two views of the same robots under different settings, or one", "Picture"},
     {Action::ghosts, "ghosts", "A", "ghosts of the selected robots as they were, or none", "Picture"},
+
+    {Action::color_material, "color_material", "1", "colour by material", "Colours"},
+    {Action::color_activation, "color_activation", "2", "colour by activation", "Colours"},
+    {Action::color_strain, "color_strain", "3", "colour by strain", "Colours"},
+    {Action::color_force, "color_force", "4", "colour by force", "Colours"},
+    {Action::color_speed, "color_speed", "5", "colour by speed", "Colours"},
+    {Action::color_pressure, "color_pressure", "6", "colour by pressure", "Colours"},
+    {Action::color_energy, "color_energy", "7", "colour by energy", "Colours"},
+    {Action::color_stiffness, "color_stiffness", "8", "colour by stiffness", "Colours"},
+    {Action::color_power, "color_power", "9", "colour by power", "Colours"},
 
     {Action::left_panels, "left_panels", "[", "collapse or open the left panels", "Window"},
     {Action::right_panels, "right_panels", "]", "collapse or open the right panels", "Window"},
@@ -201,8 +210,7 @@ std::optional<KeyChord> key_chord(std::string_view text) {
     return chord;
   }
   chord.character = text == "Comma" ? U',' : lower(only_character(text));
-  const bool digit = chord.character >= U'1' && chord.character <= U'9';  // without Ctrl they choose a colour
-  if (chord.character == 0 || (!chord.control && (digit || chord.shift))) return std::nullopt;
+  if (chord.character == 0 || (!chord.control && chord.shift)) return std::nullopt;
   return chord;
 }
 

@@ -63,7 +63,15 @@ enum class Action {
   save_scene,
   save,  // robots
   drag_arrows,
-  color,  // with a number: the position of the colour quantity
+  color_material,  // the quantities of color_quantities(), in their order
+  color_activation,
+  color_strain,
+  color_force,
+  color_speed,
+  color_pressure,
+  color_energy,
+  color_stiffness,
+  color_power,
   cells,
   springs,
   labels,
@@ -97,11 +105,6 @@ struct KeyBinding {
 
 // All commands; those of a group stand together.
 std::span<const KeyBinding> key_bindings();
-
-struct Command {
-  Action action;
-  int number = 0;  // for Action::color, from 1
-};
 
 // A key with its modifiers. Keys that type a character are identified by it, others by GLFW's number.
 struct KeyChord {

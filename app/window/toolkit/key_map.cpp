@@ -38,15 +38,11 @@ std::string quoted(std::string_view text) {
   return fmt::format("\"{}\"{}", shown, text.size() > 40 ? "..." : "");
 }
 
-bool is_fixed(Action action) { return action == Action::color; }
-
 }  // namespace
 
 KeyMap::KeyMap() : keys_(key_bindings().size()) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const KeyBinding& binding = key_bindings()[i];
-    if (is_fixed(binding.action)) continue;
-    for_each_part(binding.keys, " or ", [&](std::string_view part) {
+    for_each_part(key_bindings()[i].keys, " or ", [&](std::string_view part) {
       if (const auto chord = key_chord(part)) keys_[i].chords.push_back(*chord);
     });
   }
@@ -82,7 +78,6 @@ std::string KeyMap::read_line(std::string_view line) {
     for (const KeyBinding& one : bindings) names.emplace_back(one.name);
     return fmt::format("{} is no command{}", quoted(name), suggestion(std::string(name), names));
   }
-  if (is_fixed(binding->action)) return fmt::format("{} has the keys 1 to 9, which cannot be changed", binding->name);
   std::vector<KeyChord> chords;
   std::string wrong;
   if (!value.empty())
@@ -105,17 +100,14 @@ std::string KeyMap::read_line(std::string_view line) {
   return {};
 }
 
-std::optional<Command> KeyMap::command_of(const KeyPress& press) const {
-  if (!press.control && press.character >= U'1' && press.character <= U'9')
-    return press.repeated ? std::nullopt
-                          : std::optional(Command{Action::color, static_cast<int>(press.character - U'0')});
+std::optional<Action> KeyMap::command_of(const KeyPress& press) const {
   // "Shift Right" comes before "Right", which matches with Shift as well.
   for (const bool shift : {true, false})
     for (std::size_t i = 0; i < keys_.size(); ++i)
       for (const KeyChord& chord : keys_[i].chords) {
         if (chord.shift != shift || !chord.matches(press)) continue;
         if (press.repeated && !key_bindings()[i].repeats) return std::nullopt;
-        return Command{key_bindings()[i].action};
+        return key_bindings()[i].action;
       }
   return std::nullopt;
 }
@@ -124,7 +116,6 @@ std::string KeyMap::keys_of(Action action) const {
   std::string text;
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (key_bindings()[i].action != action) continue;
-    if (is_fixed(action)) return key_bindings()[i].keys;
     for (const KeyChord& chord : keys_[i].chords) text += (text.empty() ? "" : " or ") + text_of(chord);
   }
   return text;
@@ -133,7 +124,6 @@ std::string KeyMap::keys_of(Action action) const {
 std::string KeyMap::text() const {
   std::string text;
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    if (is_fixed(key_bindings()[i].action)) continue;
     std::string line;
     for (const KeyChord& chord : keys_[i].chords) line += (line.empty() ? "" : ", ") + text_of(chord);
     text += fmt::format("{} = {}\n", key_bindings()[i].name, line);

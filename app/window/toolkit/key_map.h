@@ -28,7 +28,7 @@ class KeyMap {
   std::string read(std::string_view text);
 
   // The command that a press gives, if any.
-  std::optional<Command> command_of(const KeyPress& press) const;
+  std::optional<Action> command_of(const KeyPress& press) const;
   // For menus and help: "Right or ."; empty = none.
   std::string keys_of(Action action) const;
   // All commands with their present keys, as read() takes them.

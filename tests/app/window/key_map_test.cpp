@@ -6,6 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "app/window/panels/color_section.h"
 #include "app/window/panels/key_hint.h"
 #include "tests/app/program.h"
 
@@ -19,11 +20,6 @@ using testing::StartsWith;
 KeyPress typed(char32_t character) { return {.character = character}; }
 KeyPress with_control(char32_t character, bool shift = false) {
   return {.character = character, .control = true, .shift = shift};
-}
-
-std::optional<Action> action_of(const KeyMap& keys, const KeyPress& press) {
-  const auto command = keys.command_of(press);
-  return command ? std::optional(command->action) : std::nullopt;
 }
 
 TEST(KeyMap, TooltipsNameThePresentKeys) {
@@ -51,31 +47,50 @@ TEST(KeyMap, EveryCommandHasItsOwnNameAndEveryKeyOneCommand) {
 
 TEST(KeyMap, ShiftTellsCommandsWithCtrlApartAndNoOthers) {
   const KeyMap map;
-  EXPECT_EQ(action_of(map, with_control(U's')), Action::save_scene);
-  EXPECT_EQ(action_of(map, with_control(U's', true)), Action::save);
-  EXPECT_EQ(action_of(map, with_control(U'z', true)), Action::redo);
-  EXPECT_EQ(action_of(map, typed(U'M')), Action::mutate);
-  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_DELETE, .shift = true}), Action::remove);
-  EXPECT_EQ(action_of(map, with_control(U'=', true)), Action::larger_text);  // "+" of a US keyboard
-  EXPECT_EQ(map.command_of(typed(U'7'))->number, 7);
+  EXPECT_EQ(map.command_of(with_control(U's')), Action::save_scene);
+  EXPECT_EQ(map.command_of(with_control(U's', true)), Action::save);
+  EXPECT_EQ(map.command_of(with_control(U'z', true)), Action::redo);
+  EXPECT_EQ(map.command_of(typed(U'M')), Action::mutate);
+  EXPECT_EQ(map.command_of({.key = GLFW_KEY_DELETE, .shift = true}), Action::remove);
+  EXPECT_EQ(map.command_of(with_control(U'=', true)), Action::larger_text);  // "+" of a US keyboard
+}
+
+TEST(KeyMap, NumbersColorInTheOrderOfTheQuantities) {
+  KeyMap map;
+  char32_t key = U'1';
+  for (const ColorQuantity& quantity : color_quantities().first(9)) {
+    const std::optional<Action> action = map.command_of(typed(key));
+    ASSERT_TRUE(action) << quantity.key;
+    EXPECT_EQ(quantity_of(*action), &quantity);
+    const auto binding = std::ranges::find(key_bindings(), *action, &KeyBinding::action);
+    EXPECT_EQ(binding->name, "color_" + std::string(quantity.key));
+    EXPECT_EQ(binding->meaning, "colour by " + std::string(quantity.key));
+    EXPECT_EQ(map.command_of({.character = key++, .repeated = true}), std::nullopt);
+  }
+  EXPECT_EQ(quantity_of(Action::drag_arrows), nullptr);
+  EXPECT_EQ(quantity_of(Action::cells), nullptr);
+  ASSERT_EQ(map.read("reset = 3\ncolor_strain = Ctrl 3, Q\n"), "");
+  EXPECT_EQ(map.command_of(typed(U'3')), Action::reset);
+  EXPECT_EQ(map.command_of(typed(U'q')), Action::color_strain);
+  EXPECT_EQ(map.command_of(with_control(U'3')), Action::color_strain);
 }
 
 TEST(KeyMap, HeldKeysRepeatOnlyCommandsThatAreMeantTo) {
   const KeyMap map;
-  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_RIGHT, .repeated = true}), Action::step);
-  EXPECT_EQ(action_of(map, {.character = U'm', .repeated = true}), std::nullopt);
+  EXPECT_EQ(map.command_of({.key = GLFW_KEY_RIGHT, .repeated = true}), Action::step);
+  EXPECT_EQ(map.command_of({.character = U'm', .repeated = true}), std::nullopt);
 }
 
 TEST(KeyMap, AFileMovesAKeyFromOneCommandToAnother) {
   KeyMap map;
   EXPECT_THAT(map.read("# mine\r\nreset = M\nstep = Ctrl Right, Comma\n\nfull_screen =\nfaster = =\n"), IsEmpty());
-  EXPECT_EQ(action_of(map, typed(U'm')), Action::reset);
-  EXPECT_EQ(action_of(map, typed(U'r')), std::nullopt);
+  EXPECT_EQ(map.command_of(typed(U'm')), Action::reset);
+  EXPECT_EQ(map.command_of(typed(U'r')), std::nullopt);
   EXPECT_EQ(map.keys_of(Action::mutate), "");
   EXPECT_EQ(map.keys_of(Action::step), "Ctrl Right or Comma");
-  EXPECT_EQ(action_of(map, typed(U',')), Action::step);
-  EXPECT_EQ(action_of(map, typed(U'=')), Action::faster);
-  EXPECT_EQ(action_of(map, {.key = GLFW_KEY_F11}), std::nullopt);
+  EXPECT_EQ(map.command_of(typed(U',')), Action::step);
+  EXPECT_EQ(map.command_of(typed(U'=')), Action::faster);
+  EXPECT_EQ(map.command_of({.key = GLFW_KEY_F11}), std::nullopt);
   KeyMap again;
   EXPECT_THAT(again.read(map.text()), IsEmpty());
   EXPECT_EQ(again.text(), map.text());
@@ -87,15 +102,13 @@ TEST(KeyMap, ABadLineIsNamedAndTheOthersCount) {
   EXPECT_THAT(problem("\nreset"), StartsWith("2: \"reset\" is no line COMMAND = KEY"));
   EXPECT_THAT(problem("reset = Strg R"), HasSubstr("\"Strg R\" is no key for a command; write M"));
   EXPECT_THAT(problem("reset = Shift R"), HasSubstr("is no key"));
-  EXPECT_THAT(problem("reset = 3"), HasSubstr("is no key"));
   EXPECT_THAT(problem("reset = M,"), HasSubstr("\"\" is no key"));
-  EXPECT_THAT(problem("color = C"), HasSubstr("color has the keys 1 to 9, which cannot be changed"));
   EXPECT_THAT(problem("reset = J\nmutate = J"), StartsWith("2: J is the key of reset already"));
   EXPECT_THAT(problem("a\nb\nc"), HasSubstr("(2 more lines cannot be used)"));
   EXPECT_EQ(problem("\x1b[2J = M").find('\x1b'), std::string::npos);
   KeyMap map;
   map.read("nothing\nreset = J\n");
-  EXPECT_EQ(action_of(map, typed(U'j')), Action::reset);
+  EXPECT_EQ(map.command_of(typed(U'j')), Action::reset);
 }
 
 class KeyFileTest : public test::FolderTest {};
