@@ -164,7 +164,7 @@ bool draw_layout(ViewSettings& view, int robots, EventLog& log) {
   static constexpr Layout layouts[] = {Layout::cells, Layout::grid, Layout::race};
   int layout = static_cast<int>(std::ranges::find(layouts, view.layout) - layouts);
   if (combo("layout", "how the robots are arranged", layout,
-            {"cells: each stays in its cell", "grid: they travel", "race: one lane per robot"})) {
+            {"cells: they stay", "grid: they travel", "race: one lane each"})) {
     set_layout(view, layouts[layout]);
     changed = true;
   }
