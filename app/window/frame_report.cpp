@@ -87,7 +87,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"steps", scene.snapshot().steps},
                       {"time", scene.snapshot().time},
                       {"shown", picture.time},
-                      {"playing", scene.playing()},
+                      {"playing", scene.playing() || scene.snapshot().playing},  // until the last step is shown
                       {"timeline",
                        {{"begin", timeline.begin},
                         {"head", timeline.head},
