@@ -129,6 +129,7 @@ Viewer::Viewer(ViewerOptions options)
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
                       .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
   load_session(context_, keys_, options_, folder_);
+  camera_.set_mode(scene_.view().camera.mode);
   fill_scene();
 }
 
@@ -198,7 +199,11 @@ void Viewer::frame(double dt) {
   if (camera_placed_) scene_.face(camera_.from_above(), camera_.facing());
   scene_.frame(area_.aspect());
   run_.frame();
-  if (scene_.take_camera()) camera_placed_ = false;
+  if (const auto plan = scene_.take_camera()) {
+    camera_.follow(std::nullopt);
+    camera_.set_mode(plan->mode);
+    camera_placed_ = false;
+  }
   show_messages(toasts_, scene_.take_messages());
   show_messages(toasts_, run_.take_messages());
   times_.scene = since(scene_begin);
@@ -310,10 +315,13 @@ void Viewer::update_renderer() {
   }
   if (second_.update(scene_, viewport_.renderer().quality(), scale)) redraws_ = 3;
   if (!camera_placed_ && !live.bounds().empty()) {
-    const CameraPlan& plan = scene_.view().camera;
+    CameraPlan plan = scene_.view().camera;
+    plan.mode = camera_.mode();  // unless the user has changed it, that of the scene
+    const auto robot = followed(plan);
+    camera_.set_mode(CameraMode::still);
     camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
     camera_.start(live.camera_boxes(), area_.aspect());
-    camera_.begin(plan, followed(plan));
+    camera_.begin(plan, robot ? robot : camera_.followed());
     camera_placed_ = true;
   }
 }

@@ -110,6 +110,13 @@ class LayoutTest(WindowCase):
         window.until("the figures gone", lambda: "panel.Pinned" not in window.items)
         self.finish(window)
 
+    def test_a_camera_that_is_chosen_while_robots_are_made_stays(self):
+        window = self.open("--random", "voxel:1000", "--paused")
+        window.frame()
+        window.key("t")
+        self.assertEqual(window.frame(lambda frame: frame["where"])["camera"], "turntable")
+        self.finish(window)
+
     def test_the_axes_turn_the_camera_and_bookmarks_bring_it_back(self):
         window = self.small("--paused", "--camera", "still")
         begin = window.frame(lambda frame: len(frame["where"]) == 2)

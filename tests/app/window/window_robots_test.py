@@ -6,6 +6,7 @@ from window_case import SAMPLES, WindowCase, main
 class RobotsTest(WindowCase):
     def still(self, window):
         """The places of the robots in the picture, once the camera stands."""
+        window.frame(lambda frame: frame["where"])
         window.key("f")
         before = None
         while before != (before := window.frame()["where"]):
