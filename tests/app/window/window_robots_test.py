@@ -6,9 +6,9 @@ from window_case import SAMPLES, WindowCase, main
 class RobotsTest(WindowCase):
     def still(self, window):
         """The places of the robots in the picture, once the camera stands."""
-        window.frame(lambda frame: frame["where"])
+        presses = window.frame(lambda frame: frame["where"])["input"]
         window.key("f")
-        before = None
+        before = window.frame(lambda frame: frame["input"] > presses)["where"]
         while before != (before := window.frame()["where"]):
             pass
         return before
