@@ -10,7 +10,7 @@
 
 namespace mercury {
 
-// The sizes of two halves of a picture of even width, from left to right, with even widths, as yuv420 needs them.
+// The sizes of two halves of a picture, from left to right. Both have even widths, as yuv420 needs, if the picture has.
 // Throws ParameterError("size", ...) for a picture that is too narrow.
 std::vector<PictureSize> halves_of(PictureSize whole);
 
