@@ -30,14 +30,14 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
   const std::size_t masses = robot.masses.size();
   state_ = {robot.masses, std::vector<Vec3>(masses)};
   sums_.resize(masses);
-  neighbours_.resize(masses);
+  neighbors_.resize(masses);
   heads_.resize(std::bit_ceil(2 * masses));
   links_.resize(masses);
   const std::vector<std::uint32_t> at = valences(robot);
   for (const Spring& spring : robot.springs) {
     valence_sums_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
-    neighbours_[spring.a].push_back(spring.b);
-    neighbours_[spring.b].push_back(spring.a);
+    neighbors_[spring.a].push_back(spring.b);
+    neighbors_[spring.b].push_back(spring.a);
   }
 }
 
@@ -120,7 +120,7 @@ bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
 }
 
 bool PlainLoop::joined(std::uint16_t i, std::uint16_t j) const {
-  return std::ranges::find(neighbours_[i], j) != neighbours_[i].end();
+  return std::ranges::find(neighbors_[i], j) != neighbors_[i].end();
 }
 
 void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
@@ -147,8 +147,8 @@ void PlainLoop::add_contacts() {
   for (std::size_t mass = 0; mass < links_.size(); ++mass) {
     const auto i = static_cast<std::uint16_t>(mass);
     const Cell cell = cell_of(state_.positions[i], inverse_size);
-    for (int n = 0; n < half_neighbourhood; ++n) {
-      const Cell other = neighbour_cell(cell, n);
+    for (int n = 0; n < half_neighborhood; ++n) {
+      const Cell other = neighbor_cell(cell, n);
       for (std::uint16_t j = heads_[bucket_of(other, mask)]; j != end_of_list; j = links_[j])
         if ((n > 0 || j > i) && cell_of(state_.positions[j], inverse_size) == other) add_contact(i, j, distance);
     }

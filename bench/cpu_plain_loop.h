@@ -73,7 +73,7 @@ class PlainLoop {
   std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
   std::array<MusclePhase, max_materials> phases_{};
   std::vector<FacePair> faces_;
-  std::vector<std::vector<std::uint16_t>> neighbours_;
+  std::vector<std::vector<std::uint16_t>> neighbors_;
   std::vector<std::uint16_t> heads_, links_;  // buckets of the contact grid, masses
   std::vector<Perturbation> perturbations_;
   std::int64_t now_ = 0, exploded_step_ = -1;

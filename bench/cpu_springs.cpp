@@ -67,7 +67,7 @@ Subject plain(const Workload& workload, const Configuration& configuration) {
   }};
 }
 
-Subject vectorised(const Workload& workload, const Configuration& configuration, const cpu::Kernel& kernel) {
+Subject vectorized(const Workload& workload, const Configuration& configuration, const cpu::Kernel& kernel) {
   std::shared_ptr<Backend> backend = cpu::make_backend({.threads = 1}, kernel);
   std::vector<const Robot*> robots;
   for (const Robot& robot : workload.robots) robots.push_back(&robot);
@@ -92,7 +92,7 @@ struct Line {
     steps_per_call = workload.steps_per_call == 0 ? steps : workload.steps_per_call;
     calls = std::max<std::int64_t>(1, steps / steps_per_call);
     subjects.push_back(plain(workload, configuration));
-    for (const cpu::Kernel& kernel : kernels) subjects.push_back(vectorised(workload, configuration, kernel));
+    for (const cpu::Kernel& kernel : kernels) subjects.push_back(vectorized(workload, configuration, kernel));
     for (Subject& subject : subjects) subject.step(200);
   }
 

@@ -168,7 +168,7 @@ void perform_all(std::vector<Task>& tasks, const Options& options) {
   std::fprintf(stderr, "\n");
 }
 
-// Quantile of numbers, interpolated between neighbours.
+// Quantile of numbers, interpolated between neighbors.
 double quantile(std::vector<double> numbers, double share) {
   std::ranges::sort(numbers);
   const double place = share * static_cast<double>(numbers.size() - 1);

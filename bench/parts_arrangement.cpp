@@ -126,7 +126,7 @@ void schedule(State& state) {
     benchmark::DoNotOptimize(cuda::schedule_springs(robot.masses.size(), ends_of(robot)));
   });
 }
-BENCHMARK(schedule)->Name("  owners, colours and padding")->Apply(all_kinds);
+BENCHMARK(schedule)->Name("  owners, colors and padding")->Apply(all_kinds);
 
 void lengths(State& state) {
   for_each_robot(state, [](const Robot& robot) { benchmark::DoNotOptimize(cuda::rest_lengths(robot)); });

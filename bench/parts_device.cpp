@@ -33,7 +33,7 @@ Robot without_faces(Robot robot) {
   return robot;
 }
 
-// Two lattices in the same place, half a voxel apart: every mass has neighbours without a spring to it.
+// Two lattices in the same place, half a voxel apart: every mass has neighbors without a spring to it.
 Robot entangled(const Robot& robot) {
   Robot result = robot;
   const auto masses = static_cast<std::uint16_t>(robot.masses.size());

@@ -56,8 +56,8 @@ def main():
         axes.plot(*zip(*points), marker="o", markersize=4, label=f"{device}: {label}")
     if options.against == "evaluated":
         for label, x, y in PAPER:
-            axes.plot(x, y, linestyle="--", color="grey", marker="s", markersize=4)
-            axes.annotate(label, (x[0], y[0]), xytext=(0, 5), textcoords="offset points", color="dimgrey", fontsize=8)
+            axes.plot(x, y, linestyle="--", color="gray", marker="s", markersize=4)
+            axes.annotate(label, (x[0], y[0]), xytext=(0, 5), textcoords="offset points", color="dimgray", fontsize=8)
         axes.set_xlabel("springs evaluated")
     else:
         axes.set_xlabel("masses per robot")

@@ -27,7 +27,7 @@ def read(path):
 
 
 def smooth(values, episodes, width=9):
-    """Mean over neighbouring rows, weighted by their episodes."""
+    """Mean over neighboring rows, weighted by their episodes."""
     ones = np.ones(min(width, len(values)))
     return np.convolve(values * episodes, ones, "same") / np.convolve(episodes, ones, "same")
 

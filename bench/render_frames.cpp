@@ -41,7 +41,7 @@ Lattice make_lattice(int side) {
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
-        for (int d = 1; d < 27; ++d) {  // the half of the neighbours with higher indices
+        for (int d = 1; d < 27; ++d) {  // the half of the neighbors with higher indices
           const int dx = d % 3 - 1, dy = (d / 3) % 3 - 1, dz = d / 9 - 1;
           if (dz * 9 + dy * 3 + dx <= 0) continue;
           const int a = x + dx, b = y + dy, c = z + dz;

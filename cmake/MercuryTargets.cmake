@@ -23,7 +23,7 @@ if(MERCURY_SANITIZE)
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${MERCURY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
   target_link_options(mercury_build_flags INTERFACE -fsanitize=${MERCURY_SANITIZE})
-  # The compiler loses track of initialisation in code that it has instrumented.
+  # The compiler loses track of initialization in code that it has instrumented.
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>)
 endif()

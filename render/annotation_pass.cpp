@@ -50,7 +50,7 @@ void append(const Path& path, std::vector<PathPoint>& points) {
   }
 }
 
-// Blends colours and keeps alpha, which is the share of light that glows.
+// Blends colors and keeps alpha, which is the share of light that glows.
 class Blending {
  public:
   Blending() {

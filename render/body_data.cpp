@@ -77,8 +77,8 @@ void append(std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& fr
 
 void append(std::vector<FaceRecord>& to, const std::vector<FaceRecord>& from, std::uint32_t first) {
   for (FaceRecord record : from) {
-    for (std::uint32_t& neighbour : record.neighbours)
-      if (neighbour != no_face) neighbour += first;
+    for (std::uint32_t& neighbor : record.neighbors)
+      if (neighbor != no_face) neighbor += first;
     to.push_back(record);
   }
 }

@@ -65,7 +65,7 @@ struct Orbit {
   void pan(float right, float up);
   // Moves the eye closer by a factor < 1, or farther.
   void zoom(float factor);
-  // Looks at the centre of the box from `margin` times the smallest distance at which all of it is in the picture.
+  // Looks at the center of the box from `margin` times the smallest distance at which all of it is in the picture.
   // Keeps the angles.
   void frame(const Bounds& bounds, float aspect, float margin = 1.05f, const Insets& free = {});
   // The same for several boxes; fits their corners, which is tighter than one box around them.

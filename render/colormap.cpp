@@ -129,7 +129,7 @@ Colormap colormap_named(std::string_view name) {
   for (const auto& [value, known] : map_names)
     if (known == name) return value;
   throw std::invalid_argument("'" + std::string(name) +
-                              "' is not a colour map; give viridis, magma, cividis, turbo or diverging");
+                              "' is not a color map; give viridis, magma, cividis, turbo or diverging");
 }
 
 Color mix(Color a, Color b, float t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours: maps for numbers and a palette for kinds, chosen so that colour-blind people can distinguish them too.
+// Colors: maps for numbers and a palette for kinds, chosen so that color-blind people can distinguish them too.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ enum class Colormap {
   magma,      // dark violet to cream, even lightness steps: amounts
   cividis,    // blue to yellow, even lightness steps: amounts, nearly the same without red or green cones
   turbo,      // rainbow with smooth lightness: shows small differences
-  diverging,  // blue over grey to red: signed numbers, 0 in the middle
+  diverging,  // blue over gray to red: signed numbers, 0 in the middle
 };
 
 inline constexpr int colormap_count = 5;
@@ -40,26 +40,26 @@ std::string_view name_of(Colormap map);
 // Throws std::invalid_argument that lists them.
 Colormap colormap_named(std::string_view name);
 
-// A perceptually even blend of two colours: t = 0 gives a, 1 gives b.
+// A perceptually even blend of two colors: t = 0 gives a, 1 gives b.
 Color mix(Color a, Color b, float t);
 
-// The colour at t, clamped to [0, 1]; NaN gives mid-grey.
+// The color at t, clamped to [0, 1]; NaN gives mid-gray.
 Color color_at(Colormap map, float t);
 
-// The colour for a value between low and high; low == high gives the middle.
+// The color for a value between low and high; low == high gives the middle.
 Color color_at(Colormap map, float value, float low, float high);
 
-// Perceptual colour (Ottosson's Oklab in polar form): lightness 0 to 1, chroma 0 to about 0.3, hue in radians.
-// Chroma is reduced until the colour is inside sRGB.
+// Perceptual color (Ottosson's Oklab in polar form): lightness 0 to 1, chroma 0 to about 0.3, hue in radians.
+// Chroma is reduced until the color is inside sRGB.
 Color oklch(float lightness, float chroma, float hue);
 
-// A muscle's colour: hue is its phase, with four phases far apart for all kinds of colour vision; lightness is its
+// A muscle's color: hue is its phase, with four phases far apart for all kinds of color vision; lightness is its
 // frequency (slow = light). `phase` in radians, `speed` 0 = slowest to 1 = fastest.
 Color muscle_color(float phase, float speed);
 inline constexpr Color tissue_color = rgb(0xe9c9b4);
 inline constexpr Color bone_color = rgb(0xf4f1e8);
 
-// Colours for unordered things, such as lines in a plot; repeats after 10.
+// Colors for unordered things, such as lines in a plot; repeats after 10.
 Color category_color(int index);
 
 // Round numbers for a scale's ticks: at most `most` values from low to high, and the ends if they are round.

@@ -58,7 +58,7 @@ class Context {
   bool is_software() const { return software_; }
   // CUDA ordinal of the GPU that draws; -1 = none or unknown.
   int cuda_device() const { return cuda_device_; }
-  // Errors and undefined, deprecated or unportable behaviour that the driver has reported since the last call, as
+  // Errors and undefined, deprecated or unportable behavior that the driver has reported since the last call, as
   // "high: GL_INVALID_OPERATION in ...". Empty when all is well. Hints on speed are left out: each driver has its own.
   std::vector<std::string> take_messages();
 

@@ -19,10 +19,10 @@ struct FontGlyph {
 // All lengths in pixels, for lines of `size` pixels.
 struct FontData {
   std::span<const FontGlyph> glyphs;   // by code
-  std::span<const unsigned char> png;  // the atlas in grey: 128 on the outline, more inside
+  std::span<const unsigned char> png;  // the atlas in gray: 128 on the outline, more inside
   int size;
   float ascent;  // of the highest glyph above the base line
-  int spread;    // distance that 128 steps of grey stand for
+  int spread;    // distance that 128 steps of gray stand for
 };
 
 // Generated at build time.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ghosts: translucent bodies in one colour, over everything else.
+// Ghosts: translucent bodies in one color, over everything else.
 #pragma once
 
 #include <span>

@@ -111,7 +111,7 @@ class StreamBuffer {
 // A texture of one level; samples > 0 = multisampled. Others are clamped to the edge and bilinear.
 Texture make_texture(GLenum format, int width, int height, int samples = 0);
 
-// A framebuffer with these colour textures and an optional depth texture.
+// A framebuffer with these color textures and an optional depth texture.
 Framebuffer make_framebuffer(std::initializer_list<GLuint> colors, GLuint depth = 0);
 
 VertexArray make_vertex_array();
@@ -125,7 +125,7 @@ inline Program make_program(std::initializer_list<std::string_view> names, const
 }
 
 // Runs a compute program with groups of 8 x 8 invocations, one invocation per texel of a texture, which is its image 0.
-// Leaves no framebuffer bound. Work that is expensive per pixel is done this way, because GPUs for data centres compute
+// Leaves no framebuffer bound. Work that is expensive per pixel is done this way, because GPUs for data centers compute
 // with all of their multiprocessors but draw with few.
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height);
 

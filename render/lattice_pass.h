@@ -35,7 +35,7 @@ inline constexpr std::size_t most_quads_per_call = std::size_t(1)
 
 inline constexpr int colormap_entries = 256;
 
-// Sets a uniform of the current program that maps values to texture coordinates of the colour maps; shaders/values.glsl
+// Sets a uniform of the current program that maps values to texture coordinates of the color maps; shaders/values.glsl
 // reads it. A scale with low == high shows the middle of the map, as color_on() does.
 void set_scale(GLint location, const Scale& scale);
 

@@ -15,7 +15,7 @@ std::vector<std::uint32_t> selected_in(const Scene& scene) {
   return selected;
 }
 
-// The parts of a list that belong to these bodies; neighbouring parts are joined.
+// The parts of a list that belong to these bodies; neighboring parts are joined.
 struct Part {
   std::uint32_t first, end;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outline of selected bodies: a line around their silhouettes, outside of them, so that no colour inside changes.
+// The outline of selected bodies: a line around their silhouettes, outside of them, so that no color inside changes.
 #pragma once
 
 #include <optional>

@@ -206,9 +206,9 @@ void Overlay::caption(std::string_view shown) {
 
 void Overlay::length(const Camera& camera) {
   const float distance = (camera.eye - camera.target).norm();
-  const float pixels_a_metre = height_ / (2 * distance * std::tan(0.5f * camera.field_of_view));
-  const float shown = round_length(0.2f * width_ / pixels_a_metre);
-  const float across = shown * pixels_a_metre, size = text_size_;
+  const float pixels_a_meter = height_ / (2 * distance * std::tan(0.5f * camera.field_of_view));
+  const float shown = round_length(0.2f * width_ / pixels_a_meter);
+  const float across = shown * pixels_a_meter, size = text_size_;
   std::array<char, 32> name{};
   if (shown < 0.01f)
     std::snprintf(name.data(), name.size(), "%g mm", double(1000 * shown));

@@ -25,9 +25,9 @@ struct OverlayQuad {
   Rectangle rectangle;
   Rectangle source;               // glyph: texels of the atlas. box: corner radius in x. scale: unused
   float color[4] = {1, 1, 1, 1};  // linear, opacity
-  float edge[4] = {0, 0, 0, 0};   // glyph: colour of the outline
+  float edge[4] = {0, 0, 0, 0};   // glyph: color of the outline
   std::uint32_t kind = box;
-  float sharpness = 1;    // glyph: pixels of the picture per 255 steps of grey
+  float sharpness = 1;    // glyph: pixels of the picture per 255 steps of gray
   std::uint32_t map = 0;  // scale: Colormap
   std::uint32_t padding = 0;
 };

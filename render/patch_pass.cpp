@@ -10,7 +10,7 @@ namespace {
 
 // The layout of shaders/patch.vert.
 struct PatchRecord {
-  Eigen::Vector4f disc;   // centre x, y; radius; unused
+  Eigen::Vector4f disc;   // center x, y; radius; unused
   Eigen::Vector4f slide;  // x, y; unused
 };
 

@@ -68,7 +68,7 @@ struct Passes {
   Fullscreen backdrop;
 };
 
-// All colour maps, one per row, from the middle of the first texel to the middle of the last.
+// All color maps, one per row, from the middle of the first texel to the middle of the last.
 Texture make_colormaps();
 
 struct Renderer::Parts {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How numbers become colours: a colour map between two values.
+// How numbers become colors: a color map between two values.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct Scale {
 float position_on(const Scale& scale, float value);
 // The value at a position; the inverse of position_on().
 float value_on(const Scale& scale, float position);
-// Values beyond the ends have the ends' colours; NaN is grey.
+// Values beyond the ends have the ends' colors; NaN is gray.
 Color color_on(const Scale& scale, float value);
 
 // What position_on() computes, for shaders (shaders/values.glsl): position = transformed(value) * factor + offset.
@@ -31,7 +31,7 @@ struct ScaleFactors {
 };
 ScaleFactors factors_of(const Scale& scale);
 
-// "0.25", "1e-05": as few digits as distinguish neighbouring ticks.
+// "0.25", "1e-05": as few digits as distinguish neighboring ticks.
 std::string tick_text(float value, float step);
 
 // At most about `most` round values on the scale.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene to draw, as plain numbers: bodies that deform, their colours, and the text beside them.
+// The scene to draw, as plain numbers: bodies that deform, their colors, and the text beside them.
 //
-// Lengths in metres, axes right-handed with z up. Each body has coordinates of its own; a placement moves it into the
+// Lengths in meters, axes right-handed with z up. Each body has coordinates of its own; a placement moves it into the
 // picture. Functions read spans during the call and do not keep them.
 #pragma once
 
@@ -39,7 +39,7 @@ struct Placement {
   Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
   bool selected = false;             // drawn with a bright outline around it
-  bool faulty = false;               // drawn grey, with a red rim: it has exploded
+  bool faulty = false;               // drawn gray, with a red rim: it has exploded
   bool smooth = false;               // skin rounded rather than with its edges
   std::uint32_t first_material = 0;  // added to the body's face_materials and spring_materials, below 2^24
 };
@@ -60,7 +60,7 @@ struct Arrow {
   Color color;
 };
 
-// A line in a body's coordinates, such as the path of its centre of mass.
+// A line in a body's coordinates, such as the path of its center of mass.
 struct Path {
   static constexpr std::uint32_t no_body = 0xffffffff;  // the line is in the picture's coordinates
   std::uint32_t body = 0;
@@ -91,7 +91,7 @@ struct Text {
   float size = 1;                        // of the picture's usual size of text
 };
 
-// Explains the colours, at the right edge of the picture: a bar for a scale, or swatches with names.
+// Explains the colors, at the right edge of the picture: a bar for a scale, or swatches with names.
 struct Legend {
   std::string title;           // "strain"
   std::string unit;            // "m/s"; empty = none
@@ -103,14 +103,14 @@ struct Legend {
 };
 
 // A disc on the ground that slides under a body which is kept in its place, so that the body is seen to move. While
-// there are patches, only they have metre lines.
+// there are patches, only they have meter lines.
 struct Patch {
   Eigen::Vector2f center{0, 0};  // in the picture's coordinates [m]
   float radius = 1;              // [m]
   Eigen::Vector2f slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
-// A body in one translucent colour, without a shadow. What is nearer hides it.
+// A body in one translucent color, without a shadow. What is nearer hides it.
 struct Ghost {
   std::span<const float> positions;      // 3 per mass
   std::span<const std::uint32_t> faces;  // 3 masses per face, counter-clockwise seen from outside
@@ -130,9 +130,9 @@ struct Scene {
   // Empty = Renderer::position_buffer() already holds them.
   std::span<const float> positions;
   std::span<const Placement> placements;      // one per body; empty = no offset for any
-  std::span<const RenderMaterial> materials;  // by Body::face_materials and spring_materials; empty = grey
+  std::span<const RenderMaterial> materials;  // by Body::face_materials and spring_materials; empty = gray
 
-  // Values to colour by, through `scale`, one per face, mass or spring of all bodies; empty = colours of `materials`.
+  // Values to color by, through `scale`, one per face, mass or spring of all bodies; empty = colors of `materials`.
   // Skin takes face_values, else mass_values; springs take spring_values, else mass_values; masses take mass_values.
   std::span<const float> face_values, mass_values, spring_values;
   Scale scale;
@@ -158,7 +158,7 @@ struct Scene {
   std::optional<Legend> legend;
   std::string clock;       // text in the lower left corner, such as "12.3 s   x4"; empty = none
   std::string caption;     // text in the upper left corner; empty = none
-  bool scale_bar = false;  // a length in metres, at the depth of the camera's target
+  bool scale_bar = false;  // a length in meters, at the depth of the camera's target
 };
 
 }  // namespace mercury::render

@@ -17,7 +17,7 @@ class SceneBuffers {
  public:
   // Includes the bodies' positions, if the scene has them. Throws std::invalid_argument for spans of the wrong length.
   void upload(const Scene& scene, const Bodies& bodies);
-  // Binds all that shaders/bodies.glsl declares, and the values to colour by.
+  // Binds all that shaders/bodies.glsl declares, and the values to color by.
   void bind(const Bodies& bodies) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr float reach_of_springs = 1.6f;  // [typical spring lengths]; farther from any spring, the inside is plain grey
+constexpr float reach_of_springs = 1.6f;  // [typical spring lengths]; farther from any spring, the inside is plain gray
 
 }  // namespace
 

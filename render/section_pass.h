@@ -8,7 +8,7 @@
 
 namespace mercury::render {
 
-// Draws a map of the cuts' planes at the picture's size: each point takes the material, or the value's colour, of the
+// Draws a map of the cuts' planes at the picture's size: each point takes the material, or the value's color, of the
 // nearest spring of the body that is cut there. This is a Voronoi diagram, drawn with the depth test as in Hoff et al.
 // 1999: each spring draws a triangle whose depth is the distance to the spring's middle, and the nearest wins.
 class SectionPass {
@@ -23,7 +23,7 @@ class SectionPass {
     surfaces();
     bind();
   }
-  // Draws the map of colours and binds both for the skins. Uses the buffers bound for the skins and the colour maps.
+  // Draws the map of colors and binds both for the skins. Uses the buffers bound for the skins and the color maps.
   void draw(const Bodies& bodies, const Scene& scene);
 
  private:

@@ -22,7 +22,7 @@ class SkinPass {
   enum class ColorBy { materials, face_values, mass_values };
   // `variant`: lines of #define; shaders/skin.frag explains them.
   void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
-  // Draws depth and, into a colour attachment if there is one, the number of the face, counted from 1. `variant`: "",
+  // Draws depth and, into a color attachment if there is one, the number of the face, counted from 1. `variant`: "",
   // or cut_variant for the plane in place of backs that show a cut, or backs_variant for these backs themselves; with
   // both, the number is that of the body (shaders/cut.glsl).
   void draw_depth(const std::string& variant) const;

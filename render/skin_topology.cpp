@@ -53,7 +53,7 @@ std::vector<HalfEdge> half_edges(std::span<const std::uint32_t> faces) {
   return edges;
 }
 
-// The neighbour of `face` across its edge from a to b: it has the edge from b to a.
+// The neighbor of `face` across its edge from a to b: it has the edge from b to a.
 std::uint32_t across(const Skin& skin, std::uint32_t face, std::uint32_t a, std::uint32_t b) {
   const std::uint64_t key = key_of(a, b);
   auto edge = std::lower_bound(skin.edges.begin(), skin.edges.end(), key,
@@ -101,7 +101,7 @@ FaceRecord record_of(const Skin& skin, std::uint32_t face) {
   if (partner.face == no_face) {
     FaceRecord record{{no_face, no_face, no_face, no_face}, 0, own_triangle};
     for (std::uint32_t i = 0; i < 3; ++i)
-      record.neighbours[i] = across(skin, face, skin.mass(face, i + 1), skin.mass(face, i + 2));
+      record.neighbors[i] = across(skin, face, skin.mass(face, i + 1), skin.mass(face, i + 2));
     return record;
   }
   const std::uint32_t a = skin.mass(face, corner), b = skin.mass(face, corner + 1), c = skin.mass(face, corner + 2);

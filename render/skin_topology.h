@@ -13,7 +13,7 @@ namespace mercury::render {
 struct FaceRecord {
   // The faces across the edges. Of a triangle: the edges opposite to corner 0, 1, 2. Of half a quadrilateral: the edges
   // u = 0, u = 1, v = 0, v = 1 of the quadrilateral. no_face at an open border.
-  std::array<std::uint32_t, 4> neighbours;
+  std::array<std::uint32_t, 4> neighbors;
   std::uint32_t material;
   // 3 = a triangle; 0, 1, 2 = half a quadrilateral, and the corner opposite to its diagonal.
   std::uint32_t shape;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light and colours of each theme and surroundings.
+// Light and colors of each theme and surroundings.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,14 +8,14 @@
 
 namespace mercury::render {
 
-// All colours of light are linear.
+// All colors of light are linear.
 struct Style {
   Eigen::Vector3f to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
   Eigen::Vector3f key_light, sky_light, ground_light;
   float key_size = 0.08f;                       // tangent of the key light's half angle; larger = softer shadows
   Eigen::Vector3f backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
   Eigen::Vector3f floor_color, line_color;
-  Eigen::Vector3f fog{0, 0, 0};  // extinction of each colour [1 / distance from eye to target]
+  Eigen::Vector3f fog{0, 0, 0};  // extinction of each color [1 / distance from eye to target]
   float caustics = 0;            // contrast of the light pattern under water
   float glow = 1;                // of contracting muscles
   float vignette = 0.25f;
@@ -23,7 +23,7 @@ struct Style {
   float text_edge_opacity = 0.85f;
 };
 
-// `values`: bodies are coloured by values. Dark water is darker then, because the low ends of colour maps are as dark.
+// `values`: bodies are colored by values. Dark water is darker then, because the low ends of color maps are as dark.
 Style style_of(Surroundings surroundings, Theme theme, bool values = false);
 
 }  // namespace mercury::render

@@ -75,8 +75,8 @@ class Filtration {
   // The body with most points that the first `count` tetrahedra form; of equal ones the one with the smallest sphere.
   SolidBody largest_body(std::uint32_t count) {
     for (;;) {
-      SolidBody body = mercury::largest_body(all_.tetrahedra, all_.neighbours, count);
-      if (body.rival == no_neighbour) return body;
+      SolidBody body = mercury::largest_body(all_.tetrahedra, all_.neighbors, count);
+      if (body.rival == no_neighbor) return body;
       const std::size_t k = class_of(body.tetrahedra.front());
       if (classes_[k].is_exact || class_of(body.rival) != k) return body;
       split(k);  // it holds the smallest spheres of both
@@ -89,18 +89,18 @@ class Filtration {
     return std::sqrt((squared.low + squared.high) / 2);
   }
 
-  // The tetrahedra of a body, and their neighbours in it.
-  void copy(const SolidBody& body, std::vector<Tetrahedron>& tetrahedra, std::vector<Neighbours>& neighbours) const {
-    std::vector<std::uint32_t> index_of(all_.tetrahedra.size(), no_neighbour);
+  // The tetrahedra of a body, and their neighbors in it.
+  void copy(const SolidBody& body, std::vector<Tetrahedron>& tetrahedra, std::vector<Neighbors>& neighbors) const {
+    std::vector<std::uint32_t> index_of(all_.tetrahedra.size(), no_neighbor);
     for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i) index_of[body.tetrahedra[i]] = i;
     tetrahedra.reserve(body.tetrahedra.size());
-    neighbours.reserve(body.tetrahedra.size());
+    neighbors.reserve(body.tetrahedra.size());
     for (const std::uint32_t i : body.tetrahedra) {
       tetrahedra.push_back(all_.tetrahedra[i]);
-      Neighbours n = all_.neighbours[i];
+      Neighbors n = all_.neighbors[i];
       for (std::uint32_t& other : n)
-        if (other != no_neighbour) other = index_of[other];
-      neighbours.push_back(n);
+        if (other != no_neighbor) other = index_of[other];
+      neighbors.push_back(n);
     }
   }
 
@@ -148,19 +148,19 @@ class Filtration {
   void reorder(std::span<const std::uint32_t> order, std::uint32_t first) {
     moved_to_.resize(order.size());
     reordered_.tetrahedra.clear();
-    reordered_.neighbours.clear();
+    reordered_.neighbors.clear();
     for (std::uint32_t i = 0; i < order.size(); ++i) {
       moved_to_[order[i] - first] = first + i;
       reordered_.tetrahedra.push_back(all_.tetrahedra[order[i]]);
-      reordered_.neighbours.push_back(all_.neighbours[order[i]]);
+      reordered_.neighbors.push_back(all_.neighbors[order[i]]);
     }
     if (order.size() == all_.tetrahedra.size()) {
       std::swap(all_, reordered_);
     } else {
       std::ranges::copy(reordered_.tetrahedra, all_.tetrahedra.begin() + first);
-      std::ranges::copy(reordered_.neighbours, all_.neighbours.begin() + first);
+      std::ranges::copy(reordered_.neighbors, all_.neighbors.begin() + first);
     }
-    for (Neighbours& n : all_.neighbours)
+    for (Neighbors& n : all_.neighbors)
       for (std::uint32_t& other : n)
         if (other - first < order.size()) other = moved_to_[other - first];
   }
@@ -220,7 +220,7 @@ class Filtration {
     for (auto i = static_cast<std::uint32_t>(bodies.parent.size()); i < end; ++i) {
       bodies.parent.push_back(i);
       std::uint32_t root = i;
-      for (const std::uint32_t other : all_.neighbours[i]) {
+      for (const std::uint32_t other : all_.neighbors[i]) {
         if (other >= i) continue;
         const std::uint32_t others_root = bodies.root(other);
         bodies.parent[std::max(root, others_root)] = std::min(root, others_root);
@@ -267,7 +267,7 @@ AlphaBody alpha_body(std::span<const Vec3> points, double alpha) {
   const std::uint32_t count = alpha > 0 ? filtration.count_within(alpha * alpha) : filtration.count_for_all_points();
   if (count == 0) throw InputError("alpha", "no tetrahedron of the cloud is as small as the given radius");
   AlphaBody result{alpha > 0 ? alpha : filtration.radius(count), {}, {}};
-  filtration.copy(filtration.largest_body(count), result.tetrahedra, result.neighbours);
+  filtration.copy(filtration.largest_body(count), result.tetrahedra, result.neighbors);
   return result;
 }
 

@@ -13,7 +13,7 @@ namespace mercury {
 struct AlphaBody {
   double alpha = 0;                     // radius of the ball that carves the shape [m]
   std::vector<Tetrahedron> tetrahedra;  // joined face to face
-  std::vector<Neighbours> neighbours;   // of each tetrahedron; neighbour i is opposite to its point i
+  std::vector<Neighbors> neighbors;     // of each tetrahedron; neighbor i is opposite to its point i
 };
 
 // The interior tetrahedra of the regularized alpha shape of distinct points: those of the Delaunay triangulation whose

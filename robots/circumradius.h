@@ -13,7 +13,7 @@ struct Bounds {
   double low = 0, high = std::numeric_limits<double>::infinity();
 };
 
-// With the sides a, b, c from p to the other points, the centre is at
+// With the sides a, b, c from p to the other points, the center is at
 //
 //   p + n / (2 det),   n = |a|^2 b x c + |b|^2 c x a + |c|^2 a x b,   det = a . (b x c)
 //

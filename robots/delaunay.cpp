@@ -6,7 +6,7 @@
 //   3. Replace them by tetrahedra that join the point to the sides of the cavity.
 //
 // A vertex at infinity closes the triangulation: its cells stand behind the sides of the convex hull, so that every
-// cell has four neighbours and a point outside of the hull is no special case. The "sphere" of such a cell is the half
+// cell has four neighbors and a point outside of the hull is no special case. The "sphere" of such a cell is the half
 // space beyond its side.
 //
 // Each thread keeps its arrays for the next cloud: a triangulation of 500 points makes 13,000 cells.
@@ -56,21 +56,21 @@ class Builder {
   }
 
   void copy_to(Triangulation& result) {
-    index_of_.assign(cells_.size(), no_neighbour);
+    index_of_.assign(cells_.size(), no_neighbor);
     std::uint32_t count = 0;
     for (std::uint32_t c = 0; c < cells_.size(); ++c)
       if (marks_[c] != unused && corner_at_infinity(cells_[c]) == 4) index_of_[c] = count++;
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      if (index_of_[c] == no_neighbour) continue;
+      if (index_of_[c] == no_neighbor) continue;
       result.tetrahedra.push_back(cells_[c].corners);
-      Neighbours& neighbours = result.neighbours.emplace_back();
-      for (std::size_t i = 0; i < 4; ++i) neighbours[i] = index_of_[cells_[c].neighbours[i]];
+      Neighbors& neighbors = result.neighbors.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i) neighbors[i] = index_of_[cells_[c].neighbors[i]];
     }
   }
 
  private:
   struct Side {
-    std::uint32_t cell;  // in the cavity; its neighbour there is the outer cell, then the new cell
+    std::uint32_t cell;  // in the cavity; its neighbor there is the outer cell, then the new cell
     std::uint32_t corner;
   };
   static constexpr std::uint32_t unused = 0;  // mark of a cell
@@ -113,9 +113,9 @@ class Builder {
       outer.corners[i] = infinite;
       // A mirror image has the opposite orientation.
       const std::uint32_t j = (i + 1) % 4, k = (i + 2) % 4;
-      for (std::uint32_t m = 0; m < 4; ++m) outer.neighbours[m] = m == i ? 0 : m + 1;
+      for (std::uint32_t m = 0; m < 4; ++m) outer.neighbors[m] = m == i ? 0 : m + 1;
       std::swap(outer.corners[j], outer.corners[k]);
-      std::swap(outer.neighbours[j], outer.neighbours[k]);
+      std::swap(outer.neighbors[j], outer.neighbors[k]);
     }
     hint_ = 0;
     mark_ = 1;
@@ -147,7 +147,7 @@ class Builder {
       if (corner_at_infinity(here) < 4) return cell;
       std::uint32_t next = none;
       for (std::size_t i = 0; i < 4 && next == none; ++i)
-        if (here.neighbours[i] != last && orientation_with(here, i, point) < 0) next = here.neighbours[i];
+        if (here.neighbors[i] != last && orientation_with(here, i, point) < 0) next = here.neighbors[i];
       if (next == none) return cell;
       last = std::exchange(cell, next);
     }
@@ -163,7 +163,7 @@ class Builder {
     }
     if (const int side = orientation_with(cell, outer, point); side != 0) return side > 0;
     // In the plane of the side, the sphere of the cell before it cuts out the circle through the side.
-    return in_conflict(cell.neighbours[outer], point);
+    return in_conflict(cell.neighbors[outer], point);
   }
 
   void insert(std::uint32_t index) {
@@ -191,7 +191,7 @@ class Builder {
       if (sides_.size() < sides + 4) sides_.resize(2 * sides_.size());
       const std::uint32_t cell = cavity_[k];
       for (std::uint32_t i = 0; i < 4; ++i) {
-        const std::uint32_t other = all[cell].neighbours[i];
+        const std::uint32_t other = all[cell].neighbors[i];
         if (marks[other] < outside) {
           const auto joins = static_cast<std::uint32_t>(in_conflict(other, point));
           marks[other] = outside + joins;
@@ -212,12 +212,12 @@ class Builder {
     for (const Side& side : sides) {
       const std::uint32_t cell = new_cell();
       Cell& old = cells_[side.cell];
-      Cell& outer = cells_[old.neighbours[side.corner]];
-      outer.neighbours[position_of(side.cell, outer.neighbours)] = cell;
+      Cell& outer = cells_[old.neighbors[side.corner]];
+      outer.neighbors[position_of(side.cell, outer.neighbors)] = cell;
       Cell& here = cells_[cell];
       here = {old.corners, {none, none, none, none}};
       here.corners[side.corner] = point;
-      here.neighbours[side.corner] = std::exchange(old.neighbours[side.corner], cell);
+      here.neighbors[side.corner] = std::exchange(old.neighbors[side.corner], cell);
       marks_[cell] = 2 * mark_;
       if (corner_at_infinity(here) == 4) hint_ = cell;
     }
@@ -231,7 +231,7 @@ class Builder {
     free_.insert(free_.end(), cavity.begin(), cavity.end());
   }
 
-  // Two new cells are neighbours where their sides of the cavity share an edge, which they run through in opposite
+  // Two new cells are neighbors where their sides of the cavity share an edge, which they run through in opposite
   // directions. The corners of a small cavity have numbers below max_local, which find the edges in a table.
   void join_by_table(std::span<const Side> sides) {
     std::uint32_t next = 0;
@@ -243,7 +243,7 @@ class Builder {
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const auto& [old_cell, corner] = sides[k];
       const Cell& old = cells[old_cell];
-      const std::uint32_t cell = old.neighbours[corner];
+      const std::uint32_t cell = old.neighbors[corner];
       auto& numbers = numbers_[k];
       for (const auto& [opposite, from, to] : edges_of_side[corner]) {
         const std::uint32_t point = old.corners[opposite];
@@ -258,9 +258,9 @@ class Builder {
     }
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const auto& [old_cell, corner] = sides[k];
-      Cell& here = cells[cells[old_cell].neighbours[corner]];
+      Cell& here = cells[cells[old_cell].neighbors[corner]];
       for (const auto& [opposite, from, to] : edges_of_side[corner])
-        here.neighbours[opposite] = cell_at_edge_[numbers_[k][to] * max_local + numbers_[k][from]];
+        here.neighbors[opposite] = cell_at_edge_[numbers_[k][to] * max_local + numbers_[k][from]];
     }
   }
 
@@ -268,17 +268,17 @@ class Builder {
   // lacks corner `opposite`, through the cells of the cavity, until it comes to the other side.
   void join_around_edge(const Side& side, std::uint32_t opposite) {
     std::uint32_t cell = side.cell, behind = side.corner, ahead = opposite;  // the corners off the edge
-    const std::uint32_t joined = cells_[cell].neighbours[behind];
-    if (cells_[joined].neighbours[opposite] != none) return;
+    const std::uint32_t joined = cells_[cell].neighbors[behind];
+    if (cells_[joined].neighbors[opposite] != none) return;
     for (;;) {
-      const std::uint32_t next = cells_[cell].neighbours[ahead];
+      const std::uint32_t next = cells_[cell].neighbors[ahead];
       if (marks_[next] != 2 * mark_ + 1) {  // new
-        cells_[joined].neighbours[opposite] = next;
-        cells_[next].neighbours[behind] = joined;
+        cells_[joined].neighbors[opposite] = next;
+        cells_[next].neighbors[behind] = joined;
         return;
       }
       ahead = position_of(cells_[cell].corners[behind], cells_[next].corners);
-      behind = position_of(cell, cells_[next].neighbours);
+      behind = position_of(cell, cells_[next].neighbors);
       cell = next;
     }
   }
@@ -309,7 +309,7 @@ void triangulate(std::span<const Vec3> points, Triangulation& result) {
   Builder own;
   Builder& builder = points.size() > small_cloud ? own : kept;
   result.tetrahedra.clear();
-  result.neighbours.clear();
+  result.neighbors.clear();
   if (builder.build(points)) builder.copy_to(result);
 }
 

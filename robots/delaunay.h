@@ -13,7 +13,7 @@ namespace mercury {
 
 struct Triangulation {
   std::vector<Tetrahedron> tetrahedra;
-  std::vector<Neighbours> neighbours;  // neighbour i is opposite to point i; no_neighbour on the convex hull
+  std::vector<Neighbors> neighbors;  // neighbor i is opposite to point i; no_neighbor on the convex hull
 };
 
 // The Delaunay triangulation of points; empty if they all lie in one plane. Of equal points one is used.

@@ -14,8 +14,8 @@ inline constexpr std::uint32_t infinite = 0xffffffff;  // the vertex at infinity
 inline constexpr std::uint32_t none = 0xffffffff;      // no cell
 
 struct Cell {
-  Tetrahedron corners;                      // of positive orientation; one may be infinite
-  std::array<std::uint32_t, 4> neighbours;  // neighbour i is opposite to corner i
+  Tetrahedron corners;                     // of positive orientation; one may be infinite
+  std::array<std::uint32_t, 4> neighbors;  // neighbor i is opposite to corner i
 };
 
 // 4 = no corner

@@ -121,7 +121,7 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot) {
   if (!mirrored.is_boolean()) refuse_origin("/mirrored", "true or false is expected");
   genome.mirrored = mirrored.get<bool>();
   const OriginJson& alpha = origin_member(origin, "alpha");
-  if (!alpha.is_number()) refuse_origin("/alpha", "a number of metres is expected");
+  if (!alpha.is_number()) refuse_origin("/alpha", "a number of meters is expected");
   genome.alpha = alpha.get<float>();
   if (const auto spacing = origin.find("spacing"); spacing != origin.end()) {  // files before 0.3.0 lack it
     if (!spacing->is_number()) refuse_origin("/spacing", "a share of the mean spacing is expected");

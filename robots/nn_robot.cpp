@@ -56,7 +56,7 @@ void fit_into_unit_sphere(std::vector<CloudPoint>& cloud) {
   const double offset = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
   require(farthest > 1e-4 * offset && farthest > 1e-30, "cloud", "the network puts all its points on one place");
   const double scale = (1 - 1e-6) / farthest;  // no rounding leads outside
-  const auto fit = [&](float value, double centre) { return static_cast<float>((value - centre) * scale); };
+  const auto fit = [&](float value, double center) { return static_cast<float>((value - center) * scale); };
   for (CloudPoint& p : cloud) p.place = {fit(p.place.x, mean[0]), fit(p.place.y, mean[1]), fit(p.place.z, mean[2])};
 }
 
@@ -112,7 +112,7 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
   return cloud;
 }
 
-// Leaving out short springs can cut masses off that lie within 0.001 m of all their neighbours; tetrahedra that need
+// Leaving out short springs can cut masses off that lie within 0.001 m of all their neighbors; tetrahedra that need
 // such a mass go with it, until springs and tetrahedra agree.
 struct Frame {
   std::vector<Tetrahedron> tetrahedra;
@@ -136,7 +136,7 @@ Frame sound_frame(AlphaBody whole, const std::vector<CloudPoint>& cloud) {
       return std::any_of(t.begin(), t.end(), [&](std::uint32_t p) { return part[p] != largest; });
     };
     if (std::none_of(tetrahedra.begin(), tetrahedra.end(), cut_off)) {
-      std::vector<Triangle> skin = is_whole ? skin_of(tetrahedra, whole.neighbours) : skin_of(tetrahedra);
+      std::vector<Triangle> skin = is_whole ? skin_of(tetrahedra, whole.neighbors) : skin_of(tetrahedra);
       return {std::move(tetrahedra), std::move(springs), std::move(skin)};
     }
     if (is_whole) {  // their order decides between bodies of equal size
@@ -145,7 +145,7 @@ Frame sound_frame(AlphaBody whole, const std::vector<CloudPoint>& cloud) {
     }
     std::erase_if(tetrahedra, cut_off);
     require(!tetrahedra.empty(), "cloud", "its points lie within 0.001 m of each other");
-    const SolidBody body = largest_body(tetrahedra, neighbours_of(tetrahedra), tetrahedra.size());
+    const SolidBody body = largest_body(tetrahedra, neighbors_of(tetrahedra), tetrahedra.size());
     std::vector<Tetrahedron> kept;
     for (const std::uint32_t index : body.tetrahedra) kept.push_back(tetrahedra[index]);
     tetrahedra = std::move(kept);

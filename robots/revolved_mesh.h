@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangle meshes of surfaces around the z axis, alike on every machine.
 //
-// Rings of vertices lie at equal distances along the profile, neighbours half a step apart. Each ring has as many
+// Rings of vertices lie at equal distances along the profile, neighbors half a step apart. Each ring has as many
 // vertices as its circumference needs, a multiple of the lobes; so triangles are nearly equilateral everywhere, and all
 // lobes are meshed alike.
 //
@@ -50,7 +50,7 @@ class RevolvedMesh {
   };
   using Triangle = std::array<std::size_t, 3>;  // vertices, counter-clockwise seen from outside
 
-  // `spacing` is the wanted distance of neighbouring vertices.
+  // `spacing` is the wanted distance of neighboring vertices.
   RevolvedMesh(const RevolvedSurface& surface, double spacing);
 
   const std::vector<Vertex>& vertices() const { return vertices_; }

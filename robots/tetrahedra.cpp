@@ -97,7 +97,7 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra) {
   for_each([&](std::uint32_t low, std::uint32_t high) { ends[ends_of[low]++] = high; });
   std::vector<Edge> edges;
   edges.reserve(tetrahedra.size() + 2 * points);  // Euler's formula, for a body that does not touch itself
-  std::vector<std::uint32_t> last_seen_by(points, no_neighbour);
+  std::vector<std::uint32_t> last_seen_by(points, no_neighbor);
   auto next = ends.begin();
   for (std::uint32_t low = 0; low < points; ++low) {
     const auto begin = next, end = ends.begin() + ends_of[low];
@@ -125,34 +125,34 @@ std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra) {
   return skin;
 }
 
-std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> opposite) {
+std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbors> opposite) {
   std::vector<Triangle> skin;
   for (std::size_t t = 0; t < tetrahedra.size(); ++t)
     for (std::size_t i = 0; i < 4; ++i)
-      if (opposite[t][i] == no_neighbour) skin.push_back(lowest_first(sides_of(tetrahedra[t])[i]));
+      if (opposite[t][i] == no_neighbor) skin.push_back(lowest_first(sides_of(tetrahedra[t])[i]));
   std::sort(skin.begin(), skin.end());
   return skin;
 }
 
-std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
+std::vector<Neighbors> neighbors_of(std::span<const Tetrahedron> tetrahedra) {
   const std::vector<Side> sides = sorted_sides(tetrahedra);
-  std::vector<Neighbours> neighbours(tetrahedra.size());
-  for (Neighbours& n : neighbours) n.fill(no_neighbour);
+  std::vector<Neighbors> neighbors(tetrahedra.size());
+  for (Neighbors& n : neighbors) n.fill(no_neighbor);
   const auto join = [&](std::uint32_t from, std::uint32_t to) {
-    *std::find(neighbours[from].begin(), neighbours[from].end(), no_neighbour) = to;
+    *std::find(neighbors[from].begin(), neighbors[from].end(), no_neighbor) = to;
   };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (!is_shared(sides, i)) continue;
     join(sides[i].tetrahedron, sides[i + 1].tetrahedron);
     join(sides[i + 1].tetrahedron, sides[i].tetrahedron);
   }
-  return neighbours;
+  return neighbors;
 }
 
-SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
+SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbors> neighbors,
                        std::size_t count) {
   std::vector<std::uint32_t> last_visit(end_of_points(tetrahedra.first(count)),
-                                        no_neighbour);  // of a point, by the body's first tetrahedron
+                                        no_neighbor);  // of a point, by the body's first tetrahedron
   std::vector<bool> reached(count, false);
   SolidBody best;
   for (std::uint32_t first = 0; first < count; ++first) {
@@ -164,7 +164,7 @@ SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const 
         body.points += last_visit[point] != first;
         last_visit[point] = first;
       }
-      for (const std::uint32_t other : neighbours[body.tetrahedra[next]]) {
+      for (const std::uint32_t other : neighbors[body.tetrahedra[next]]) {
         if (other >= count || reached[other]) continue;
         reached[other] = true;
         body.tetrahedra.push_back(other);
@@ -172,7 +172,7 @@ SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const 
     }
     if (body.points > best.points)
       best = std::move(body);
-    else if (body.points == best.points && best.rival == no_neighbour)
+    else if (body.points == best.points && best.rival == no_neighbor)
       best.rival = first;
   }
   return best;

@@ -30,22 +30,22 @@ std::vector<Edge> edges_of(std::span<const Tetrahedron> tetrahedra);
 // touches itself along an edge, that edge has four triangles.
 std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra);
 
-// For each tetrahedron its neighbours across its sides, in no certain order; no_neighbour where there is none.
-inline constexpr std::uint32_t no_neighbour = 0xffffffff;
-using Neighbours = std::array<std::uint32_t, 4>;
-std::vector<Neighbours> neighbours_of(std::span<const Tetrahedron> tetrahedra);
+// For each tetrahedron its neighbors across its sides, in no certain order; no_neighbor where there is none.
+inline constexpr std::uint32_t no_neighbor = 0xffffffff;
+using Neighbors = std::array<std::uint32_t, 4>;
+std::vector<Neighbors> neighbors_of(std::span<const Tetrahedron> tetrahedra);
 
-// The same, faster, where it is known that neighbour i is opposite to point i.
-std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> opposite);
+// The same, faster, where it is known that neighbor i is opposite to point i.
+std::vector<Triangle> skin_of(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbors> opposite);
 
 // The first `count` tetrahedra form bodies, joined side to side. Returns the body that holds most points; of equal
 // bodies, the one with the earliest tetrahedron.
 struct SolidBody {
   std::vector<std::uint32_t> tetrahedra;  // indices, the earliest one first
   std::size_t points = 0;
-  std::uint32_t rival = no_neighbour;  // earliest tetrahedron of the next body with as many points, if there is one
+  std::uint32_t rival = no_neighbor;  // earliest tetrahedron of the next body with as many points, if there is one
 };
-SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbours> neighbours,
+SolidBody largest_body(std::span<const Tetrahedron> tetrahedra, std::span<const Neighbors> neighbors,
                        std::size_t count);
 
 // For each of `count` points, the lowest point of the connected part of the graph that it is in.

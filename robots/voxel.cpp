@@ -198,16 +198,16 @@ void add_faces(const Lattice& lattice, Robot& robot) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (int outward = 0; outward <= 1; ++outward) {
         const auto& n = axes[axis];
-        const std::size_t to_neighbour = lattice.step(n[0], n[1], n[2]);
-        if (lattice.voxel(outward != 0 ? voxel + to_neighbour : voxel - to_neighbour) != air) continue;
+        const std::size_t to_neighbor = lattice.step(n[0], n[1], n[2]);
+        if (lattice.voxel(outward != 0 ? voxel + to_neighbor : voxel - to_neighbor) != air) continue;
         const auto& u = axes[(axis + 1) % 3];
         const auto& v = axes[(axis + 2) % 3];
-        const std::size_t first = lattice.at(x, y, z) + (outward != 0 ? to_neighbour : 0);
+        const std::size_t first = lattice.at(x, y, z) + (outward != 0 ? to_neighbor : 0);
         const std::size_t along_u = lattice.step(u[0], u[1], u[2]), along_v = lattice.step(v[0], v[1], v[2]);
         std::uint16_t a = lattice.mass(first), b = lattice.mass(first + along_u),
                       c = lattice.mass(first + along_u + along_v), d = lattice.mass(first + along_v);
         if (outward == 0) std::swap(b, d);
-        // Diagonals join corners of even x + y + z, so that the skin's triangles favour no direction.
+        // Diagonals join corners of even x + y + z, so that the skin's triangles favor no direction.
         if ((x + y + z + outward) % 2 == 0) {
           robot.faces.push_back({a, b, c});
           robot.faces.push_back({a, c, d});
@@ -257,10 +257,10 @@ VoxelGrid largest_body(const VoxelGrid& grid) {
       const std::size_t i = open.back();
       open.pop_back();
       ++size;
-      const auto visit = [&](bool inside, std::size_t neighbour) {
-        if (!inside || grid.cells[neighbour] == air || body_of[neighbour] != 0) return;
-        body_of[neighbour] = bodies;
-        open.push_back(neighbour);
+      const auto visit = [&](bool inside, std::size_t neighbor) {
+        if (!inside || grid.cells[neighbor] == air || body_of[neighbor] != 0) return;
+        body_of[neighbor] = bodies;
+        open.push_back(neighbor);
       };
       const std::size_t x = i % nx, y = i / nx % ny;
       visit(x > 0, i - 1);

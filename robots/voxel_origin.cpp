@@ -29,7 +29,7 @@ VoxelGrid grid_of(const Json& origin) {
   if (size == origin.end() || !size->is_array() || size->size() != 3)
     refuse("size must be three whole numbers of at least 1");
   if (edge == origin.end() || !edge->is_number() || !(std::abs(edge->get<double>()) <= 1e6))
-    refuse("edge must be a number of metres");
+    refuse("edge must be a number of meters");
   if (cells == origin.end() || !cells->is_array()) refuse("cells must be an array of materials");
   VoxelGrid grid;
   grid.nx = size_of(*size, 0);

@@ -15,7 +15,7 @@ struct Placement {
 
 // See render/skin_topology.h.
 struct FaceRecord {
-  uvec4 neighbours;
+  uvec4 neighbors;
   uint material;
   uint shape;
 };
@@ -44,7 +44,7 @@ layout(std430, binding = 2) readonly buffer Placements { Placement placements[];
 #endif
 layout(std430, binding = 3) readonly buffer MassBodies { uint mass_bodies[]; };
 layout(std430, binding = 4) readonly buffer FaceRecords { FaceRecord face_records[]; };
-layout(std430, binding = 6) readonly buffer Materials { vec4 materials[]; };  // linear colour, activation
+layout(std430, binding = 6) readonly buffer Materials { vec4 materials[]; };  // linear color, activation
 
 vec4 material_at(uint material, uint placement_flags) {
   return materials[min(material + (placement_flags >> 8), uint(materials.length()) - 1u)];

@@ -38,7 +38,7 @@ float nearest_range(vec3 low, vec3 high) {
 }
 
 // The light's view covers everything that can cast a shadow. A large map covers more than that if its texels would be much
-// smaller than the picture's pixels on the nearest body, `range` metres away: finer ones cost time and show nothing.
+// smaller than the picture's pixels on the nearest body, `range` meters away: finer ones cost time and show nothing.
 void fit_shadow(bool any, vec3 low, vec3 high, float range) {
   vec3 back = frame.to_key.xyz;
   vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), back));

@@ -3,7 +3,7 @@
 layout(binding = 5) uniform sampler2D sand_tile;    // slope x, y, grain, patches
 layout(binding = 6) uniform sampler2D ground_light_map;
 
-// 1 on lines `period` apart, smoothed over `pixel` metres. Fades out before lines are too dense to be resolved.
+// 1 on lines `period` apart, smoothed over `pixel` meters. Fades out before lines are too dense to be resolved.
 float lines(vec2 point, float period, vec2 pixel, float width) {
   vec2 off = abs(fract(point / period + 0.5) - 0.5) * period;
   vec2 on = 1.0 - smoothstep(vec2(0.0), pixel, off - 0.5 * max(vec2(width), pixel));
@@ -27,8 +27,8 @@ vec4 ground_tile(vec2 point, float scale) {
 #endif
 }
 
-// Lines at a power of ten of metres that suits the distance; the next finer ones fade in as the camera comes closer.
-float metre_lines(vec2 point, vec2 pixel) {
+// Lines at a power of ten of meters that suits the distance; the next finer ones fade in as the camera comes closer.
+float meter_lines(vec2 point, vec2 pixel) {
   float decade = log(frame.water.w * 0.12) / log(10.0);
   float period = pow(10.0, floor(decade));
   float finer = 1.0 - fract(decade);
@@ -54,7 +54,7 @@ vec3 soil(vec2 point, float key, float open, out vec3 light) {
 vec3 land(vec2 point, vec2 pixel, float open) {
   vec3 light;
   vec3 color = soil(point, key_on_floor(point), open, light);
-  return mix(color, frame.line_color.rgb, frame.line_color.w * metre_lines(point, pixel)) * light;
+  return mix(color, frame.line_color.rgb, frame.line_color.w * meter_lines(point, pixel)) * light;
 }
 
 // Robots swim far above the sand, so there is no ambient occlusion.

@@ -49,5 +49,5 @@ vec3 through_fog(vec3 light, vec3 sight, float range) {
   return light * left + backdrop(sight) * (1.0 - left);
 }
 
-// A number in [0, 1) per pixel, evenly spread within each neighbourhood (interleaved gradient noise, Jimenez 2014).
+// A number in [0, 1) per pixel, evenly spread within each neighborhood (interleaved gradient noise, Jimenez 2014).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))); }

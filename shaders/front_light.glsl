@@ -9,7 +9,7 @@ float unlikeness(uint where, float range, vec2 normal) {
 }
 
 // How much of the key light, and what share of the ambient light, reach a point at that depth with that normal, as an
-// octahedral direction. At edges, the pixel's values may belong to another surface; then the most similar of the neighbouring pixels get the most
+// octahedral direction. At edges, the pixel's values may belong to another surface; then the most similar of the neighboring pixels get the most
 // weight.
 vec2 front_light(ivec2 pixel, float range, vec2 normal) {
   uvec2 found = texelFetch(front_light_map, pixel, 0).rg;

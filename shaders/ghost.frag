@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ghost: one colour, thin where it faces the eye and dense at its rim, as a soap bubble is.
+// A ghost: one color, thin where it faces the eye and dense at its rim, as a soap bubble is.
 #include "frame.glsl"
 layout(location = 0) uniform vec4 tint;  // linear, opacity
 layout(location = 0) in vec3 world;

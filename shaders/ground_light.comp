@@ -10,7 +10,7 @@ void main() {
   if (any(greaterThanEqual(texel, size))) return;
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec3 point = vec3(frame.ground.xy + frame.ground.z * uv, frame.ground.w);
-  // Neighbouring texels use different sample patterns, repeating every 4 x 4; ground_blur.comp averages them.
+  // Neighboring texels use different sample patterns, repeating every 4 x 4; ground_blur.comp averages them.
   int cell = (texel.x & 3) + 4 * ((texel.y ^ (texel.x << 1)) & 3);
   imageStore(map, texel, vec4(key_visibility(point, vec3(0.0, 0.0, 1.0), (float(cell) + 0.5) / 16.0)));
 }

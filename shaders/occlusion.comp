@@ -38,7 +38,7 @@ void main() {
   vec3 up = flatter(at(texel + ivec2(0, 1)) - point, point - at(texel - ivec2(0, 1)));
   vec3 normal = normalize(cross(right, up));
   float reach = radius / (range * frame.depth.w) * 0.5 * float(textureSize(depths, 0).y) / float(DEPTH_STEP);  // [texels]
-  // Neighbouring texels use different sample patterns, repeating every 4 x 4; occlusion_blur.comp averages them.
+  // Neighboring texels use different sample patterns, repeating every 4 x 4; occlusion_blur.comp averages them.
   int cell = (texel.x & 3) + 4 * ((texel.y ^ (texel.x << 1)) & 3);
   float turn = 6.2831853 * (float(cell) + 0.5) / 16.0;
   float hidden = 0.0;

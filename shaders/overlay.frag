@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a quad: text from signed distances with an outline, a box with round corners, or a scale of colours.
+// Draws a quad: text from signed distances with an outline, a box with round corners, or a scale of colors.
 struct Quad {
   vec4 rectangle;
   vec4 source;

@@ -2,7 +2,7 @@
 // A particle that drifts with the water: a strip of 6 vertices, longer in fast flow.
 #include "frame.glsl"
 #include "ribbon.glsl"
-layout(location = 0) uniform vec4 box;   // centre and half side of the cube of particles [m]
+layout(location = 0) uniform vec4 box;   // center and half side of the cube of particles [m]
 layout(location = 1) uniform vec4 flow;  // [m/s]; w = exposure time, which sets the length [s]
 layout(location = 3) uniform float share;  // opacity of this set of particles
 layout(location = 2) uniform vec3 drift; // flow times time, taken modulo the box's side in double precision [m]
@@ -26,7 +26,7 @@ void main() {
   vec3 home = vec3(hash(3u * particle), hash(3u * particle + 1u), hash(3u * particle + 2u)) * 2.0 * box.w;
   float t = frame.eye.w * (0.15 + 0.2 * hash(7u * particle + 11u));
   vec3 wander = 0.03 * box.w * vec3(sin(t + home.x * 3.0), sin(1.3 * t + home.y * 2.0), cos(0.9 * t + home.z * 3.0));
-  // Positions wrap around the centre of the box, so particles surround the camera wherever it goes.
+  // Positions wrap around the center of the box, so particles surround the camera wherever it goes.
   vec3 center = mod(home + wander + drift - box.xyz + box.w, 2.0 * box.w) - box.w + box.xyz;
   vec3 streak = flow.xyz * flow.w;
   vec3 to_eye = normalize(frame.eye.xyz - center);

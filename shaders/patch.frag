@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disc of ground whose texture and metre lines slide, with a rim.
+// A disc of ground whose texture and meter lines slide, with a rim.
 #include "frame.glsl"
 #include "caustics.glsl"
 #include "floor.glsl"
@@ -21,7 +21,7 @@ void main() {
   vec3 albedo = soil(slid, key_on_floor(world.xy), openness(gl_FragCoord.xy, steps), light);
   float width = max(0.035 * slide_and_radius.z, 1.5 * blur);
   float rim = 1.0 - smoothstep(width - blur, width, from_rim);
-  albedo = mix(albedo * 1.12, frame.line_color.rgb, max(metre_lines(slid, pixel), 0.7 * rim));
+  albedo = mix(albedo * 1.12, frame.line_color.rgb, max(meter_lines(slid, pixel), 0.7 * rim));
   float range = length(from_eye);
   color = vec4(through_fog(albedo * light, from_eye / range, range), inside);
 }

@@ -2,7 +2,7 @@
 // A patch of render/scene.h as 6 vertices, at the height of the floor.
 #include "frame.glsl"
 struct Patch {
-  vec4 disc;   // centre x, y; radius
+  vec4 disc;   // center x, y; radius
   vec4 slide;  // x, y
 };
 layout(std430, binding = 11) readonly buffer Patches { Patch patches[]; };

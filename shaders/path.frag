@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A path, in its flat colour behind fog.
+// A path, in its flat color behind fog.
 #include "frame.glsl"
 layout(location = 0) in vec4 tint;
 layout(location = 1) in vec3 world;

@@ -9,7 +9,7 @@ layout(location = 1) uniform int format;  // PixelFormat
 
 vec4 pixel(int x, int y) { return texelFetch(picture, ivec2(clamp(x, 0, size.x - 1), size.y - 1 - y), 0); }
 
-// BT.709 luma and colour differences, limited range.
+// BT.709 luma and color differences, limited range.
 float luma(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 float limited_luma(vec3 c) { return (16.0 + 219.0 * luma(c)) / 255.0; }
 float blue_difference(vec3 c) { return (128.0 + 224.0 * (c.b - luma(c)) / 1.8556) / 255.0; }

@@ -8,7 +8,7 @@ layout(binding = 8) uniform sampler2D glow;
 layout(binding = 0, rgba8) writeonly uniform image2D picture;  // gamma-encoded
 layout(location = 0) uniform float vignette;
 
-// Identity up to `shoulder`, so that colours of values keep their meaning; above it, bends towards 1 and towards white,
+// Identity up to `shoulder`, so that colors of values keep their meaning; above it, bends towards 1 and towards white,
 // like photographic film.
 vec3 tone_mapped(vec3 light) {
   const float shoulder = 0.62;

@@ -7,13 +7,13 @@ layout(std430, binding = 10) readonly buffer MassValues { float mass_values[]; }
 layout(std430, binding = 11) readonly buffer Springs { uint springs[]; };
 layout(std430, binding = 12) readonly buffer SpringMaterials { uint spring_materials[]; };
 layout(location = 0) uniform float reach;       // [m]
-layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 grey, for values of faces
+layout(location = 1) uniform int color_by;      // 0 materials, 1 mass values, 2 gray, for values of faces
 layout(location = 2) uniform vec4 value_scale;
 layout(location = 3) uniform uint first;        // springs of earlier calls
 layout(binding = 7) uniform sampler2D colormap;
 
 layout(location = 0) out vec3 offset;  // from the spring's middle
-layout(location = 1) flat out vec4 material;  // colour, activation
+layout(location = 1) flat out vec4 material;  // color, activation
 layout(location = 2) flat out uint body;
 out gl_PerVertex { vec4 gl_Position; };
 

@@ -6,7 +6,7 @@
 struct SeenFace {
   vec4 along_u;
   vec4 along_v;
-  uvec4 normals_around;  // packed normals of FaceRecord.neighbours; NO_NORMAL = none
+  uvec4 normals_around;  // packed normals of FaceRecord.neighbors; NO_NORMAL = none
   uint normal;           // packed
   uint material;
   uint shape;

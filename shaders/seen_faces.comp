@@ -25,7 +25,7 @@ void main() {
   float squared = max(dot(twice_area, twice_area), 1e-20);
   // The dual basis of u, v in their plane.
   vec3 along_u = cross(v, twice_area) / squared, along_v = cross(twice_area, u) / squared;
-  uvec4 around = record.neighbours;
+  uvec4 around = record.neighbors;
   seen[i] = SeenFace(vec4(along_u, -dot(along_u, a)), vec4(along_v, -dot(along_v, a)),
                      uvec4(normal_of(around.x), normal_of(around.y), normal_of(around.z), normal_of(around.w)),
                      face_normals[face], record.material, record.shape, face);

@@ -25,16 +25,16 @@ struct Surface {
   float softness;  // how far light scatters past the terminator, 0 to 1
 };
 
-// `key`: colour of the key light, with shadow and caustics. `open`: share of the light of sky and ground that arrives.
+// `key`: color of the key light, with shadow and caustics. `open`: share of the light of sky and ground that arrives.
 vec3 lit(Surface s, vec3 to_eye, vec3 key, float open) {
   float n_l = dot(s.normal, frame.to_key.xyz);
   float wrap = 0.4 * s.softness;
   float wrapped = clamp((n_l + wrap) / (1.0 + wrap), 0.0, 1.0);
-  // Light that has scattered inside the body takes on its colour.
+  // Light that has scattered inside the body takes on its color.
   vec3 scattered = mix(vec3(1.0), s.albedo, s.softness * smoothstep(0.5, 0.0, wrapped));
   vec3 diffuse = key * mix(max(n_l, 0.0), wrapped, s.softness) * scattered / 1.6;
   float upward = 0.5 + 0.5 * s.normal.z;
-  // Light that is reflected between bright surfaces brightens corners in the surfaces' own colour.
+  // Light that is reflected between bright surfaces brightens corners in the surfaces' own color.
   vec3 filled = open / (1.0 - s.albedo * (1.0 - open) * 0.8);
   vec3 ambient = mix(frame.ground_light.rgb, frame.sky_light.rgb, upward) * filled;
   vec3 mirrored = reflect(-to_eye, s.normal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A skin, coloured by materials or values. Edges look rounded because normals are blended; the geometry stays flat.
+// A skin, colored by materials or values. Edges look rounded because normals are blended; the geometry stays flat.
 //
 // COLOR_BY      0 materials, 1 face values, 2 mass values
 // ROUNDED       some bodies are smooth
@@ -21,7 +21,7 @@
 #ifdef CUT
 #include "cut.glsl"
 #include "cut_map.glsl"
-layout(binding = 10) uniform sampler2D section;  // colours of bodies' insides in the cut's plane
+layout(binding = 10) uniform sampler2D section;  // colors of bodies' insides in the cut's plane
 #endif
 layout(std430, binding = 5) readonly buffer SeenFaces { SeenFace seen[]; };
 
@@ -50,11 +50,11 @@ const float bevel = 0.11;  // of the shorter side
 
 vec3 normal_of(uint bits) { return normalize(unpacked_direction(bits)); }
 
-// The face's normal; towards the edges it is blended with the neighbours', so that both sides of an edge agree.
+// The face's normal; towards the edges it is blended with the neighbors', so that both sides of an edge agree.
 vec3 beveled_normal(SeenFace face, vec3 normal, out float seam) {
   vec2 uv = vec2(dot(local, face.along_u.xyz) + face.along_u.w, dot(local, face.along_v.xyz) + face.along_v.w);
   vec2 height = 1.0 / vec2(length(face.along_u.xyz), length(face.along_v.xyz));
-  vec4 off;  // distance from the edges of FaceRecord.neighbours [m]
+  vec4 off;  // distance from the edges of FaceRecord.neighbors [m]
   float size = min(height.x, height.y);
   bool quadrilateral = face.shape < 3u;
   if (quadrilateral) {

@@ -19,7 +19,7 @@ layout(location = 0) out vec3 world;
 layout(location = 1) out float across;
 layout(location = 2) flat out vec3 side;
 layout(location = 3) flat out vec3 axis;
-layout(location = 4) out vec4 material;  // colour, activation
+layout(location = 4) out vec4 material;  // color, activation
 layout(location = 5) flat out uint flags;
 
 out gl_PerVertex {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tile with round corners and a frame, in flat colours. Its fill takes shadows.
+// A tile with round corners and a frame, in flat colors. Its fill takes shadows.
 #include "frame.glsl"
 #include "shadow.glsl"
 struct Tile {

@@ -54,7 +54,7 @@ class PortionMaker {
   Entry* take() {
     const std::lock_guard lock(mutex_);
     const std::size_t count = entries_.size();
-    if (first_ + count >= end_ || limits_.cancelled()) return nullptr;
+    if (first_ + count >= end_ || limits_.canceled()) return nullptr;
     // Robots that are being made are expected to be as large as the largest so far.
     const std::size_t known = largest_, expected = known > 0 ? known : unknown_bytes;
     if (count > 0 && (bytes_ + (in_making_ + 1) * expected > limits_.bytes || limits_.enough(count))) return nullptr;

@@ -35,7 +35,7 @@ struct PortionLimits {
   // Asked before each robot but the first, one thread at a time: whether that many robots are enough.
   std::function<bool(std::size_t count)> enough;
   // Whether to give up. The portion is then incomplete.
-  std::function<bool()> cancelled;
+  std::function<bool()> canceled;
 };
 
 // Makes robots of the source from `first` on until the source or a limit ends the portion; at least one, if there is

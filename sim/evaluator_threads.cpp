@@ -69,18 +69,18 @@ void Evaluator::Parts::make_portions() {
     for (bool is_complete = count == 0; !is_complete;) {
       PortionLimits limits{.bytes = 0,
                            .enough = [&](std::size_t robots) { return is_large_enough(first, robots); },
-                           .cancelled = [&] { return stopping || first >= end; }};
+                           .canceled = [&] { return stopping || first >= end; }};
       {
         std::unique_lock lock(mutex);
-        maker_may_go_on.wait(lock, [&] { return limits.cancelled() || may_make(); });
-        if (limits.cancelled()) break;
+        maker_may_go_on.wait(lock, [&] { return limits.canceled() || may_make(); });
+        if (limits.canceled()) break;
         limits.bytes = piece_bytes();
       }
       std::optional<UnionClock::Interval> interval(std::in_place, making);
       Portion portion = make_portion(source, first, count, limits, request.serial_source, largest_robot);
       interval.reset();
       const std::lock_guard lock(mutex);
-      if (limits.cancelled()) break;
+      if (limits.canceled()) break;
       is_complete = portion.is_last || portion.candidates.empty();
       first += portion.candidates.size();
       made += portion.candidates.size();
@@ -146,7 +146,7 @@ std::optional<Portion> Evaluator::Parts::take(DeviceParts& device) {
 
 void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace) {
   const std::size_t first = portion.first;
-  const TrialContext context{.cancelled = [&] { return first >= end; },
+  const TrialContext context{.canceled = [&] { return first >= end; },
                              .stopping = [&] { return stopping.load(); },
                              .stepped = [&](std::int64_t steps) { robot_steps += steps; },
                              .device_stepping = &device.stepping,

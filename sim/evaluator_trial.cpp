@@ -72,16 +72,16 @@ bool PortionTrial::run() {
 // Makes the steps before the start, or fewer if the evaluation stops.
 bool PortionTrial::settle() {
   while (simulation_.steps() < request_.settling && !context_.stopping()) {
-    if (context_.cancelled()) return false;
+    if (context_.canceled()) return false;
     step(std::min(steps_per_call(), request_.settling - simulation_.steps()));
   }
-  return !context_.cancelled();
+  return !context_.canceled();
 }
 
 // Goes on to this step of the trial, or not so far if the evaluation stops. Takes the samples on the way.
 bool PortionTrial::advance(std::int64_t end) {
   while (simulation_.size() > 0 && steps_done() < end && !context_.stopping()) {
-    if (context_.cancelled()) return false;
+    if (context_.canceled()) return false;
     const std::int64_t count = std::min(steps_per_call(), end - steps_done());
     const std::int64_t next = observed_ + sample_every_;
     if (steps_done() == observed_ && count >= sample_every_) {
@@ -91,7 +91,7 @@ bool PortionTrial::advance(std::int64_t end) {
       if (steps_done() == next) observe_now();
     }
   }
-  return !context_.cancelled();
+  return !context_.canceled();
 }
 
 void PortionTrial::step(std::int64_t steps) {

@@ -22,7 +22,7 @@ void load(Simulation& simulation, Portion& portion);
 
 // What a trial asks and reports while it runs.
 struct TrialContext {
-  std::function<bool()> cancelled;                        // nobody wants its results any more
+  std::function<bool()> canceled;                         // nobody wants its results any more
   std::function<bool()> stopping;                         // it ends early, with results
   std::function<void(std::int64_t robot_steps)> stepped;  // after each call of step()
   UnionClock* device_stepping = nullptr;                  // of this device
@@ -48,7 +48,7 @@ class PortionTrial {
   PortionTrial(Simulation& simulation, const EvaluationRequest& request, const TrialContext& context, StepPace& pace,
                const Portion& portion);
 
-  // Returns false if the trial was cancelled.
+  // Returns false if the trial was canceled.
   bool run();
   // One per candidate. Takes them out of the trial.
   std::vector<Evaluation> results();

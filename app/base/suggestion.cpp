@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t longest_word = 100;  // nobody means a longer one; the search takes its square
 
-// The number of letters to insert, delete or replace to get from a to b. A swap of neighbours counts as one change
+// The number of letters to insert, delete or replace to get from a to b. A swap of neighbors counts as one change
 // (optimal string alignment).
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, row(b.size() + 1), next(b.size() + 1);

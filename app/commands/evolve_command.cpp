@@ -260,7 +260,7 @@ int describe_work(const EvolveOptions& options, const CLI::App& command) {
   return print_dry_run(
       "evolve",
       {{"algorithm", settings.algorithm.name},
-       {"maximise", fmt::format("{}", fmt::join(settings.objectives, "; "))},
+       {"maximize", fmt::format("{}", fmt::join(settings.objectives, "; "))},
        {"robots", fmt::format("{}: {} at first, then {} in each of {} generations", robots, population, children,
                               settings.generations)},
        {"trials", fmt::format("{} per robot, each {}", settings.trials.trials,

@@ -236,7 +236,7 @@ void add_export_command(CLI::App& program, const Choose& choose) {
   command->footer(fmt::format(
       "Formats:\n{}\n"
       "A robot file gives the robot at rest. A motion comes from a recording of mercury run --record. All files have\n"
-      "metres and z up; a .glb file turns the robot, since glTF has y up. The names of the files are printed.\n\n"
+      "meters and z up; a .glb file turns the robot, since glTF has y up. The names of the files are printed.\n\n"
       "Examples:\n"
       "  mercury export eel.json -o eel.glb\n"
       "  mercury export my-robots --format stl -o printed/\n"

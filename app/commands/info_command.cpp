@@ -197,7 +197,7 @@ void describe(const SceneFile& scene) {
   print_line("solver", solver_text(configuration));
   print_line("environment", environment_text(configuration));
   print_line("camera", std::string(name_of(view.camera.mode)));
-  print_line("colour", std::string(view.color->key));
+  print_line("color", std::string(view.color->key));
 }
 
 // Reads what the paths name and hands it on: take(robot, file), take(recording), take(repro, file), take(run),

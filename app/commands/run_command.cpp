@@ -354,7 +354,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
   add_trial_options(*command, options->trials);
   options->simulation.add_to(*command);
   command->footer(
-      "Distance is how far the centre of mass got from where it was after --settle; on land along the ground, so a "
+      "Distance is how far the center of mass got from where it was after --settle; on land along the ground, so a "
       "fall\n"
       "counts for nothing. Speed is the length of its path divided by the time. Strain is the largest of any spring;\n"
       "\"> 50\" is the largest share of springs that had more than 50 % at the same time. Speed, work, height and "

@@ -206,7 +206,7 @@ void print_text(const Verification& result, const TrajectoryReader& recording, c
 
 int run_verify(const VerifyOptions& options) {
   if (!(options.tolerance >= 0 && std::isfinite(options.tolerance)))
-    throw InputError("--tolerance", fmt::format("{} is not accepted; give metres, 0 or more", options.tolerance));
+    throw InputError("--tolerance", fmt::format("{} is not accepted; give meters, 0 or more", options.tolerance));
   TrajectoryReader recording(options.file);
   if (recording.frames() == 0) throw InputError(options.file, "holds no frames");
   const Verification result = verify(recording, options.device);

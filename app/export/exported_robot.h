@@ -41,7 +41,7 @@ struct ExportedMaterial {
 };
 // Those of the springs, by id; and air, without a name of its own, where a face has no spring.
 std::vector<ExportedMaterial> exported_materials(const Robot& robot);
-// The colours of all ids of the robot's table.
+// The colors of all ids of the robot's table.
 std::vector<render::Color> colors_of(const Robot& robot);
 
 // Per spring, at one moment.

@@ -46,7 +46,7 @@ void add_obj(OutputStreams& files, const ExportedRobot& exported, const SkinShap
   const std::vector<std::string> names = names_of(shape.materials);
   write_materials(files.add(materials), shape, names);
   OutputStream& file = files.add(path);
-  file.print("# {}: metres, z up\nmtllib {}\no {}\n", program_version, materials.filename().string(),
+  file.print("# {}: meters, z up\nmtllib {}\no {}\n", program_version, materials.filename().string(),
              identifier_of(exported.robot.name));
   for (const Vec3 v : vertices_of(shape, pose.positions)) file.print("v {} {} {}\n", v.x, v.y, v.z);
   const auto faces = by_material(shape, shape.face_materials), springs = by_material(shape, shape.spring_materials);

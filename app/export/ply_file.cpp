@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, binary. Faces have their exact colours; vertices have the mean of their faces, for programs that read only
+// PLY, binary. Faces have their exact colors; vertices have the mean of their faces, for programs that read only
 // those.
 #include <algorithm>
 
@@ -24,7 +24,7 @@ void write_ply(const ExportedRobot& robot, const Pose& pose, const std::filesyst
   constexpr const char* color = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   OutputStreams files;
   OutputStream& file = files.add(path);
-  file.print("ply\nformat binary_little_endian 1.0\ncomment {}: metres, z up\nelement vertex {}\n", program_version,
+  file.print("ply\nformat binary_little_endian 1.0\ncomment {}: meters, z up\nelement vertex {}\n", program_version,
              shape.masses.size());
   file.print("property float x\nproperty float y\nproperty float z\n{}", color);
   file.print("element face {}\nproperty list uchar int vertex_indices\n{}", shape.faces.size(), color);

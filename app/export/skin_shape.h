@@ -26,7 +26,7 @@ SkinShape skin_shape(const Robot& robot, bool with_springs);
 // The positions of the vertices at a moment [m].
 std::vector<Vec3> vertices_of(const SkinShape& shape, std::span<const Vec3> positions);
 
-// The colour of each vertex: the mean of its faces in linear light, grey without a face.
+// The color of each vertex: the mean of its faces in linear light, gray without a face.
 std::vector<render::Color> vertex_colors(const SkinShape& shape);
 
 // The indices of all elements by their material, in the order of SkinShape::materials.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL, binary: triangles with their normals, without colours.
+// STL, binary: triangles with their normals, without colors.
 #include <array>
 #include <cmath>
 
@@ -25,7 +25,7 @@ void write_stl(const ExportedRobot& robot, const Pose& pose, const std::filesyst
   OutputStreams files;
   OutputStream& file = files.add(path);
   // Not "solid ...", which marks the format's text form.
-  file.text(fmt::format("{:<80.80}", fmt::format("{}: metres, z up", program_version)));
+  file.text(fmt::format("{:<80.80}", fmt::format("{}: meters, z up", program_version)));
   file.raw(static_cast<std::uint32_t>(robot.robot.faces.size()));
   for (const Face& face : robot.robot.faces) {
     const Vec3 a = pose.positions[face.a], b = pose.positions[face.b], c = pose.positions[face.c];

@@ -4,7 +4,7 @@
 //   points   all masses, in the order of the robot's file, with their velocities
 //   cells    first the faces, then the springs, in the order of the robot's file
 //
-// A face has the mean strain and force of the springs along its edges, so that the skin can be coloured by them.
+// A face has the mean strain and force of the springs along its edges, so that the skin can be colored by them.
 #include <fmt/format.h>
 #include <unistd.h>
 #include <zlib.h>

@@ -43,7 +43,7 @@ struct Background::Parts {
       lock.unlock();
       Finish finish = run_task(*running);
       lock.lock();
-      if (finish && !running->control->cancelled()) finished.push_back(std::move(finish));
+      if (finish && !running->control->canceled()) finished.push_back(std::move(finish));
       running.reset();
       ended.notify_all();
     }
@@ -51,7 +51,7 @@ struct Background::Parts {
 
   Finish run_task(Entry& entry) {
     try {
-      if (!entry.control->cancelled()) return entry.task(*entry.control);
+      if (!entry.control->canceled()) return entry.task(*entry.control);
     } catch (const std::bad_alloc&) {
       messages.add(Severity::error, entry.name + ": not enough memory");
     } catch (const std::exception& error) {

@@ -26,13 +26,13 @@ struct Work {
 // Connects a running task with the window: the task reports progress, the window cancels. Thread-safe.
 class WorkControl {
  public:
-  bool cancelled() const { return cancelled_; }
+  bool canceled() const { return canceled_; }
   void progress(std::int64_t done) { done_ = done; }
-  void cancel() { cancelled_ = true; }
+  void cancel() { canceled_ = true; }
   std::int64_t done() const { return done_; }
 
  private:
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<bool> canceled_ = false;
   std::atomic<std::int64_t> done_ = 0;
 };
 

@@ -75,7 +75,7 @@ std::string shown_text(const Shown& shown) {
 
 std::string cut_text(const render::Cut& cut) {
   const std::string axis = fmt::format("{}{}", cut.below ? "-" : "", "xyz"[cut.axis]);
-  // In metres from the middle, as old files have it, or as a share.
+  // In meters from the middle, as old files have it, or as a share.
   if (cut.shift != 0) return fmt::format("{}:{}", axis, cut.shift);
   return fmt::format("{}:{}%", axis, cut.percent);
 }

@@ -44,10 +44,10 @@ struct GroupVideo::Parts {
     status.error = error;
   }
 
-  // When the state becomes "cancelled", the unfinished file is already removed.
+  // When the state becomes "canceled", the unfinished file is already removed.
   void make() {
     try {
-      set_state(write() ? VideoStatus::State::done : VideoStatus::State::cancelled);
+      set_state(write() ? VideoStatus::State::done : VideoStatus::State::canceled);
     } catch (const std::exception& error) {
       set_state(VideoStatus::State::failed, error.what());
     }

@@ -35,7 +35,7 @@ class GroupVideo {
 
   VideoStatus status() const;
   void cancel();  // removes the unfinished file
-  void wait();    // until it is done, cancelled or failed
+  void wait();    // until it is done, canceled or failed
 
  private:
   struct Parts;

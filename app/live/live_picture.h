@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene that the window draws, made from the newest snapshot: layout, colours, arrows, labels.
+// The scene that the window draws, made from the newest snapshot: layout, colors, arrows, labels.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 
 namespace mercury {
 
-// The colour of ghosts.
+// The color of ghosts.
 render::Color ghost_color(render::Theme theme);
 
 // Uses no OpenGL, except through the renderer in set_bodies().

@@ -21,7 +21,7 @@ bool LiveScene::points_at_second() const { return parts_->points_at_second(); }
 const Snapshot& LiveScene::pointed_snapshot() const { return parts_->pointed_snapshot(); }
 const LivePicture& LiveScene::pointed_picture() const { return parts_->pointed_picture(); }
 
-// Both sides have the same layout, colours and scale, so that what differs is the robots.
+// Both sides have the same layout, colors and scale, so that what differs is the robots.
 void LiveScene::Parts::update_second_picture(ViewSettings shown, const std::optional<RobotId>& held) {
   const auto on_land = [](const Snapshot& one) { return std::holds_alternative<Land>(one.configuration.environment); };
   if (!snapshot->second) {

@@ -22,7 +22,7 @@ constexpr double frame_rate = 30;  // of motions, per second of simulated time
 
 SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
 
-// As pictures show it: with its colours, its name and its materials as they are in the window.
+// As pictures show it: with its colors, its name and its materials as they are in the window.
 struct Exported {
   Robot robot;
   std::vector<Material> materials;
@@ -65,10 +65,10 @@ class TemporaryRecording {
   fs::path path_;
 };
 
-struct Cancelled {};
+struct Canceled {};
 
 void require_going(const WorkControl& control) {
-  if (control.cancelled()) throw Cancelled();
+  if (control.canceled()) throw Canceled();
 }
 
 // Simulates the robot from time 0. Returns the number of frames.
@@ -142,7 +142,7 @@ SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double 
             };
             format.motion(exported->in(configuration.environment), motion, path, {.watch = watch});
             messages.add(Severity::note, "exported " + path.string());
-          } catch (const Cancelled&) {
+          } catch (const Canceled&) {
           }
           return Background::Finish([] {});
         });

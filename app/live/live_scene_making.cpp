@@ -25,7 +25,7 @@ std::vector<RandomRobot> make_random_robots(const RandomRobots& request, WorkCon
   };
   constexpr std::size_t portion = 8;  // robots between two reports of progress
   std::vector<RandomRobot> robots;
-  for (std::size_t done = 0; done < request.count && !control.cancelled();) {
+  for (std::size_t done = 0; done < request.count && !control.canceled();) {
     const std::size_t count = std::min(portion, request.count - done);
     std::vector<MadeRobot> made = make_robots(make, request.seed, request.first + done, count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -49,7 +49,7 @@ struct Child {
 std::vector<Child> make_children(const std::vector<DocumentRobot>& parents, const MutationRequest& mutation,
                                  WorkControl& control, Messages& messages) {
   std::vector<Child> children;
-  for (std::size_t i = 0; i < parents.size() && !control.cancelled(); ++i) {
+  for (std::size_t i = 0; i < parents.size() && !control.canceled(); ++i) {
     try {
       const Robot parent = whole_robot(parents[i]);
       MutationRequest own = mutation;

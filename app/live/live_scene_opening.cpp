@@ -142,7 +142,7 @@ Opened read_robots(const std::vector<fs::path>& files, WorkControl& control, Mes
   std::vector<std::string> failures;
   std::int64_t done = 0;
   for (const fs::path& file : files) {
-    if (control.cancelled()) break;
+    if (control.canceled()) break;
     try {
       read_file(file, files.size() == 1, opened, messages);
     } catch (const InputError& error) {

@@ -25,8 +25,8 @@ struct MeasureName {
 std::span<const MeasureName> measures();
 
 struct Sample {
-  float speed = 0;           // of the centre of mass [m/s]
-  float distance = 0;        // of the centre of mass from its start [m]
+  float speed = 0;           // of the center of mass [m/s]
+  float distance = 0;        // of the center of mass from its start [m]
   float kinetic_energy = 0;  // [J]
   float elastic_energy = 0;  // [J]
   float strain = 0;          // largest of any spring [1]
@@ -42,7 +42,7 @@ struct Series {
 // One robot in the ranking.
 struct RankingRow {
   RobotId robot = 0;
-  double distance = 0;                            // of the centre of mass from its start, distance_between() [m]
+  double distance = 0;                            // of the center of mass from its start, distance_between() [m]
   double mean_speed = 0;                          // distance divided by the age [m/s]
   double age = 0;                                 // time since it was added, or since the last reset [s]
   double distance_at_equal_age = 0;               // the distance when it was as old as the youngest robot is now [m]
@@ -103,7 +103,7 @@ class Measurements {
 
  private:
   struct Track {
-    Vec3 start;             // centre of mass [m]
+    Vec3 start;             // center of mass [m]
     double start_time = 0;  // [s]
     double largest_strain = 0;
     std::size_t missing = 0;  // samples taken before the robot was added

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plays a recording on the physics thread: shows its frames, and goes on simulating from one.
 //
-// The simulation holds the recorded robots and is put into the state of each moment, so that colours, arrows and
+// The simulation holds the recorded robots and is put into the state of each moment, so that colors, arrows and
 // measures work as for live robots. Between two frames positions are interpolated; the steps between them are not
 // computed again, since the recording may come from a much faster machine.
 #include <algorithm>

@@ -68,7 +68,7 @@ struct ScreenRecording::Parts {
   double start = 0;
   std::int64_t last = -1;  // number of the last frame taken
   BoundedQueue<Waiting> queue{most_waiting};
-  std::atomic<bool> cancelled = false;
+  std::atomic<bool> canceled = false;
   mutable std::mutex mutex;
   VideoStatus status;
   std::thread thread;
@@ -82,10 +82,10 @@ struct ScreenRecording::Parts {
     status.error = error;
   }
 
-  // When the state becomes "cancelled", the unfinished file is already removed.
+  // When the state becomes "canceled", the unfinished file is already removed.
   void encode(const std::string& output) {
     try {
-      set_state(write(output) ? VideoStatus::State::done : VideoStatus::State::cancelled);
+      set_state(write(output) ? VideoStatus::State::done : VideoStatus::State::canceled);
     } catch (const std::exception& error) {
       queue.abandon();
       set_state(VideoStatus::State::failed, error.what());
@@ -100,13 +100,13 @@ struct ScreenRecording::Parts {
     std::int64_t frames = 0;
     while (auto waiting = queue.pop()) {
       const render::Image picture = yuv ? yuv420_of(waiting->picture) : std::move(waiting->picture);
-      for (std::int64_t i = 0; i < waiting->times && !cancelled; ++i) {
+      for (std::int64_t i = 0; i < waiting->times && !canceled; ++i) {
         writer->write(picture);
         const std::lock_guard lock(mutex);
         status.frames = ++frames;
       }
     }
-    if (cancelled) return false;
+    if (canceled) return false;
     if (frames == 0) throw VideoError(output + ": nothing was recorded");
     writer->finish();
     return true;
@@ -153,7 +153,7 @@ void ScreenRecording::finish() {
 }
 
 void ScreenRecording::cancel() {
-  parts_->cancelled = true;
+  parts_->canceled = true;
   parts_->queue.abandon();
 }
 

@@ -6,7 +6,7 @@
 //   events           ^   ^        ^                 parameters, materials, perturbations (scene_events.h)
 //
 // A moment is the keyframe before it, stepped on with the events in between. Keyframes are dense near the head and thin
-// out as they grow old: the one goes whose absence costs least against its age. Two neighbours never become so far
+// out as they grow old: the one goes whose absence costs least against its age. Two neighbors never become so far
 // apart that a moment between them takes longer than `most_work` to compute; rather, the oldest goes.
 //
 // Robots that come and go begin a new era. Between two keyframes of one era the list of robots is the same, and the

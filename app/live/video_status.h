@@ -8,7 +8,7 @@
 namespace mercury {
 
 struct VideoStatus {
-  enum class State { running, finishing, done, cancelled, failed } state = State::running;
+  enum class State { running, finishing, done, canceled, failed } state = State::running;
   std::int64_t frames = 0;   // written
   std::int64_t total = 0;    // to write; 0 = unknown
   std::int64_t dropped = 0;  // because the encoder was too slow

@@ -80,7 +80,7 @@ void EvolutionOptions::add_to(CLI::App& command) {
             [](const std::string&, const std::string& text) { return text; })
       ->group(search_group);
   offer(repeated("--objective", objectives_,
-                 fmt::format("Formula to maximise (default distance); several give a front. Quantities: {}",
+                 fmt::format("Formula to maximize (default distance); several give a front. Quantities: {}",
                              fmt::join(names_of_quantities(), ", ")),
                  "FORMULA"),
         names_of_quantities());

@@ -27,13 +27,12 @@ void ViewOptions::add_to(CLI::App& command) {
   std::vector<std::string> colors;
   for (const ColorQuantity& quantity : color_quantities()) colors.emplace_back(quantity.key);
   add(add_choice(command, "--color", words_.color, std::move(colors),
-                 fmt::format("Colour by (default {})", words_.color)));
-  add(add_value(command, "--scale", words_.scale, "Ends of the colours' scale (default: fits)", "LOW,HIGH",
-                range_from));
+                 fmt::format("Color by (default {})", words_.color)));
+  add(add_value(command, "--scale", words_.scale, "Ends of the colors' scale (default: fits)", "LOW,HIGH", range_from));
   std::vector<std::string> maps;
   for (int i = 0; i < render::colormap_count; ++i) maps.emplace_back(render::name_of(static_cast<render::Colormap>(i)));
-  add(add_choice(command, "--colormap", words_.colormap, std::move(maps), "Colours of values (default: by quantity)"));
-  add(command.add_flag("--log-scale", words_.log_scale, "Spread the colours by ratios of values"));
+  add(add_choice(command, "--colormap", words_.colormap, std::move(maps), "Colors of values (default: by quantity)"));
+  add(command.add_flag("--log-scale", words_.log_scale, "Spread the colors by ratios of values"));
   add(offer(add_value(command, "--show", words_.show,
                       "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
                       "path,labels,captions,legend,clock,scale (default skin,clock)",
@@ -47,7 +46,7 @@ void ViewOptions::add_to(CLI::App& command) {
                  "Leave out arrows below this share of the longest (default 0)", "X"));
   add(add_text(command, "--caption", words_.caption, "Text in the upper left corner; further lines are smaller",
                "TEXT"));
-  add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colours of the surroundings (default dark)"));
+  add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colors of the surroundings (default dark)"));
   add(command.add_flag("--plain", words_.plain, "A plain backdrop rather than water or land"));
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",

@@ -46,7 +46,7 @@ struct Range {
 
 render::Color color_of(const Material& material, const Range& frequencies, const Range& passive) {
   if (material.amplitude != 0) return render::muscle_color(material.phase, frequencies.share_of(material.frequency));
-  // From the softest passive material, coloured as tissue, to the stiffest, coloured as bone.
+  // From the softest passive material, colored as tissue, to the stiffest, colored as bone.
   return render::mix(render::tissue_color, render::bone_color, passive.share_of(material.stiffness));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a robot is drawn: its shape, and the colours of its materials.
+// How a robot is drawn: its shape, and the colors of its materials.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ class BodyShape {
 // diagonal of the voxel's side, which belongs only to that voxel. Air if no edge has a spring.
 std::vector<MaterialId> face_materials(const Robot& robot);
 
-// The colour of each material of a table, by id. `defaults`: it is the default table, where a pair of materials has a
-// blend of their two colours.
+// The color of each material of a table, by id. `defaults`: it is the default table, where a pair of materials has a
+// blend of their two colors.
 std::vector<render::Color> material_colors(std::span<const Material> materials, bool defaults);
 
 // Writes the activation of each material at a time: from -1, muscle longest, to +1, muscle shortest, relative to the

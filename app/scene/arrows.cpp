@@ -27,8 +27,7 @@ constexpr render::Color weak_color = render::rgb(0xdfe6e4);
 
 // Whether the arrow with this index is drawn: the same ones at any time, and more of them with a higher density.
 bool is_drawn(std::size_t index, float density) {
-  std::uint32_t x =
-      static_cast<std::uint32_t>(index) * 0x9e3779b9u;  // spreads neighbours (Knuth's multiplicative hash)
+  std::uint32_t x = static_cast<std::uint32_t>(index) * 0x9e3779b9u;  // spreads neighbors (Knuth's multiplicative hash)
   x ^= x >> 15;
   x *= 0x85ebca6bu;
   return static_cast<float>((x ^ (x >> 13)) >> 8) < density * static_cast<float>(1u << 24);
@@ -47,7 +46,7 @@ float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
   return *middle;
 }
 
-// Makes an arrow of the value `full` as long as `longest`, none longer than twice that, and colours them by their
+// Makes an arrow of the value `full` as long as `longest`, none longer than twice that, and colors them by their
 // values.
 void scale(std::vector<render::Arrow>& arrows, float full, float longest, float threshold) {
   if (!(full > 0)) return arrows.clear();

@@ -14,8 +14,8 @@ namespace mercury {
 // Which arrows are shown, and how.
 struct ArrowKinds {
   bool drag = false, lift = false;  // on each face
-  bool velocity = false;            // of each robot's centre of mass
-  bool gravity = false;             // at each robot's centre of mass
+  bool velocity = false;            // of each robot's center of mass
+  bool gravity = false;             // at each robot's center of mass
   bool contact = false;             // force of the floor on each mass
   float length = 1;                 // factor, 0.01 to 100
   float density = 1;                // share of the arrows of faces and contacts that is drawn, 0 to 1

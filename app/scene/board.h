@@ -22,7 +22,7 @@ struct BoardAxis {
 struct Board {
   Grid grid;
   std::vector<std::size_t> cell_of;          // one per robot, counted row by row from the upper left
-  std::vector<std::optional<float>> values;  // one per cell; they colour it through the legend's scale
+  std::vector<std::optional<float>> values;  // one per cell; they color it through the legend's scale
   render::Legend legend;
   BoardAxis across, upward;  // from the left, and from the lowest row
 };

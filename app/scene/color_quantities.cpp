@@ -75,7 +75,7 @@ constexpr std::array quantities{
     ColorQuantity{.key = "material",
                   .name = "Material",
                   .unit = "",
-                  .help = "each material's own colour; muscles glow as they contract"},
+                  .help = "each material's own color; muscles glow as they contract"},
     ColorQuantity{.key = "activation",
                   .name = "Activation",
                   .unit = "%",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quantities that robots can be coloured by. Each is described once, in the table of color_quantities.cpp; the
+// The quantities that robots can be colored by. Each is described once, in the table of color_quantities.cpp; the
 // command line, the window, the legend and the docs derive from it. A new quantity is one function and one entry there.
 #pragma once
 
@@ -28,7 +28,7 @@ struct RobotState {
   std::span<const MaterialId> face_materials;  // per face, see face_materials()
 };
 
-// A quantity has at least one of the three functions, except "material", which has none: its colours are those of the
+// A quantity has at least one of the three functions, except "material", which has none: its colors are those of the
 // materials themselves. Without `of_face` and `of_mass`, a mass takes the mean of its springs, and the skin takes the
 // values of its masses.
 struct ColorQuantity {
@@ -56,7 +56,7 @@ struct ColorQuantity {
 // program, and each is there once: compare them by address.
 std::span<const ColorQuantity> color_quantities();
 
-// The first of them: each material's own colour.
+// The first of them: each material's own color.
 inline const ColorQuantity& material_color() { return color_quantities().front(); }
 
 // Throws ParameterError("color", ...) that lists all keys.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scale of a colour quantity: which values the ends of the colour map stand for.
+// The scale of a color quantity: which values the ends of the color map stand for.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@ namespace mercury {
 // A scale that fits the values that are visible: from their 2nd to their 98th percentile, or for signed quantities as
 // far to both sides as the farther of the two. It grows at once and shrinks when no value of the last 2 pi seconds (the
 // period of the slowest muscle) needs it any more, so that it rests while robots repeat their motion. It depends on
-// simulated time alone: a film of the same recording has the same colours. A scale that the user gives stays as it is.
+// simulated time alone: a film of the same recording has the same colors. A scale that the user gives stays as it is.
 class ColorScale {
  public:
   explicit ColorScale(const ViewSettings& settings);

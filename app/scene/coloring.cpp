@@ -22,7 +22,7 @@ void average_to_masses(const Robot& robot, std::span<const float> spring, std::s
     if (counts[i] > 0) mass[i] /= static_cast<float>(counts[i]);
 }
 
-// Masses need the mean of their springs only where nothing else colours the skin.
+// Masses need the mean of their springs only where nothing else colors the skin.
 bool averages_springs(const ColorQuantity& quantity) {
   return quantity.of_spring && !quantity.of_mass && !quantity.of_face;
 }

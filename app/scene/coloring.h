@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values of a colour quantity for a whole group of robots.
+// The values of a color quantity for a whole group of robots.
 #pragma once
 
 #include <vector>

@@ -64,7 +64,7 @@ float extent_along(const render::Bounds& box, const Eigen::Vector3f& direction) 
 
 namespace {
 
-// The middles of strips with these widths, side by side and centred at 0.
+// The middles of strips with these widths, side by side and centered at 0.
 std::vector<float> middles_of(const std::vector<float>& widths) {
   std::vector<float> middles;
   float edge = -0.5f * std::accumulate(widths.begin(), widths.end(), 0.0f);

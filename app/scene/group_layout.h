@@ -17,7 +17,7 @@ namespace mercury {
 // The box around a robot at rest.
 render::Bounds rest_bounds(const Robot& robot);
 
-// The ball that a robot does not leave while it turns and bends about its centre of mass, at rest.
+// The ball that a robot does not leave while it turns and bends about its center of mass, at rest.
 struct Room {
   Eigen::Vector3f center{0, 0, 0};  // [m]
   float radius = 0;                 // [m]

@@ -2,7 +2,7 @@
 // Where the robots of a group are shown while they move.
 //
 //   grid    each robot travels through the picture as it travels through the world
-//   cells   its centre of mass stays in the middle of its cell; on land it keeps its height
+//   cells   its center of mass stays in the middle of its cell; on land it keeps its height
 //   race    it stays in its lane, as far from the start line as it is from its start, whichever way it went
 //
 // A robot that has exploded counts at the place where it was last.
@@ -37,7 +37,7 @@ class GroupMotion {
 
   // The offset of a robot that starts with `offset` and has come along `trail`.
   Eigen::Vector3f offset_of(const Eigen::Vector3f& offset, const Room& room, const Trail& trail) const;
-  // The offset of the ghost of a robot that is shown with `shown`; the ghost's centre of mass is at `ghost`. The two
+  // The offset of the ghost of a robot that is shown with `shown`; the ghost's center of mass is at `ghost`. The two
   // are as far apart as they are, in cells at most by the room's radius; in a race the ghost is in the same lane.
   Eigen::Vector3f ghost_offset(const Eigen::Vector3f& shown, const Room& room, const Trail& trail, Vec3 ghost) const;
   // How far the robot is from its start [m]; in a race, its place along its lane.

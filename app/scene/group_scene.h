@@ -68,7 +68,7 @@ class GroupScene {
 
   render::Scene& scene() { return scene_; }
 
-  // The box around each robot in the picture at the last update(), estimated from its centre of mass and its size at
+  // The box around each robot in the picture at the last update(), estimated from its center of mass and its size at
   // rest. Boxes of exploded robots are empty, unless all robots have exploded; then they are where the robots were
   // last.
   std::span<const render::Bounds> bounds() const { return bounds_; }
@@ -78,14 +78,14 @@ class GroupScene {
   std::span<const render::Bounds> last_boxes() const { return last_boxes_; }
   // What is added to each robot's own coordinates in the picture at the last update() [m].
   std::span<const Eigen::Vector3f> offsets() const { return shown_offsets_; }
-  // What is added to the coordinates of a robot's ghost, whose centre of mass is there.
+  // What is added to the coordinates of a robot's ghost, whose center of mass is there.
   Eigen::Vector3f ghost_offset(std::size_t robot, Vec3 center_of_mass) const {
     return motion_.ghost_offset(shown_offsets_[robot], rooms_[robot], trails_[robot], center_of_mass);
   }
 
  private:
   // The render materials of robots with the same materials. `own` are those of the robot's file, which give the
-  // colours; `materials` are those of the simulation now.
+  // colors; `materials` are those of the simulation now.
   struct Table {
     std::size_t first_material = 0;
     std::vector<Material> own, materials;
@@ -119,7 +119,7 @@ class GroupScene {
   std::vector<Table> tables_;
   std::vector<render::RenderMaterial> materials_;
   std::vector<render::Placement> placements_;
-  std::vector<render::Bounds> rest_;  // around the centre of mass, at rest
+  std::vector<render::Bounds> rest_;  // around the center of mass, at rest
   std::vector<Room> rooms_;
   std::vector<Eigen::Vector3f> offsets_, shown_offsets_;  // at the start, and now
   GroupMotion motion_;

@@ -14,10 +14,10 @@
 namespace mercury {
 namespace {
 
-std::string distance_text(float metres) {
-  if (metres < 0.01f) return fmt::format("{:.1f} mm", 1000 * metres);
-  if (metres < 1) return fmt::format("{:.1f} cm", 100 * metres);
-  return fmt::format("{:.2f} m", metres);
+std::string distance_text(float meters) {
+  if (meters < 0.01f) return fmt::format("{:.1f} mm", 1000 * meters);
+  if (meters < 1) return fmt::format("{:.1f} cm", 100 * meters);
+  return fmt::format("{:.2f} m", meters);
 }
 
 // In slow motion with enough digits that the last one changes visibly.

@@ -97,10 +97,10 @@ void Course::draw(std::span<const Lane> lanes, const Vector3f& along, float heig
   add(at(start, low), at(start, high), bright);
   add(at(start - 0.06f * line, low), at(start - 0.06f * line, high), bright);
   for (int mark = 0; mark <= count; ++mark) {
-    const float metres = line * static_cast<float>(mark);
-    if (mark > 0) add(at(start + metres, low), at(start + metres, high), faint);
-    numbers_.push_back({.at = at(start + metres, low - 0.02f * (high - low)),
-                        .text = mark == 0 ? "start" : fmt::format("{:g} m", metres),
+    const float meters = line * static_cast<float>(mark);
+    if (mark > 0) add(at(start + meters, low), at(start + meters, high), faint);
+    numbers_.push_back({.at = at(start + meters, low - 0.02f * (high - low)),
+                        .text = mark == 0 ? "start" : fmt::format("{:g} m", meters),
                         .align_x = 0.5f,
                         .align_y = 0,
                         .size = 0.9f});

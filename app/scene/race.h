@@ -44,7 +44,7 @@ class MarkTimes {
   std::vector<std::vector<double>> times_;  // [robot][mark - 1]
 };
 
-// How many marks apart lines are drawn, so that there are at most ten on `length` metres: their distance is 1, 2 or 5
+// How many marks apart lines are drawn, so that there are at most ten on `length` meters: their distance is 1, 2 or 5
 // times a power of ten.
 std::size_t marks_per_line(float distance, float length);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene shows besides the robots' shapes: values to colour by, and arrows.
+// What a scene shows besides the robots' shapes: values to color by, and arrows.
 #pragma once
 
 #include <optional>
@@ -19,14 +19,14 @@ struct SceneDetails {
   std::string arrow_key;  // what their lengths mean
 };
 
-// The settings without what the environment does not have: its colour quantity becomes the material, its arrows go.
+// The settings without what the environment does not have: its color quantity becomes the material, its arrows go.
 ViewSettings known_in(const ViewSettings& settings, const Environment& environment);
 
 // Computes them on the simulating thread, so that this overlaps with drawing. Does not read positions and velocities
 // when only shapes are shown.
 class DetailObserver {
  public:
-  // Throws InputError when the environment does not have a colour quantity or kind of arrow.
+  // Throws InputError when the environment does not have a color quantity or kind of arrow.
   DetailObserver(const Simulation& simulation, const ViewSettings& settings);
   SceneDetails observe(std::span<const Telemetry> telemetry);
   // The quantity whose values observe() returns.

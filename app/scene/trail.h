@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path of a robot's centre of mass, and the part of it that a picture shows.
+// The path of a robot's center of mass, and the part of it that a picture shows.
 #pragma once
 
 #include <cstddef>

@@ -19,10 +19,10 @@ namespace mercury {
 
 struct Shown {
   bool skin = true, springs = false, masses = false;
-  bool path = false;      // of each centre of mass
+  bool path = false;      // of each center of mass
   bool labels = false;    // name, distance and rank at each robot
   bool captions = false;  // name at each robot
-  bool legend = false;    // of the colours
+  bool legend = false;    // of the colors
   bool clock = true;
   bool scale_bar = false;
   ArrowKinds arrows;
@@ -30,7 +30,7 @@ struct Shown {
 
 struct ViewSettings {
   const ColorQuantity* color = &material_color();
-  std::optional<std::pair<float, float>> scale;  // of the colours; absent = fits what is visible (ColorScale)
+  std::optional<std::pair<float, float>> scale;  // of the colors; absent = fits what is visible (ColorScale)
   std::optional<render::Colormap> colormap;      // absent = that of the quantity
   bool log_scale = false;
   Shown shown;

@@ -48,7 +48,7 @@ render::Cut cut_from(const std::string& text) {
   static constexpr std::string_view axes = "xyz";
   const auto refuse = [&] {
     throw ParameterError("cut", fmt::format("\"{}\" is not accepted; give x, y, z, -x, -y or -z, and a place: y:30% of "
-                                            "each robot (0 to 100), or y:0.2 in metres from its middle",
+                                            "each robot (0 to 100), or y:0.2 in meters from its middle",
                                             text));
   };
   const std::size_t colon = text.find(':');

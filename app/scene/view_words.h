@@ -12,7 +12,7 @@ namespace mercury {
 
 struct ViewWords {
   std::string color{material_color().key};       // key of a quantity: "strain"
-  std::optional<std::pair<float, float>> scale;  // ends of the colours' scale; absent = fits
+  std::optional<std::pair<float, float>> scale;  // ends of the colors' scale; absent = fits
   std::string colormap;                          // "magma"; empty = that of the quantity
   bool log_scale = false;                        // equal ratios are equally far apart
   std::optional<std::string> show;               // exactly what is shown: "skin,labels"; absent = the usual

@@ -43,7 +43,7 @@ class GroupDrawing {
   // Draws it. `bridge`: that of take(). `elapsed`: since the previous picture, for the camera [s of video].
   void draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed);
 
-  // draw() in parts, for groups that share a camera and a scale of colours. show() makes it the picture that is drawn.
+  // draw() in parts, for groups that share a camera and a scale of colors. show() makes it the picture that is drawn.
   void show(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer);
   const render::Scene& scene() { return scene_.scene(); }
   std::span<const render::Bounds> camera_boxes() const { return scene_.camera_boxes(); }
@@ -51,7 +51,7 @@ class GroupDrawing {
   render::Camera camera(std::span<const render::Bounds> boxes, double elapsed) { return camera_.at(boxes, elapsed); }
   // What is shown from the next show() on.
   void set_shown(const Shown& shown);
-  // Takes the ends of the scale that another group with the same colours had in its last show().
+  // Takes the ends of the scale that another group with the same colors had in its last show().
   void share_scale(GroupDrawing& other);
 
  private:

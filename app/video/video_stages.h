@@ -65,7 +65,7 @@ struct VideoSide {
 
 // What the stages work with; the caller owns all of it.
 struct VideoParts {
-  // From left to right, of one height. They show the same times with the camera and the colours' scale of the first.
+  // From left to right, of one height. They show the same times with the camera and the colors' scale of the first.
   std::vector<VideoSide> sides;
   FrameWriter& writer;
   render::PixelFormat pixels;

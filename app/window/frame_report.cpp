@@ -16,7 +16,7 @@ namespace {
 constexpr double interval = 0.2;        // between frames that are written [s]
 constexpr std::size_t max_robots = 20;  // whose positions are written
 
-// The centres of the robots, in window coordinates.
+// The centers of the robots, in window coordinates.
 std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& picture) {
   const ViewportArea& area = picture.area;
   std::vector<std::array<float, 2>> places;

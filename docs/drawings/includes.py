@@ -5,7 +5,7 @@ date, and fails for an arrow that would not point down."""
 import sys
 from pathlib import Path
 
-from svg import CORAL, GOLD, GREY, INK, PALE, TEAL, VIOLET, WATER, Drawing
+from svg import CORAL, GOLD, GRAY, INK, PALE, TEAL, VIOLET, WATER, Drawing
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/house"))
@@ -103,7 +103,7 @@ def drawing(root=ROOT):
             (330, 0, 630, 8, "app/"), (24, 6, 296, 4, "sim/"), (24, 8, 400, 2, ""), (470, 8, 340, 2, "robots/")]:
         top = top_of_row(row) - 32
         d.box((x, top), (width, top_of_row(row + rows - 1) + HEIGHT + 14 - top), PALE, "none", 12, 0)
-        d.text((x + 14, top + 21), name, 15, GREY, anchor="start", bold=True)
+        d.text((x + 14, top + 21), name, 15, GRAY, anchor="start", bold=True)
     d.text((30, 58), "Who includes whom", 22, INK, anchor="start", bold=True)
     d.lines((30, 92), ["An arrow points to the folder that is included.", "All arrows point down, so there is no cycle.",
                        "", "A folder may also include what lies further", "down along its arrows.", "",

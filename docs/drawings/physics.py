@@ -4,7 +4,7 @@
 import itertools
 import math
 
-from svg import CORAL, GOLD, GREY, INK, PALE, TEAL, VIOLET, WATER, Drawing
+from svg import CORAL, GOLD, GRAY, INK, PALE, TEAL, VIOLET, WATER, Drawing
 
 
 def muscle():
@@ -20,13 +20,13 @@ def muscle():
     d.arrow((102, 110), (152, 110), TEAL)
     d.arrow((298, 110), (248, 110), TEAL)
     d.text((200, 80), "*F = k* (|d| - *L*)", color=TEAL)
-    d.text((200, 205), "stretched beyond its rest length, a spring pulls", 14, GREY)
-    d.text((200, 225), "pressed below it, it pushes", 14, GREY)
+    d.text((200, 205), "stretched beyond its rest length, a spring pulls", 14, GRAY)
+    d.text((200, 225), "pressed below it, it pushes", 14, GRAY)
 
     left, right, middle, swing = 470, 820, 118, 55
     d.arrow((left, 215), (left, 40), INK, 1.4)
     d.arrow((left, 215), (right + 15, 215), INK, 1.4)
-    d.line((left, middle), (right, middle), GREY, 1.2, "4 5")
+    d.line((left, middle), (right, middle), GRAY, 1.2, "4 5")
     curve = [(left + x, middle - swing * math.sin(2 * math.pi * x / 210 + 0.7)) for x in range(0, right - left, 3)]
     d.path(curve, CORAL, 2.6)
     d.text((left - 14, 46), "*L*")
@@ -36,8 +36,8 @@ def muscle():
     d.dimension((top + 105, middle), (top + 105, middle + swing), "")
     d.text((top + 105, middle + swing + 20), "*L*_0 Δ*L*_0", size=14)
     second = top + 210
-    d.line((top, middle - swing - 6), (top, 42), GREY, 1, "2 4")
-    d.line((second, middle - swing - 6), (second, 42), GREY, 1, "2 4")
+    d.line((top, middle - swing - 6), (top, 42), GRAY, 1, "2 4")
+    d.line((second, middle - swing - 6), (second, 42), GRAY, 1, "2 4")
     d.dimension((top, 48), (second, 48), "2π / ω", offset=-8)
     d.text((645, 256), "*L*(*t*) = *L*_0 (1 + Δ*L*_0 sin(ω*t* + φ))", 16, CORAL)
     return d
@@ -60,8 +60,8 @@ def face():
     normal, flow = (0.86, -0.51), (0.99, 0.13)
     d.arrow((center[0] - 120 * flow[0], center[1] - 120 * flow[1]), center, WATER, 2.4)
     d.text((160, 172), "*u*", 17, WATER)
-    d.arrow(center, (center[0] + 95 * normal[0], center[1] + 95 * normal[1]), GREY, 2)
-    d.text((center[0] + 84 * normal[0] - 10, center[1] + 88 * normal[1] - 12), "*n*", 17, GREY)
+    d.arrow(center, (center[0] + 95 * normal[0], center[1] + 95 * normal[1]), GRAY, 2)
+    d.text((center[0] + 84 * normal[0] - 10, center[1] + 88 * normal[1] - 12), "*n*", 17, GRAY)
     drag = (center[0] + 150 * flow[0], center[1] + 150 * flow[1])
     d.arrow(center, drag, TEAL, 2.4)
     d.text((drag[0] + 4, drag[1] + 22), "drag", 14, TEAL)
@@ -74,9 +74,9 @@ def face():
     x = 500
     d.lines((x, 90), ["*u* = flow - (*v_a* + *v_b* + *v_c*) / 3", "*A* *n* = (*x_b* - *x_a*) × (*x_c* - *x_a*) / 2"], 16, 30,
             anchor="start")
-    d.text((x, 160), "*n* points to the side by which the water leaves: *n* · *u* ≥ 0", 14, GREY, anchor="start")
+    d.text((x, 160), "*n* points to the side by which the water leaves: *n* · *u* ≥ 0", 14, GRAY, anchor="start")
     d.text((x, 205), "*F* = ½ρ*A* ((C_D - C_L)(*u*·*n*) *u* + C_L|*u*|^2 *n*)", 16, CORAL, anchor="start")
-    d.text((x, 235), "a third of *F* acts on each of the three masses", 14, GREY, anchor="start")
+    d.text((x, 235), "a third of *F* acts on each of the three masses", 14, GRAY, anchor="start")
     d.text((x, 275), "*F* · *u* ≥ 0: drag never adds energy", 14, TEAL, anchor="start")
     return d
 
@@ -123,9 +123,9 @@ def lattice():
         d.mass(project(*p, origin, scale), 6)
     shared = project(1, 0, 1, origin, scale)
     d.mass(shared, 9, CORAL)
-    d.text((680, 312), "neighbours share masses; a spring between two", 14)
+    d.text((680, 312), "neighbors share masses; a spring between two", 14)
     d.text((680, 331), "base materials takes their pair material", 14)
-    d.text((origin[0] + 2.52 * scale, origin[1] - 1.72 * scale), "air", 14, GREY)
+    d.text((origin[0] + 2.52 * scale, origin[1] - 1.72 * scale), "air", 14, GRAY)
     return d
 
 
@@ -134,11 +134,11 @@ def xpbd():
     d = Drawing(860, 300)
     a, b = (80, 150), (250, 115)
     pa, pb = (150, 215), (440, 150)
-    d.spring(a, b, GREY, size=6, width=1.4)
-    d.mass(a, 8, GREY)
-    d.mass(b, 8, GREY)
-    d.text((70, 130), "*x_a*", color=GREY)
-    d.text((250, 97), "*x_b*", color=GREY)
+    d.spring(a, b, GRAY, size=6, width=1.4)
+    d.mass(a, 8, GRAY)
+    d.mass(b, 8, GRAY)
+    d.text((70, 130), "*x_a*", color=GRAY)
+    d.text((250, 97), "*x_b*", color=GRAY)
     d.arrow((84, 158), (144, 208), WATER, 1.8, "5 4")
     d.arrow((262, 117), (428, 147), WATER, 1.8, "5 4")
     d.text((370, 100), "predict: *p* = *x* + *dt v* + *dt*^2 *F*", 14, WATER)
@@ -157,7 +157,7 @@ def xpbd():
     d.text((x, 130), "λ = *C* / (*s_a* + *s_b* + 1 / (*k dt*^2))", 16, TEAL, anchor="start")
     d.lines((x, 170), ["Every spring reads the same prediction *p* (Jacobi)", "and adds its correction to a sum. *s* is the valence",
                        "of a mass, the number of springs at it: each spring",
-                       "moves only its share, so that the sum of all", "corrections never overshoots."], 14, 21, color=GREY, anchor="start")
+                       "moves only its share, so that the sum of all", "corrections never overshoots."], 14, 21, color=GRAY, anchor="start")
     return d
 
 
@@ -169,11 +169,11 @@ def floor():
     d.line((40, ground), (460, ground), INK, 2)
     d.text((70, ground - 10), "*z* = 0", 14)
     start, end = (130, 70), (370, 205)
-    d.arrow(start, end, GREY, 1.8, "5 4")
+    d.arrow(start, end, GRAY, 1.8, "5 4")
     d.mass(start, 8)
-    d.mass(end, 8, GREY)
+    d.mass(end, 8, GRAY)
     d.text((130, 52), "*x*")
-    d.text((354, 214), "without the floor", 13, GREY, anchor="end")
+    d.text((354, 214), "without the floor", 13, GRAY, anchor="end")
     put, held = (370, ground), (328, ground)
     d.arrow(end, (370, ground + 10), WATER, 2.4)
     d.text((380, 182), "depth", 14, WATER, anchor="start")
@@ -199,10 +199,10 @@ def step():
         d.text((x + 71, 66), name, 16, color, bold=True)
         d.lines((x + 71, 91), lines, 14)
         if i:
-            d.arrow((x - 23, 85), (x - 3, 85), GREY, 2)
-    d.path([(764, 132), (764, 160), (96, 160), (96, 146)], GREY, 2)
-    d.arrow((96, 150), (96, 133), GREY, 2)
-    d.text((430, 178), "next step, many per launch; the masses stay on the chip", 14, GREY)
+            d.arrow((x - 23, 85), (x - 3, 85), GRAY, 2)
+    d.path([(764, 132), (764, 160), (96, 160), (96, 146)], GRAY, 2)
+    d.arrow((96, 150), (96, 133), GRAY, 2)
+    d.text((430, 178), "next step, many per launch; the masses stay on the chip", 14, GRAY)
     return d
 
 

@@ -3,7 +3,7 @@
 
 import math
 
-INK, GREY, PALE = "#22313f", "#8795a1", "#e9eef2"
+INK, GRAY, PALE = "#22313f", "#8795a1", "#e9eef2"
 WATER, CORAL, GOLD, TEAL, VIOLET = "#2b7fb9", "#d9532c", "#d9962b", "#14897e", "#7457a6"
 FONT = "Lato, 'Helvetica Neue', Helvetica, Arial, sans-serif"
 
@@ -28,7 +28,7 @@ class Drawing:
     def arrow(self, a, b, color=INK, width=2.2, dash=""):
         self.line(a, b, color, width, dash, arrow=True)
 
-    def dimension(self, a, b, text, offset=0, color=GREY):
+    def dimension(self, a, b, text, offset=0, color=GRAY):
         """A double-headed arrow from a to b, its text beside the middle."""
         middle = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
         self.arrow(middle, a, color, 1.3)

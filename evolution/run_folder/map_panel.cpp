@@ -16,7 +16,7 @@ namespace {
 constexpr double empty = -std::numeric_limits<double>::infinity();
 constexpr std::string_view empty_color = "#f1f2f4";
 
-// Viridis (van der Walt and Smith), at equal distances: even in brightness, also for people who are colour-blind.
+// Viridis (van der Walt and Smith), at equal distances: even in brightness, also for people who are color-blind.
 constexpr std::array<std::array<int, 3>, 9> viridis{{{68, 1, 84},
                                                      {71, 44, 122},
                                                      {59, 81, 139},

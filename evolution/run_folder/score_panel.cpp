@@ -11,7 +11,7 @@
 namespace mercury {
 namespace {
 
-// Okabe and Ito's colours, which people with any color vision can distinguish.
+// Okabe and Ito's colors, which people with any color vision can distinguish.
 constexpr std::string_view best_color = "#d55e00", median_color = "#0072b2", half_color = "#56b4e9";
 constexpr std::size_t most_points = 700;  // of a line
 

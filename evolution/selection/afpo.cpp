@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Age-fitness Pareto optimisation (Schmidt and Lipson 2011, "Age-Fitness Pareto Optimization", section 2.3). An
+// Age-fitness Pareto optimization (Schmidt and Lipson 2011, "Age-Fitness Pareto Optimization", section 2.3). An
 // individual's age is the number of generations since its oldest ancestor was drawn. Each generation has one new random
 // individual of age 0; individuals that are dominated in (age, score) go, so young lines compete with each other and
 // not with old ones that had more time.
@@ -69,7 +69,7 @@ class AgeFitnessPareto : public Algorithm {
 AlgorithmDescription afpo() {
   return {.name = "afpo",
           .help =
-              "age-fitness Pareto optimisation: young lines compete with young ones; one new random robot per "
+              "age-fitness Pareto optimization: young lines compete with young ones; one new random robot per "
               "generation",
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<AgeFitnessPareto>(settings);

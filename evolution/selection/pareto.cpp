@@ -31,7 +31,7 @@ bool front_dominates(const Points& points, std::span<const std::size_t> front, s
                      [&](std::size_t member) { return dominates(points[member], points[point]); });
 }
 
-// Difference of neighbours as a share of the range.
+// Difference of neighbors as a share of the range.
 double gap(double low, double high, double range) {
   if (low == high) return 0;
   if (!std::isfinite(low) || !std::isfinite(high)) return infinite;

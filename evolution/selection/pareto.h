@@ -28,7 +28,7 @@ bool dominates(std::span<const double> a, std::span<const double> b);
 std::vector<std::vector<std::size_t>> fronts_of(const Points& points);
 
 // Crowding distance of each member of a front (Deb et al. 2002, III.B): the sum over the dimensions of the difference
-// between its two neighbours, divided by the range of the front. Members at either end of a dimension have an infinite
+// between its two neighbors, divided by the range of the front. Members at either end of a dimension have an infinite
 // one; of equal values at an end, it is that of the lowest index at the low end and of the highest at the high end.
 // Infinite values have no influence on the range.
 std::vector<double> crowding_distances(const Points& points, std::span<const std::size_t> front);

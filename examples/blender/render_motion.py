@@ -100,7 +100,7 @@ def add_ramp(nodes, factor, stops):
 
 
 def add_water(scene):
-    """The colour of the water by the height in the picture, and light from all around."""
+    """The color of the water by the height in the picture, and light from all around."""
     world = scene.world = bpy.data.worlds.new("Water")
     world.use_nodes = True
     nodes = Nodes(world.node_tree)

@@ -27,8 +27,8 @@ _cpp: Any = _mercury  # has functions for this file alone, which its stubs leave
 class Look(TypedDict, total=False):
     """How a picture shows robots: the options of `mercury render`, all of them optional."""
 
-    color: str  # colour by "material", "activation", "strain", "force", "speed", "pressure", "energy", ...
-    scale: tuple[float, float]  # ends of the colours' scale; else it fits
+    color: str  # color by "material", "activation", "strain", "force", "speed", "pressure", "energy", ...
+    scale: tuple[float, float]  # ends of the colors' scale; else it fits
     colormap: str  # "viridis", "magma", "cividis", "turbo" or "diverging"; else that of the quantity
     log_scale: bool  # equal ratios of values are equally far apart
     show: str | Sequence[str]  # exactly what is shown: "skin,springs,labels,path,legend,clock,scale,velocity,..."

@@ -187,7 +187,7 @@ def test_markers_are_spread_over_the_body():
     env = SwimEnv(EEL, 1, markers=8)
     chosen = EEL.masses[env._bodies.marker_index[0]].astype(float)
     distances = np.linalg.norm(chosen[:, None] - chosen, axis=2) + np.eye(8)
-    assert distances.min() > 0.15  # closer neighbours are 0.1 m apart
+    assert distances.min() > 0.15  # closer neighbors are 0.1 m apart
     assert (np.diff(chosen[:, 0]) >= 0).all()
     to_nearest = np.linalg.norm(EEL.masses[:, None] - chosen, axis=2).min(axis=1)
     assert to_nearest.max() <= distances.min() + 1e-6  # as farthest-point sampling promises

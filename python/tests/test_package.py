@@ -68,7 +68,7 @@ robots: list[mercurysim.Robot] = mercurysim.random_voxel(4, seed=1, voxels=(4, 3
 ocean = mercurysim.Ocean(density=900, flow=(1, 0, 0), gravity=9.81).replace(density=1000)
 density: float = ocean.density
 robot = mercurysim.Robot(np.zeros((2, 3)), [[0, 1, 1, 0.1]], name="pair", actuators={"muscle": [0]})
-centre: float = float(robot.masses.mean())
+center: float = float(robot.masses.mean())
 names: list[str] = list(robot.actuators)
 child: mercurysim.Robot = robots[0].cross(robots[1], seed=2).mutate(muscles=0.5)
 child.save("child.json")

@@ -42,7 +42,7 @@ void require_range(const Calibration& calibration, double stiffness) {
     require(fits(value), "gravity, damping and drag", "give numbers that are too large to simulate");
 }
 
-// The highest frequency of an endless lattice, at which neighbouring layers move against each other: every mass has 4
+// The highest frequency of an endless lattice, at which neighboring layers move against each other: every mass has 4
 // springs per edge, 8 per face diagonal and 16/3 per space diagonal along that motion [1/s].
 double highest_frequency(double stiffness) { return std::sqrt(52.0 / 3 * stiffness); }
 

@@ -32,7 +32,7 @@ struct BeamModel {
 };
 
 struct Calibration {
-  double length_scale = 1;           // metres here per metre there
+  double length_scale = 1;           // meters here per meter there
   double time_scale = 1;             // seconds here per second there; frequencies [rad/s] are divided by it
   double stiffness_per_modulus = 0;  // of a spring, per elastic modulus [N/m per Pa]
   double gravity = 0;                // downwards [m/s2]

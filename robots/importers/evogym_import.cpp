@@ -51,7 +51,7 @@ struct Object {
   VoxelBody body;  // cells are types
   int x = 0, z = 0;
   std::array<std::size_t, type_count> count{};
-  std::size_t gaps = 0;  // neighbours that are not connected
+  std::size_t gaps = 0;  // neighbors that are not connected
   bool is_robot() const { return count[horizontal] + count[vertical] > 0; }
   bool is_held() const { return !is_robot() && count[fixed] > 0; }
 };
@@ -180,7 +180,7 @@ class EvogymImport {
     return found != voxels.end() && found->second != empty;
   }
 
-  // Whether either names the other as its neighbour. Without the list all are connected.
+  // Whether either names the other as its neighbor. Without the list all are connected.
   static bool is_connected(const Json& data, std::int64_t a, std::int64_t b) {
     const auto neighbors = data.find("neighbors");
     if (neighbors == data.end() || !neighbors->is_object()) return true;
@@ -224,8 +224,8 @@ class EvogymImport {
             : object.gaps > 0  ? approximated
                                : mapped,
             outcome == ignored ? became
-            : object.gaps > 0  ? fmt::format("{} pairs of neighbours that are apart there are joined here", object.gaps)
-                               : "all neighbours are joined");
+            : object.gaps > 0  ? fmt::format("{} pairs of neighbors that are apart there are joined here", object.gaps)
+                               : "all neighbors are joined");
       else if (key != "indices" && key != "types")
         add(place + "/" + key, value, ignored, "unknown");
     }

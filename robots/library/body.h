@@ -20,7 +20,7 @@ class Body {
   int nz() const { return grid_.nz; }
 
   // The id of a muscle; equal muscles get the same id. Do not reduce phases modulo 2 pi: springs between two voxels
-  // have the mean of both phases, which is right only if neighbours count the same turns. A negative amplitude makes an
+  // have the mean of both phases, which is right only if neighbors count the same turns. A negative amplitude makes an
   // antagonist; where a muscle and its antagonist meet, springs keep their length. Throws std::logic_error beyond 20.
   MaterialId muscle(const Material& kind);
   // Changes the stiffness of tissue and bone [N/m].

@@ -77,7 +77,7 @@ class BlockRobot {
            std::size_t{context_.robot} * arguments_.batch.row_stride * lanes;
   }
 
-  // Units of fixed point per newton, or per metre of correction: a power of two. Rest lengths and the 1 of the
+  // Units of fixed point per newton, or per meter of correction: a power of two. Rest lengths and the 1 of the
   // constraint ratio are multiplied by it instead of the stiffnesses, so that robots can share a material table.
   __device__ float scale() const { return solver == Solver::force ? header_.force_scale : header_.correction_scale; }
 

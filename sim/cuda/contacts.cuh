@@ -45,8 +45,8 @@ __device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets
                               Vec3 x, const Position& position, const Visit& visit) {
   const float radius = list_radius * distance, inverse_size = 1 / radius;
   const Cell cell = cell_of(x, inverse_size);
-  for (int n = 0; n < half_neighbourhood; ++n) {
-    const Cell other = neighbour_cell(cell, n);
+  for (int n = 0; n < half_neighborhood; ++n) {
+    const Cell other = neighbor_cell(cell, n);
     for (std::uint32_t j = memory.heads[bucket_of(other, buckets - 1)]; j != end_of_list; j = memory.links[j]) {
       if (n == 0 && j <= i) continue;
       const Vec3 xj = position(j);
@@ -63,7 +63,7 @@ class ContactPass {
   // Makes the list of near pairs. All threads of the block must call it, since it has barriers.
   __device__ void make_list(const Robot& robot) {
     const ContactMemory memory = contact_memory(robot);
-    travelled_ = 0;
+    traveled_ = 0;
     for (std::uint32_t b = robot.thread(); b < buckets(robot); b += robot.threads()) memory.heads[b] = end_of_list;
     if (robot.thread() == 0) *memory.count = 0;
     __syncthreads();
@@ -86,11 +86,11 @@ class ContactPass {
   }
 
   // No mass of this thread moved farther than this in a step [m].
-  __device__ void moved(float farthest) { travelled_ += farthest; }
+  __device__ void moved(float farthest) { traveled_ += farthest; }
   // Whether the list must be made again before the next step.
   __device__ bool stale(const Robot& robot) const {
     return collides(robot) &&
-           (travelled_ > list_reach * robot.header().contact_distance || contact_memory(robot).overflows());
+           (traveled_ > list_reach * robot.header().contact_distance || contact_memory(robot).overflows());
   }
 
   // Adds the forces of all pairs that touch.
@@ -157,7 +157,7 @@ class ContactPass {
   }
 
   char* const memory_;
-  float travelled_ = 0;  // upper bound for this thread's masses since the list was made [m]
+  float traveled_ = 0;  // upper bound for this thread's masses since the list was made [m]
 };
 
 }  // namespace mercury::cuda

@@ -14,7 +14,7 @@ void for_each_bit(std::uint32_t bits, Visit visit) {
 }
 
 // Finds partners for the padding of a row, in the banks that the row leaves free. There are as many of these banks as
-// there are padding entries. The owner itself comes first, then its neighbours, then masses near it in the file.
+// there are padding entries. The owner itself comes first, then its neighbors, then masses near it in the file.
 class PaddingPartners {
  public:
   PaddingPartners(const OwnedSprings& owned, std::size_t masses, std::uint32_t tile)
@@ -34,7 +34,7 @@ class PaddingPartners {
     for_each_bit(own, [&](std::uint32_t lane) { row[lane].partner = static_cast<std::uint16_t>(first_ + lane); });
     std::uint32_t left = 0;
     for_each_bit(unused_lanes & ~own & lanes_with_mass_, [&](std::uint32_t lane) {
-      row[lane].partner = neighbour_of(lane);
+      row[lane].partner = neighbor_of(lane);
       if (row[lane].partner == first_ + lane) left |= 1u << lane;
     });
     for_each_bit(left, [&](std::uint32_t lane) { row[lane].partner = any(lane); });
@@ -44,14 +44,14 @@ class PaddingPartners {
   }
 
  private:
-  // Returns the owner itself if no neighbour has a free bank.
-  std::uint16_t neighbour_of(std::uint32_t lane) {
+  // Returns the owner itself if no neighbor has a free bank.
+  std::uint16_t neighbor_of(std::uint32_t lane) {
     const std::uint32_t owner = first_ + lane;
     for (const std::uint32_t i : owned_.springs_at(owner)) {
       const OwnedSpring s = owned_.springs[i];
-      const std::uint32_t neighbour = s.owner ^ s.partner ^ owner;  // the end that is not the owner
-      if (free_banks_ >> neighbour % lanes & 1)
-        return take_slot(neighbour - neighbour % lanes, 1u << neighbour % lanes, lane);
+      const std::uint32_t neighbor = s.owner ^ s.partner ^ owner;  // the end that is not the owner
+      if (free_banks_ >> neighbor % lanes & 1)
+        return take_slot(neighbor - neighbor % lanes, 1u << neighbor % lanes, lane);
     }
     return static_cast<std::uint16_t>(owner);
   }
@@ -84,7 +84,7 @@ Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs) 
   Schedule schedule;
   schedule.row_start.push_back(0);
   for (const std::uint32_t rows : owned.rows) schedule.row_start.push_back(schedule.row_start.back() + rows);
-  schedule.entries = colour_springs(owned.springs, schedule.row_start);
+  schedule.entries = color_springs(owned.springs, schedule.row_start);
   for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile) {
     PaddingPartners partners(owned, masses, tile);
     for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row)

@@ -12,8 +12,8 @@
 //
 // 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row
 //    share a bank. The owners of a row stand in the 32 lanes of one tile, so they never do.
-// 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colours of an edge
-//    colouring (edge_colouring.h), which needs as many as the busiest lane or bank has springs. Owners are chosen to
+// 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colors of an edge
+//    coloring (edge_coloring.h), which needs as many as the busiest lane or bank has springs. Owners are chosen to
 //    keep that number small (spring_owners.h).
 // 3. A lane's own mass stays in registers for all its rows. Only the partner's position and sum go through shared
 //    memory.
@@ -25,7 +25,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/cuda/edge_colouring.h"
+#include "sim/cuda/edge_coloring.h"
 
 namespace mercury::cuda {
 

@@ -41,7 +41,7 @@ class SlotSearch {
       : masses_(static_cast<std::uint32_t>(robot.masses.size())), tiles_(tiles_for(masses_)) {
     count_springs(robot);
     sort_by_valence();
-    list_neighbours(robot);
+    list_neighbors(robot);
     count_corners(pairs);
     place_tiles();
     choose_lanes();
@@ -50,13 +50,13 @@ class SlotSearch {
   SlotOrder take() { return {std::move(slots_)}; }
 
  private:
-  std::uint32_t valence(std::uint32_t mass) const { return first_neighbour_[mass + 1] - first_neighbour_[mass]; }
+  std::uint32_t valence(std::uint32_t mass) const { return first_neighbor_[mass + 1] - first_neighbor_[mass]; }
 
   void count_springs(const Robot& robot) {
-    first_neighbour_.assign(masses_ + 1, 0);
-    for (const Spring& s : robot.springs) ++first_neighbour_[s.a], ++first_neighbour_[s.b];
+    first_neighbor_.assign(masses_ + 1, 0);
+    for (const Spring& s : robot.springs) ++first_neighbor_[s.a], ++first_neighbor_[s.b];
     std::uint32_t count = 0;
-    for (std::uint32_t& first : first_neighbour_) first = std::exchange(count, count + first);
+    for (std::uint32_t& first : first_neighbor_) first = std::exchange(count, count + first);
   }
 
   // By counting. Until then tiles are numbered by descending valence.
@@ -76,12 +76,12 @@ class SlotSearch {
     }
   }
 
-  void list_neighbours(const Robot& robot) {
-    neighbour_tiles_.resize(first_neighbour_.back());
-    std::vector<std::uint32_t> next(first_neighbour_.begin(), first_neighbour_.end() - 1);
+  void list_neighbors(const Robot& robot) {
+    neighbor_tiles_.resize(first_neighbor_.back());
+    std::vector<std::uint32_t> next(first_neighbor_.begin(), first_neighbor_.end() - 1);
     for (const Spring& s : robot.springs) {
-      neighbour_tiles_[next[s.a]++] = tile_[s.b];
-      neighbour_tiles_[next[s.b]++] = tile_[s.a];
+      neighbor_tiles_[next[s.a]++] = tile_[s.b];
+      neighbor_tiles_[next[s.b]++] = tile_[s.a];
     }
   }
 
@@ -116,8 +116,8 @@ class SlotSearch {
 
   std::uint32_t best_lane(std::uint32_t mass, std::uint32_t free) const {
     PerBank uses;
-    for (std::uint32_t k = first_neighbour_[mass]; k < first_neighbour_[mass + 1]; ++k)
-      uses.add(used_[neighbour_tiles_[k]]);
+    for (std::uint32_t k = first_neighbor_[mass]; k < first_neighbor_[mass + 1]; ++k)
+      uses.add(used_[neighbor_tiles_[k]]);
     uses.add(used_by_shared_, corners_[mass].shared);
     uses.add(used_by_outer_, corners_[mass].outer);
     std::uint32_t best = ~0u;
@@ -128,8 +128,8 @@ class SlotSearch {
 
   void take_bank(std::uint32_t mass, std::uint32_t bank) {
     const PerBank unit = units_[bank];
-    for (std::uint32_t k = first_neighbour_[mass]; k < first_neighbour_[mass + 1]; ++k)
-      used_[neighbour_tiles_[k]].add(unit);
+    for (std::uint32_t k = first_neighbor_[mass]; k < first_neighbor_[mass + 1]; ++k)
+      used_[neighbor_tiles_[k]].add(unit);
     used_by_shared_.add(unit, corners_[mass].shared);
     used_by_outer_.add(unit, corners_[mass].outer);
   }
@@ -139,12 +139,12 @@ class SlotSearch {
   };
 
   std::uint32_t masses_, tiles_;
-  std::vector<std::uint32_t> first_neighbour_;  // [mass]
-  std::vector<std::uint16_t> sorted_;           // masses by descending valence
-  std::vector<std::uint16_t> tile_;             // [mass]
-  std::vector<std::uint16_t> neighbour_tiles_;  // those of mass m at [first_neighbour_[m], first_neighbour_[m + 1])
-  std::vector<Corners> corners_;                // [mass]
-  std::vector<std::uint32_t> position_;         // [tile]
+  std::vector<std::uint32_t> first_neighbor_;  // [mass]
+  std::vector<std::uint16_t> sorted_;          // masses by descending valence
+  std::vector<std::uint16_t> tile_;            // [mass]
+  std::vector<std::uint16_t> neighbor_tiles_;  // those of mass m at [first_neighbor_[m], first_neighbor_[m + 1])
+  std::vector<Corners> corners_;               // [mass]
+  std::vector<std::uint32_t> position_;        // [tile]
   const std::array<PerBank, lanes> units_ = unit_vectors();
   std::vector<PerBank> used_;                   // [tile] by its springs, those within it twice
   PerBank used_by_shared_{}, used_by_outer_{};  // by corners

@@ -10,7 +10,7 @@
 // 2. A warp computes consecutive tiles, and the robot waits for its last warp. So heavy tiles and light ones are dealt
 //    out to the warps.
 // 3. A row uses each bank once. So the springs of a tile should lead to masses in all banks alike: a mass takes the
-//    free lane of its tile whose bank the tiles of its neighbours have used least so far. The corners of faces should
+//    free lane of its tile whose bank the tiles of its neighbors have used least so far. The corners of faces should
 //    also lie in all banks alike (face_tiles.h), and count in the same way.
 #pragma once
 

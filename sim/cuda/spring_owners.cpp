@@ -57,7 +57,7 @@ class OwnerSearch {
     load_[bank_counter(s)] += by;
   }
 
-  // The first half of the springs in turn with the second half: neighbours often load the same counters, and the
+  // The first half of the springs in turn with the second half: neighbors often load the same counters, and the
   // processor would wait for their new values.
   template <class Visit>
   void for_each_spring(Visit visit) {

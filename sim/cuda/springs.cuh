@@ -111,7 +111,7 @@ class SpringPass {
     return spring;
   }
 
-  // Force or correction on the partner, per metre of d, in units.
+  // Force or correction on the partner, per meter of d, in units.
   __device__ float units_per_distance(const LoadedSpring& spring, float squared) const {
     const float length = spring.scaled_rest_length * spring.parameters.length_factor;
     if constexpr (solver == Solver::force)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grid that finds pairs of near masses. Its cells are as wide as the contact distance, so masses that touch are in
-// the same cell or in neighbours. Cells are hashed into buckets, and each bucket lists its masses:
+// the same cell or in neighbors. Cells are hashed into buckets, and each bucket lists its masses:
 //
 //   +---+---+---+
-//   | o | o | o |     A mass looks at its own cell and at half of the neighbours (o: 13 of 26 in 3D).
+//   | o | o | o |     A mass looks at its own cell and at half of the neighbors (o: 13 of 26 in 3D).
 //   +---+---+---+     The other half looks at it, so every pair is found once.
 //   | . | x | o |
 //   +---+---+---+     Other cells may share a bucket. The distance test rejects their masses.
@@ -45,9 +45,9 @@ MERCURY_HOST_DEVICE std::uint32_t bucket_of(Cell cell, std::uint32_t mask) {
   return (h ^ (h >> 15)) & mask;
 }
 
-// The cell itself (index 0) and the 13 neighbours after it.
-inline constexpr int half_neighbourhood = 14;
-MERCURY_HOST_DEVICE Cell neighbour_cell(Cell cell, int index) {
+// The cell itself (index 0) and the 13 neighbors after it.
+inline constexpr int half_neighborhood = 14;
+MERCURY_HOST_DEVICE Cell neighbor_cell(Cell cell, int index) {
   const int code = 13 + index;  // (dx + 1) + 3 (dy + 1) + 9 (dz + 1); 13 is the cell itself
   return {cell.x + code % 3 - 1, cell.y + code / 3 % 3 - 1, cell.z + code / 9 - 1};
 }

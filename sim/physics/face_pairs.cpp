@@ -87,7 +87,7 @@ FacePair pair_of(const Face& first, std::uint32_t k, const Face& second) {
   const auto [a, b, c] = k == 0   ? std::array{first.b, first.c, first.a}
                          : k == 1 ? std::array{first.c, first.a, first.b}
                                   : corners(first);
-  // The first face is (a, b, c) with the edge c -> a; a consistent neighbour runs a -> c -> d.
+  // The first face is (a, b, c) with the edge c -> a; a consistent neighbor runs a -> c -> d.
   for (const std::uint16_t d : corners(second))
     if (d != a && d != c) return {a, b, c, d};
   return {a, b, c, a};

@@ -15,7 +15,7 @@
 
 namespace mercury {
 
-// A face without a free neighbour is a pair with d = a. Its second triangle has no area, so no force.
+// A face without a free neighbor is a pair with d = a. Its second triangle has no area, so no force.
 struct FacePair {
   std::uint16_t a = 0, b = 0, c = 0, d = 0;
   friend constexpr bool operator==(const FacePair&, const FacePair&) = default;

@@ -89,7 +89,7 @@ std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions
   if (const auto found = std::ranges::find_if(robot.springs, has_bad_mass); found != robot.springs.end())
     return index_of(found);
   const float limit = measure(robot).squared_stretch_limit();
-  // Neighbours of the failing spring may exceed the limit in the same step, but by less.
+  // Neighbors of the failing spring may exceed the limit in the same step, but by less.
   const auto strain = [&](const Spring& spring) {
     const Vec3 d = positions[spring.b] - positions[spring.a];
     const float squared = dot(d, d);

@@ -43,7 +43,7 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 std::uint32_t culprit_spring(const Robot& robot, std::span<const Vec3> positions, std::uint32_t bad_mass);
 
 // The mass that caused an explosion, given the mass that the backend noted (RobotStatus::bad_mass). A backend that
-// finds a face's force out of range notes some mass of that face or of a neighbouring one. So this searches up to two
+// finds a face's force out of range notes some mass of that face or of a neighboring one. So this searches up to two
 // faces around it, for a mass that is out of reach or not finite, otherwise for the fastest. A backend that finds a
 // spring too long may note no mass. Then this returns a mass that is out of reach, or `noted` if there is none.
 std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted);

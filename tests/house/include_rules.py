@@ -67,7 +67,7 @@ SUBJECTS = {
     "CGAL": (r"CGAL/", {"robots"}),
     "muParser": (r"muParser", {"evolution"}),
 }
-FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbours without their folder
+FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbors without their folder
 
 # The only file that may ask whether nvcc is compiling.
 CUDACC_HOME = "sim/include/mercury/host_device.h"

@@ -91,7 +91,7 @@ class IncludeRules(unittest.TestCase):
             "CGAL stays in robots": ("app/scene/b.cpp", "#include <CGAL/Point_3.h>"),
             "one place asks for nvcc": ("sim/cuda/a.cu", "#if defined(__CUDACC__)"),
             "names from the root": ("sim/cpu/a.cpp", '#include "../parts.h"'),
-            "a neighbour with its folder": ("sim/cpu/a.cpp", '#include "step.h"'),
+            "a neighbor with its folder": ("sim/cpu/a.cpp", '#include "step.h"'),
             "the header exists": ("sim/a.cpp", '#include "sim/lost.h"'),
             "the public header exists": ("app/scene/b.cpp", "#include <mercury/lost.h>"),
         }

@@ -98,7 +98,7 @@ TEST_F(ColorTest, LegendHasTheColorsOfItsValues) {
     const Image without = drawn(renderer, scene);
     scene.legend = Legend{"speed", "m/s", Scale{0, 1, Colormap(map)}, {}};
     const Image image = drawn(renderer, scene);
-    // Finds the bar by its colours: a column that contains both the high end's and the low end's.
+    // Finds the bar by its colors: a column that contains both the high end's and the low end's.
     const auto close = [&](int x, int y, float t) {
       const Color c = color_at(Colormap(map), t);
       return largest_difference(pixel(image, x, y), {c.r, c.g, c.b}) <= 6;

@@ -26,7 +26,7 @@ std::array<float, 3> lab(std::array<float, 3> c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// Colours for people without medium-wave cones (Machado, Oliveira and Fernandes 2009, severity 1).
+// Colors for people without medium-wave cones (Machado, Oliveira and Fernandes 2009, severity 1).
 std::array<float, 3> deuteranope(Color color) {
   const auto c = linear_of(color);
   return {std::max(0.0f, 0.367322f * c[0] + 0.860646f * c[1] - 0.227968f * c[2]),
@@ -40,8 +40,8 @@ float distance(std::array<float, 3> a, std::array<float, 3> b) {
 
 TEST(Color, LinearLightRoundTripsEveryCode) {
   for (int i = 0; i < 256; ++i) {
-    const Color grey{std::uint8_t(i), std::uint8_t(i), std::uint8_t(i), 255};
-    EXPECT_EQ(color_of_linear(linear_of(grey)), grey);
+    const Color gray{std::uint8_t(i), std::uint8_t(i), std::uint8_t(i), 255};
+    EXPECT_EQ(color_of_linear(linear_of(gray)), gray);
   }
   EXPECT_NEAR(linear_of(rgb(0xbcbcbc))[0], 0.5f, 0.005f);  // half of the light in sRGB
 }
@@ -65,7 +65,7 @@ TEST(Colormap, MapsForAmountsGetLighterMonotonically) {
       EXPECT_GT(lightness(color_at(map, float(i) / 64)), lightness(color_at(map, float(i - 1) / 64)) - 0.1f);
 }
 
-TEST(Colormap, DivergingIsGreyInTheMiddleAndEquallyDarkAtBothEnds) {
+TEST(Colormap, DivergingIsGrayInTheMiddleAndEquallyDarkAtBothEnds) {
   const auto middle = lab(linear_of(color_at(Colormap::diverging, 0.5f)));
   EXPECT_LT(std::hypot(middle[1], middle[2]), 4);
   EXPECT_NEAR(lightness(color_at(Colormap::diverging, 0)), lightness(color_at(Colormap::diverging, 1)), 4);

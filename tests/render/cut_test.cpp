@@ -158,7 +158,7 @@ TEST(CutFrame, ItsEndsKeepAllOrNothing) {
     EXPECT_FALSE(frame.plane_of({.axis = 0, .below = true, .percent = 0}).removes(corner));
     EXPECT_TRUE(frame.plane_of({.axis = 0, .below = true, .percent = 100}).removes(corner));
   }
-  EXPECT_NEAR(frame.place_of({.axis = 0, .shift = 0.2f}), 0.2f, 1e-6f) << "metres from the middle";
+  EXPECT_NEAR(frame.place_of({.axis = 0, .shift = 0.2f}), 0.2f, 1e-6f) << "meters from the middle";
 }
 
 // The GPU's planes are those of theory: a section is where the turned body's own plane is, and nowhere else.
@@ -202,7 +202,7 @@ TEST_F(CutTest, EachBodyIsCutInItsOwnFrame) {
   EXPECT_GT(hidden, 5);
 }
 
-// A body in front of another, both cut: each section has the colour of its own springs.
+// A body in front of another, both cut: each section has the color of its own springs.
 TEST_F(CutTest, SectionsDoNotTakeTheColorsOfOtherBodies) {
   Renderer renderer = make_renderer();
   const Cube cube;

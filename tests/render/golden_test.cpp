@@ -16,7 +16,7 @@ namespace {
 
 constexpr int width = 192, height = 108;
 
-// Lightness and two opponent colours (CIE 1976 L*a*b*, D65) of the mean light over a square of pixels.
+// Lightness and two opponent colors (CIE 1976 L*a*b*, D65) of the mean light over a square of pixels.
 Eigen::Vector3f perceived(const Image& image, int x, int y, int side) {
   Eigen::Vector3f sum(0, 0, 0);
   for (int dy = 0; dy < side; ++dy)

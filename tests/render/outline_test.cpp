@@ -34,7 +34,7 @@ bool any_near(const Image& a, const Image& b, int x, int y, int reach) {
   return false;
 }
 
-// Pixels of the body that the edge of its silhouette does not touch keep their colours exactly, and the line is beside
+// Pixels of the body that the edge of its silhouette does not touch keep their colors exactly, and the line is beside
 // it.
 void expect_line_around(const Image& empty, const Image& plain, const Image& marked) {
   int changed = 0;

@@ -39,7 +39,7 @@ TEST(Font, WidthGrowsWithTextAndSize) {
   EXPECT_FLOAT_EQ(text_width("ab", 32), 2 * text_width("ab", 16));
 }
 
-TEST(TickText, HasJustEnoughDigitsToDistinguishNeighbours) {
+TEST(TickText, HasJustEnoughDigitsToDistinguishNeighbors) {
   EXPECT_EQ(tick_text(0.2f, 0.2f), "0.2");
   EXPECT_EQ(tick_text(0.25f, 0.25f), "0.25");
   EXPECT_EQ(tick_text(20, 5), "20");
@@ -156,10 +156,10 @@ TEST(Overlay, ScaleBarHasTheLengthThatItShows) {
   float across = 0;
   for (const OverlayQuad& quad : overlay.quads())
     if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.rectangle.width);
-  const float pixels_a_metre =
+  const float pixels_a_meter =
       orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
-  const float metres = across / pixels_a_metre;
-  EXPECT_NEAR(metres, round_length(metres * 1.001f), 1e-3f);
+  const float meters = across / pixels_a_meter;
+  EXPECT_NEAR(meters, round_length(meters * 1.001f), 1e-3f);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 class ReadbackTest : public Offscreen {
  protected:
-  // A picture of many colours, different in every frame.
+  // A picture of many colors, different in every frame.
   void draw(Renderer& renderer, double time) {
     if (renderer.body_count() == 0) renderer.set_bodies(group_.views());
     const std::vector<RenderMaterial> materials = wobbling_materials(time);

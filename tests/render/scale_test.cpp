@@ -67,7 +67,7 @@ TEST(Scale, TicksAreRoundAndWhereTheirValuesAre) {
 
 class ScaleOnBodies : public Offscreen {};
 
-// A face whose value has the colour that the legend shows for it, on every kind of scale.
+// A face whose value has the color that the legend shows for it, on every kind of scale.
 TEST_F(ScaleOnBodies, ShadersAndLegendsAgree) {
   Renderer renderer = make_renderer();
   const Mesh mesh = triangle();

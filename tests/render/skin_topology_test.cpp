@@ -19,11 +19,11 @@ TEST(SkinTopology, SidesOfACubeAreQuadrilaterals) {
   for (const FaceRecord& record : skin_topology(cube, cube_faces)) EXPECT_LT(record.shape, 3u);
 }
 
-TEST(SkinTopology, ASideOfACubeHasTheFourAdjacentSidesAsNeighbours) {
+TEST(SkinTopology, ASideOfACubeHasTheFourAdjacentSidesAsNeighbors) {
   const std::vector<FaceRecord> records = skin_topology(cube, cube_faces);
   for (std::size_t face = 0; face < records.size(); ++face) {
     std::set<std::uint32_t> sides;
-    for (const std::uint32_t neighbour : records[face].neighbours) sides.insert(neighbour / 2);
+    for (const std::uint32_t neighbor : records[face].neighbors) sides.insert(neighbor / 2);
     EXPECT_EQ(sides.size(), 4u);
     const std::uint32_t own = std::uint32_t(face / 2);
     EXPECT_FALSE(sides.contains(own));
@@ -31,13 +31,13 @@ TEST(SkinTopology, ASideOfACubeHasTheFourAdjacentSidesAsNeighbours) {
   }
 }
 
-TEST(SkinTopology, NeighboursLieAcrossTheirEdge) {
+TEST(SkinTopology, NeighborsLieAcrossTheirEdge) {
   const std::vector<FaceRecord> records = skin_topology(cube, cube_faces);
   for (std::size_t face = 0; face < records.size(); ++face) {
     const std::uint32_t corner = records[face].shape;
     // Edge v = 0 runs from the corner opposite to the diagonal to the next one.
     const std::uint32_t a = cube_faces[3 * face + corner], b = cube_faces[3 * face + (corner + 1) % 3];
-    const std::size_t other = 3 * std::size_t(records[face].neighbours[2]);
+    const std::size_t other = 3 * std::size_t(records[face].neighbors[2]);
     const std::set<std::uint32_t> masses{cube_faces[other], cube_faces[other + 1], cube_faces[other + 2]};
     EXPECT_TRUE(masses.contains(a) && masses.contains(b));
   }
@@ -49,16 +49,16 @@ TEST(SkinTopology, ATetrahedronHasOnlyTriangles) {
       skin_topology(corners, std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3});
   for (std::uint32_t face = 0; face < 4; ++face) {
     EXPECT_EQ(records[face].shape, 3u);
-    std::set<std::uint32_t> others(records[face].neighbours.begin(), records[face].neighbours.begin() + 3);
+    std::set<std::uint32_t> others(records[face].neighbors.begin(), records[face].neighbors.begin() + 3);
     EXPECT_EQ(others.size(), 3u);
     EXPECT_FALSE(others.contains(face));
   }
 }
 
-TEST(SkinTopology, AnOpenBorderHasNoNeighbour) {
+TEST(SkinTopology, AnOpenBorderHasNoNeighbor) {
   const std::vector<FaceRecord> records =
       skin_topology(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector<std::uint32_t>{0, 1, 2});
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(records[0].neighbours[std::size_t(i)], no_face);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(records[0].neighbors[std::size_t(i)], no_face);
 }
 
 TEST(SkinTopology, VoxelBodiesAreMadeOfQuadrilaterals) {

@@ -50,10 +50,10 @@ TEST_F(SurroundingsTest, OnlyTheGroundOfAPatchSlides) {
   for (int y = 0; y < 120; ++y)
     for (int x = 0; x < 160; ++x) {
       // The eye looks down from 6 m at 0.6 rad for 120 pixels.
-      const double metres = std::hypot(x - 79.5, y - 59.5) * 2 * 6 * std::tan(0.3) / 120;
+      const double meters = std::hypot(x - 79.5, y - 59.5) * 2 * 6 * std::tan(0.3) / 120;
       const bool differs = largest_difference(pixel(before, x, y), pixel(after, x, y)) > 3;
-      inside += metres < 0.7 && differs;
-      outside += metres > 0.9 && differs;
+      inside += meters < 0.7 && differs;
+      outside += meters > 0.9 && differs;
     }
   EXPECT_GT(inside, 300);
   EXPECT_EQ(outside, 0);
@@ -66,7 +66,7 @@ TEST_F(SurroundingsTest, HazeJoinsGroundAndSkyAtTheHorizon) {
     scene.surroundings = Surroundings::land;
     scene.theme = theme;
     const Image image = drawn(renderer, scene, Orbit{.target = {0, 0, 1}, .elevation = 0.02f, .distance = 6}.camera());
-    // Neighbouring rows differ little anywhere: there is no edge of the world.
+    // Neighboring rows differ little anywhere: there is no edge of the world.
     for (int y = 1; y < 120; ++y) {
       Eigen::Vector3i above(0, 0, 0), below(0, 0, 0);
       for (int x = 0; x < 160; ++x) {

@@ -14,14 +14,14 @@ struct WobblingBody {
   std::vector<std::uint32_t> faces, springs, face_materials, spring_materials;
 
   Body body() const { return {rest, faces, springs, face_materials, spring_materials}; }
-  // The positions at a time [s]: travelling waves stretch and bend the body.
+  // The positions at a time [s]: traveling waves stretch and bend the body.
   std::vector<float> positions(double time, float phase) const;
 };
 
-// A random blob in a grid of side^3 voxels of 0.1 m, centred on the origin; each voxel has one of 22 materials.
+// A random blob in a grid of side^3 voxels of 0.1 m, centered on the origin; each voxel has one of 22 materials.
 WobblingBody make_wobbling_body(int side, std::uint32_t seed);
 
-// A bumpy ball of about half a metre, made of triangles: an icosahedron whose sides are split into 4, `splits` times.
+// A bumpy ball of about half a meter, made of triangles: an icosahedron whose sides are split into 4, `splits` times.
 WobblingBody make_blob(int splits, std::uint32_t seed);
 
 // The 22 materials: muscles with their activation at that time, tissue, bone.

@@ -87,7 +87,7 @@ TEST(Cppn, StaysFiniteWhereSquaresOfSquaresWouldOverflow) {
   EXPECT_EQ(evaluate(network, {1, 1, 1, 1})[0], -1e6);
 }
 
-TEST(CppnPaint, AGrowingPhaseIsATravellingWave) {
+TEST(CppnPaint, AGrowingPhaseIsATravelingWave) {
   CppnGenome genome = muscle_genome({{x, phase, 1.5f}});
   genome.nx = 30;
   const VoxelGrid grid = paint(genome);

@@ -118,7 +118,7 @@ TEST_F(RobotFiles, LinesOfAFileAreShort) {
 TEST_F(RobotFiles, UnknownKeysAreIgnored) {
   const std::string document =
       R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
-    "materials": [{"stiffness": 1}, {"stiffness": 2, "colour": {"r": [1]}, "name": "m"}],
+    "materials": [{"stiffness": 1}, {"stiffness": 2, "color": {"r": [1]}, "name": "m"}],
     "version": 1, "masses": [[0, 0, 0], [1, 0, 0]], "faces": [], "x": 1e99})";
   const Robot robot = parse_robot(document, RobotFormat::json);
   EXPECT_EQ(robot.springs, (std::vector<Spring>{{0, 1, 1, 1}}));

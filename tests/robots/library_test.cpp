@@ -70,7 +70,7 @@ TEST(RobotLibrary, EachMovesAQuarterOfItsLengthInItsOwnEnvironment) {
     const auto after = simulation.telemetry();
     for (std::size_t i = 0; i < group.size(); ++i) {
       EXPECT_FALSE(after[i].exploded) << group[i].name;
-      // In a robot grown by a network, springs as short as a centimetre lie between long ones and follow them.
+      // In a robot grown by a network, springs as short as a centimeter lie between long ones and follow them.
       EXPECT_LT(after[i].largest_strain, kind_of(group[i]) == "nn" ? 8 : 1.6) << group[i].name;
       Vec3 way = after[i].center_of_mass - before[i].center_of_mass;
       if (std::string_view(environment) == "land") way.z = 0;

@@ -30,17 +30,17 @@ Real volume(const std::vector<Vec3>& points, const Tetrahedron& t) {
   return dot_product(cross_product(minus(points[t[1]], o), minus(points[t[2]], o)), minus(points[t[3]], o)) / 6;
 }
 
-// Centre, from the first point, and radius of the sphere through four points.
+// Center, from the first point, and radius of the sphere through four points.
 std::pair<Point, Real> circumscribed_sphere(const std::vector<Vec3>& points, const Tetrahedron& t) {
   const Vec3 o = points[t[0]];
   const Point a = minus(points[t[1]], o), b = minus(points[t[2]], o), c = minus(points[t[3]], o);
   const Point ab = cross_product(a, b), bc = cross_product(b, c), ca = cross_product(c, a);
   const Real aa = dot_product(a, a), bb = dot_product(b, b), cc = dot_product(c, c);
   const Real twelve_volumes = 2 * dot_product(a, bc);
-  const Point centre = {(aa * bc.x + bb * ca.x + cc * ab.x) / twelve_volumes,
+  const Point center = {(aa * bc.x + bb * ca.x + cc * ab.x) / twelve_volumes,
                         (aa * bc.y + bb * ca.y + cc * ab.y) / twelve_volumes,
                         (aa * bc.z + bb * ca.z + cc * ab.z) / twelve_volumes};
-  return {centre, std::sqrt(dot_product(centre, centre))};
+  return {center, std::sqrt(dot_product(center, center))};
 }
 
 // All tetrahedra whose circumscribed sphere holds no other point, with its radius, from the definition.
@@ -52,13 +52,13 @@ std::vector<std::pair<Real, Tetrahedron>> delaunay_by_definition(const std::vect
       for (std::uint32_t c = b + 1; c < n; ++c)
         for (std::uint32_t d = c + 1; d < n; ++d) {
           const Tetrahedron t = {a, b, c, d};
-          const auto [centre, radius] = circumscribed_sphere(points, t);
+          const auto [center, radius] = circumscribed_sphere(points, t);
           bool empty = true;
           for (std::uint32_t p = 0; p < n && empty; ++p) {
             const Point from_first = minus(points[p], points[a]);
-            const Point from_centre = {from_first.x - centre.x, from_first.y - centre.y, from_first.z - centre.z};
+            const Point from_center = {from_first.x - center.x, from_first.y - center.y, from_first.z - center.z};
             const bool own = p == a || p == b || p == c || p == d;
-            empty = own || dot_product(from_centre, from_centre) > radius * radius;
+            empty = own || dot_product(from_center, from_center) > radius * radius;
           }
           if (empty) found.emplace_back(radius, t);
         }
@@ -160,7 +160,7 @@ TEST(AlphaBody, HasTetrahedraOfPositiveVolume) {
   for (const Tetrahedron& t : body.tetrahedra) EXPECT_GT(volume(points, t), 0);
 }
 
-TEST(AlphaBody, NamesTheNeighbourOppositeToEachPoint) {
+TEST(AlphaBody, NamesTheNeighborOppositeToEachPoint) {
   const AlphaBody body = alpha_body(random_cloud(200, 6));
   const auto without = [&](std::size_t tetrahedron, std::uint32_t point) {
     std::set<std::uint32_t> side(body.tetrahedra[tetrahedron].begin(), body.tetrahedra[tetrahedron].end());
@@ -173,8 +173,8 @@ TEST(AlphaBody, NamesTheNeighbourOppositeToEachPoint) {
   for (std::size_t t = 0; t < body.tetrahedra.size(); ++t)
     for (std::size_t i = 0; i < 4; ++i) {
       const std::set<std::size_t> expected = holders[without(t, body.tetrahedra[t][i])];
-      const std::uint32_t other = body.neighbours[t][i];
-      EXPECT_EQ(expected, other == no_neighbour ? std::set<std::size_t>{t} : std::set<std::size_t>({t, other}));
+      const std::uint32_t other = body.neighbors[t][i];
+      EXPECT_EQ(expected, other == no_neighbor ? std::set<std::size_t>{t} : std::set<std::size_t>({t, other}));
     }
 }
 

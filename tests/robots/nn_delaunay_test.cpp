@@ -115,17 +115,17 @@ TEST(Delaunay, DoesNotDependOnTheOrderOfThePoints) {
   }
 }
 
-TEST(Delaunay, NamesTheNeighbourOppositeToEachPoint) {
+TEST(Delaunay, NamesTheNeighborOppositeToEachPoint) {
   for (const Points& points : clouds()) {
     const Triangulation result = triangulate(points);
     for (std::uint32_t t = 0; t < result.tetrahedra.size(); ++t)
       for (std::size_t i = 0; i < 4; ++i) {
-        const std::uint32_t other = result.neighbours[t][i];
-        if (other == no_neighbour) continue;
+        const std::uint32_t other = result.neighbors[t][i];
+        if (other == no_neighbor) continue;
         const Tetrahedron& there = result.tetrahedra[other];
         for (std::size_t k = 0; k < 4; ++k)
           EXPECT_EQ(std::count(there.begin(), there.end(), result.tetrahedra[t][k]), k == i ? 0 : 1);
-        EXPECT_EQ(std::count(result.neighbours[other].begin(), result.neighbours[other].end(), t), 1);
+        EXPECT_EQ(std::count(result.neighbors[other].begin(), result.neighbors[other].end(), t), 1);
       }
   }
 }

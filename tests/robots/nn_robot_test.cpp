@@ -24,7 +24,7 @@ TEST(NnRobot, SpringsCombineTheMaterialsThatTheNetworkGivesTheirMasses) {
   const Robot robot = grow(genome);
   check_body(robot);
   EXPECT_EQ(robot.masses.size(), 200u);
-  // The centre moved by the mean only: any spring of one base material shows the side of its mass.
+  // The center moved by the mean only: any spring of one base material shows the side of its mass.
   std::map<std::uint16_t, std::set<MaterialId>> of_mass;
   std::set<MaterialId> materials;
   for (const Spring& s : robot.springs) {
@@ -51,7 +51,7 @@ TEST(NnRobot, SpringsCombineTheMaterialsThatTheNetworkGivesTheirMasses) {
   }
 }
 
-TEST(NnRobot, PlacesAreCentredAndReachTheUnitSphere) {
+TEST(NnRobot, PlacesAreCenteredAndReachTheUnitSphere) {
   const Robot robot = grow(simple_genome(identity, minus_identity));
   double mean[3] = {}, farthest = 0;
   for (const Vec3& x : robot.masses) {
@@ -62,7 +62,7 @@ TEST(NnRobot, PlacesAreCentredAndReachTheUnitSphere) {
   EXPECT_NEAR(farthest, 1, 1e-5);
 }
 
-TEST(NnRobot, NeighboursInSpaceAreNearInMemory) {
+TEST(NnRobot, NeighborsInSpaceAreNearInMemory) {
   const Robot robot = grow(random_nn_genome({}, 4));
   double distance = 0;
   for (const Spring& s : robot.springs) distance += std::abs(s.a - s.b);

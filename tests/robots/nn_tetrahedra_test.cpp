@@ -28,10 +28,10 @@ TEST(Tetrahedra, ASideBetweenTwoIsNotSkin) {
   EXPECT_THAT(skin, testing::Contains(Triangle{1, 2, 4}));
 }
 
-TEST(Tetrahedra, SkinFollowsFromTheNeighboursOppositeToEachPoint) {
+TEST(Tetrahedra, SkinFollowsFromTheNeighborsOppositeToEachPoint) {
   const std::vector<Tetrahedron> two = {{0, 1, 2, 3}, {2, 1, 3, 4}};
-  const std::uint32_t none = no_neighbour;
-  const std::vector<Neighbours> opposite = {{1, none, none, none}, {none, none, none, 0}};
+  const std::uint32_t none = no_neighbor;
+  const std::vector<Neighbors> opposite = {{1, none, none, none}, {none, none, none, 0}};
   EXPECT_EQ(skin_of(two, opposite), skin_of(two));
 }
 
@@ -49,7 +49,7 @@ TEST(Tetrahedra, EdgesAreListedOnce) {
 }
 
 TEST(Tetrahedra, EdgesOfAPointWithManyAreSortedToo) {
-  // A fan: points 0 and 1 form a tetrahedron with every two neighbours of a ring of 200.
+  // A fan: points 0 and 1 form a tetrahedron with every two neighbors of a ring of 200.
   std::vector<Tetrahedron> fan;
   for (std::uint32_t i = 0; i < 200; ++i) fan.push_back({0, 1, 2 + (77 * i) % 200, 2 + (77 * i + 1) % 200});
   const std::vector<Edge> edges = edges_of(fan);
@@ -58,26 +58,26 @@ TEST(Tetrahedra, EdgesOfAPointWithManyAreSortedToo) {
   EXPECT_EQ(std::adjacent_find(edges.begin(), edges.end()), edges.end());
 }
 
-TEST(Tetrahedra, NeighboursShareASide) {
+TEST(Tetrahedra, NeighborsShareASide) {
   const std::vector<Tetrahedron> three = {{0, 1, 2, 3}, {1, 2, 3, 4}, {3, 4, 5, 6}};  // the third shares an edge only
-  const auto neighbours = neighbours_of(three);
-  EXPECT_EQ(neighbours[0][0], 1u);
-  EXPECT_EQ(neighbours[0][1], no_neighbour);
-  EXPECT_EQ(neighbours[1][0], 0u);
-  EXPECT_EQ(neighbours[2][0], no_neighbour);
+  const auto neighbors = neighbors_of(three);
+  EXPECT_EQ(neighbors[0][0], 1u);
+  EXPECT_EQ(neighbors[0][1], no_neighbor);
+  EXPECT_EQ(neighbors[1][0], 0u);
+  EXPECT_EQ(neighbors[2][0], no_neighbor);
 }
 
 TEST(Tetrahedra, TheLargestBodyHoldsMostPointsAndIsJoinedBySides) {
   const std::vector<Tetrahedron> tetrahedra = {{4, 5, 6, 7}, {0, 1, 2, 3}, {1, 2, 3, 4}};
-  const auto neighbours = neighbours_of(tetrahedra);
-  const SolidBody all = largest_body(tetrahedra, neighbours, 3);
+  const auto neighbors = neighbors_of(tetrahedra);
+  const SolidBody all = largest_body(tetrahedra, neighbors, 3);
   EXPECT_THAT(all.tetrahedra, UnorderedElementsAre(1, 2));
   EXPECT_EQ(all.points, 5u);
-  EXPECT_EQ(all.rival, no_neighbour);
-  const SolidBody first = largest_body(tetrahedra, neighbours, 2);  // equals: the earliest
+  EXPECT_EQ(all.rival, no_neighbor);
+  const SolidBody first = largest_body(tetrahedra, neighbors, 2);  // equals: the earliest
   EXPECT_THAT(first.tetrahedra, ElementsAre(0));
   EXPECT_EQ(first.rival, 1u);
-  EXPECT_TRUE(largest_body(tetrahedra, neighbours, 0).tetrahedra.empty());
+  EXPECT_TRUE(largest_body(tetrahedra, neighbors, 0).tetrahedra.empty());
 }
 
 TEST(Tetrahedra, ComponentsAreNamedByTheirLowestPoint) {

@@ -73,7 +73,7 @@ TEST(RandomVoxels, MirroredHalvesAreAlike) {
   }
 }
 
-TEST(RandomVoxels, LargerPatchesMeanMoreNeighboursOfOneMaterial) {
+TEST(RandomVoxels, LargerPatchesMeanMoreNeighborsOfOneMaterial) {
   const auto alike = [](int patch) {
     RandomVoxelOptions options = cube(10);
     options.patch = patch;

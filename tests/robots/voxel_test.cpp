@@ -100,7 +100,7 @@ VoxelGrid random_cells(std::uint64_t seed) {
   return grid;
 }
 
-TEST(VoxelRobot, OneVoxelIsACube) {
+TEST(VoxelRobot, OneVoxelizACube) {
   const Robot robot = make_voxel_robot(VoxelGrid(1, 1, 1, tissue));
   EXPECT_EQ(robot.masses.size(), 8u);
   EXPECT_EQ(robot.springs.size(), 28u);
@@ -231,7 +231,7 @@ TEST(VoxelRobot, RefusesAnOriginThatHoldsNoGrid) {
   EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,2],"edge":0.1,"cells":[1]})"),
             "/origin: voxel grid: size 1x1x2 needs 2 cells, not 1");
   EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,1],"edge":1e300,"cells":[1]})"),
-            "/origin: edge must be a number of metres");
+            "/origin: edge must be a number of meters");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST_P(Agreement, TiltedRobotInACurrentOrDroppedFollowsTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(All, Agreement, every_pair, EveryPair::name);
 
-TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
+TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimeterAfterASecond) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const std::string_view environment : environment_names()) {

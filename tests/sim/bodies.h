@@ -25,7 +25,7 @@ struct Grid {
   Vec3 corner;              // [m]
 };
 
-// A box of voxels. Each has 8 masses, shared with its neighbours; springs join all 28 pairs of them, each pair once.
+// A box of voxels. Each has 8 masses, shared with its neighbors; springs join all 28 pairs of them, each pair once.
 // Each outer side of a voxel has two triangles, counter-clockwise seen from outside. All springs have material 1 of a
 // table with one material.
 Robot voxels(const Grid& grid, const Material& material);

@@ -58,7 +58,7 @@ std::vector<Robot> robots() {
                          bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2),
                          bodies::random_voxels({.x = 17, .y = 2, .z = 3}, 3), star(500)};
   for (unsigned seed = 0; seed < 20; ++seed) all.push_back(tangle(40 + 7 * static_cast<int>(seed), 900, seed));
-  all.push_back(tangle(2, 300, 20));  // more colours than a word has bits
+  all.push_back(tangle(2, 300, 20));  // more colors than a word has bits
   all.push_back(tangle(33, 6000, 21));
   all.push_back(triangles(200, 150, 22));
   all.push_back(bodies::point());
@@ -151,7 +151,7 @@ TEST(Schedule, CountsTheSpringsOfASlotAndWhatItReceives) {
   }
 }
 
-// Koenig's theorem: a bipartite graph has as many colours as its busiest vertex has edges.
+// Koenig's theorem: a bipartite graph has as many colors as its busiest vertex has edges.
 TEST(Schedule, TilesHaveAsManyRowsAsTheirBusiestLaneOrBankHasSprings) {
   for (const Robot& robot : robots()) {
     const Schedule schedule = schedule_of(robot);

@@ -66,9 +66,9 @@ TEST_P(Explosion, IsReportedWithTimeAndCulpritAndFreezesOnlyThatRobot) {
     simulation.step(100);
     EXPECT_EQ(simulation.hash(1), frozen) << "way " << way;
     EXPECT_EQ(simulation.telemetry(1).exploded_at, telemetry.exploded_at);
-    for (const std::size_t neighbour : {0u, 2u}) {
-      EXPECT_FALSE(simulation.telemetry(neighbour).exploded);
-      EXPECT_EQ(simulation.hash(neighbour), undisturbed.hash(neighbour)) << "way " << way;
+    for (const std::size_t neighbor : {0u, 2u}) {
+      EXPECT_FALSE(simulation.telemetry(neighbor).exploded);
+      EXPECT_EQ(simulation.hash(neighbor), undisturbed.hash(neighbor)) << "way " << way;
     }
   }
 }

@@ -236,7 +236,7 @@ TEST_P(Water, ARobotWithTangentialDragFollowsTheReference) {
   }
 }
 
-TEST(TangentialDrag, CpuAndCudaAgreeWithinATenthOfAMillimetreAfterASecond) {
+TEST(TangentialDrag, CpuAndCudaAgreeWithinATenthOfAMillimeterAfterASecond) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const Robot robot = bodies::random_voxels({}, 6);
   for (const Solver solver : {Solver::force, Solver::xpbd}) {

@@ -73,7 +73,7 @@ TEST(RobotRules, SpringsHaveAMaterialOfTheTableOtherThanAir) {
             "/springs/1: material 254 is out of range, the table has 254");
 }
 
-TEST(RobotRules, SpringsAreAtLeastAMillimetreLong) {
+TEST(RobotRules, SpringsAreAtLeastAMillimeterLong) {
   EXPECT_EQ(message_after([](Robot& robot) { robot.springs[5].rest_length = 0.0005f; }),
             "/springs/5: rest length 0.000500 m, at least 0.001 m is accepted");
   EXPECT_EQ(message_after([](Robot& robot) { robot.springs[5].rest_length = -1; }),

@@ -13,7 +13,7 @@ void Dialogs::ask(Question question) {
   question_ = std::move(question);
   on_text_ = nullptr;
   open_ = just_opened_ = true;
-  accepted_ = cancelled_ = false;
+  accepted_ = canceled_ = false;
 }
 
 void Dialogs::ask_text(std::string title, std::string question, std::string text, std::string button,
@@ -26,7 +26,7 @@ void Dialogs::ask_text(std::string title, std::string question, std::string text
 
 void Dialogs::close() {
   if (open_)
-    cancelled_ = true;
+    canceled_ = true;
   else
     files_.close();
 }
@@ -74,10 +74,10 @@ void Dialogs::draw_question(EventLog& log) {
   if (!acceptable) accepted = accepted_ = false;
   just_opened_ = false;
   Button pressed = draw_buttons(log, acceptable);
-  if (cancelled_) pressed = Button::cancel;
+  if (canceled_) pressed = Button::cancel;
   if (accepted && pressed == Button::none) pressed = Button::accept;
   if (pressed != Button::none) {
-    open_ = shown_ = accepted_ = cancelled_ = false;
+    open_ = shown_ = accepted_ = canceled_ = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

@@ -55,8 +55,8 @@ class Dialogs {
   std::function<void(const std::string&)> on_text_;  // of a question that asks for text
   bool open_ = false;
   bool just_opened_ = false;
-  bool accepted_ = false, cancelled_ = false;  // by a key
-  bool shown_ = false;                         // ImGui has the popup open
+  bool accepted_ = false, canceled_ = false;  // by a key
+  bool shown_ = false;                        // ImGui has the popup open
   FileDialog files_;
 };
 

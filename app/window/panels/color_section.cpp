@@ -29,7 +29,7 @@ bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log
   tooltip("on: the scale stays as it is now; off: it fits the visible values (2nd to 98th percentile)");
   if (view.scale) {
     float ends[2] = {view.scale->first, view.scale->second};
-    row("from, to", "the values at the ends of the colour map");
+    row("from, to", "the values at the ends of the color map");
     if (ImGui::InputFloat2("##scale", ends, "%.4g") && std::isfinite(ends[0]) && std::isfinite(ends[1]) &&
         ends[0] < ends[1]) {
       view.scale = std::pair(ends[0], ends[1]);
@@ -44,12 +44,12 @@ bool draw_map(ViewSettings& view, EventLog& log) {
   for (int i = 0; i < render::colormap_count; ++i)
     names.push_back(render::name_of(static_cast<render::Colormap>(i)).data());  // literals
   int index = view.colormap ? 1 + static_cast<int>(*view.colormap) : 0;
-  bool changed = combo("colours", "the colour map; usual: the one that suits the quantity", index, names);
+  bool changed = combo("colors", "the color map; usual: the one that suits the quantity", index, names);
   log.item("color.map");
   if (changed) view.colormap = index > 0 ? std::optional(static_cast<render::Colormap>(index - 1)) : std::nullopt;
   changed |= ImGui::Checkbox("Log scale", &view.log_scale);
   log.item("color.log");
-  tooltip("spreads the colours by ratios of values rather than by differences");
+  tooltip("spreads the colors by ratios of values rather than by differences");
   return changed;
 }
 
@@ -63,7 +63,7 @@ std::string text_with_keys(const KeyMap& keys, const std::string& text, const Co
 
 bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const Environment& environment,
                         const KeyMap& keys, EventLog& log) {
-  heading("Colour by");
+  heading("Color by");
   bool changed = false;
   constexpr int columns = 3;
   const float gap = 0.4f * ImGui::GetStyle().ItemSpacing.x;

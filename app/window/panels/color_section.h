@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of the View panel that chooses what the colours show.
+// The part of the View panel that chooses what the colors show.
 #pragma once
 
 #include <utility>
@@ -16,10 +16,10 @@ namespace mercury::window {
 bool draw_color_section(ViewSettings& view, std::pair<float, float> shown, const Environment& environment,
                         const KeyMap& keys, EventLog& log);
 
-// Colours by a quantity, with its usual scale. Shows the legend if it has values, as the command line does.
+// Colors by a quantity, with its usual scale. Shows the legend if it has values, as the command line does.
 void color_by(ViewSettings& view, const ColorQuantity& quantity);
 
-// The quantity that a command colours by; nullptr if it does not colour.
+// The quantity that a command colors by; nullptr if it does not color.
 const ColorQuantity* quantity_of(Action action);
 
 }  // namespace mercury::window

@@ -41,7 +41,7 @@ class CommandPalette {
 };
 
 // What can be set by a number or a choice: parameters of solver, environment and camera, switches of the picture,
-// colours, the robots of the scene, panels.
+// colors, the robots of the scene, panels.
 std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std::function<void(const char*)>& show);
 
 }  // namespace mercury::window

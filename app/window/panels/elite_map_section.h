@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map of elites as a coloured grid.
+// The map of elites as a colored grid.
 #pragma once
 
 #include <optional>

@@ -63,7 +63,7 @@ void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
       mouse();
       group("Time", keys);
       group("Picture", keys);
-      group("Colours", keys);
+      group("Colors", keys);
       ImGui::TableNextColumn();
       group("Robots", keys);
       group("Camera", keys);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How individuals of a run are shown: numbers, colours, a tooltip.
+// How individuals of a run are shown: numbers, colors, a tooltip.
 #pragma once
 
 #include <imgui.h>
@@ -13,7 +13,7 @@ namespace mercury::window {
 // "0.123"; "-" for the worst score and for what was not measured.
 std::string score_text(double score);
 
-// The range of the finite scores that were added, for colours and bars.
+// The range of the finite scores that were added, for colors and bars.
 class ScoreRange {
  public:
   void add(double score);

@@ -19,7 +19,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr std::size_t max_lines = 10;  // the number of category colours
+constexpr std::size_t max_lines = 10;  // the number of category colors
 
 // A robot's series on the first side, on the second, and of its ghost.
 struct Curve {

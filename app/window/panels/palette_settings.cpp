@@ -43,7 +43,7 @@ void add_switches(PanelContext& context, std::vector<PaletteEntry>& entries) {
                        }});
   for (const ColorQuantity& quantity : color_quantities())
     if (quantity.exists_in(context.scene.configuration().environment))
-      entries.push_back({fmt::format("colour by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
+      entries.push_back({fmt::format("color by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
                          [&context, &quantity] {
                            ViewSettings now = context.scene.view();
                            color_by(now, quantity);

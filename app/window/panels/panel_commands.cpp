@@ -193,7 +193,7 @@ void Panels::change_view(Action action) {
   if (const ColorQuantity* quantity = quantity_of(action)) {
     if (!quantity->exists_in(environment)) return;
     color_by(view, *quantity);
-    context_.toasts.show(Tone::info, fmt::format("coloured by {}", quantity->key));
+    context_.toasts.show(Tone::info, fmt::format("colored by {}", quantity->key));
   }
   switch (action) {
     case Action::drag_arrows:

@@ -43,7 +43,7 @@ struct TimeCursor {
 };
 
 struct PanelContext {
-  LiveScene& scene;          // robots, physics, undo, colours
+  LiveScene& scene;          // robots, physics, undo, colors
   LiveRun& run;              // the evolution that is open
   OrbitController& camera;   // the camera of the viewport
   Preferences& preferences;  // window settings, kept for the next start

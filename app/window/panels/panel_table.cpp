@@ -29,7 +29,7 @@ constexpr PanelEntry table[] = {
     {"Ranking", "which robot went farthest", Side::left, make<RankingPanel>},
     {"Evolution", "runs of an evolution: scores, champions, families", Side::left, make<EvolutionPanel>},
     {"Compare", "two views, and ghosts of robots as they were", Side::left, make<ComparePanel>},
-    {"View", "colours, arrows, camera, appearance", Side::right, make<ViewPanel>},
+    {"View", "colors, arrows, camera, appearance", Side::right, make<ViewPanel>},
     {"Tune", "solver, environment, materials", Side::right, make<TunePanel>},
     {"Measure", "plots over time", Side::right, make<MeasurePanel>},
     {"Video", "videos and screenshots", Side::right, make<VideoPanel>},

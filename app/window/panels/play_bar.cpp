@@ -128,7 +128,7 @@ void draw_buttons(PanelContext& context) {
   context.log.item("step");
 }
 
-// `middle`: the height at which the text is centred.
+// `middle`: the height at which the text is centered.
 void draw_time(const LiveScene& scene, float middle) {
   const Snapshot& snapshot = scene.snapshot();
   ImGui::PushFont(large_font());
@@ -172,7 +172,7 @@ void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   draw_timeline_strip(context);
   draw_buttons(context);
   ImGui::SameLine(0, 1.2f * text);
-  // Centre the line on the buttons.
+  // Center the line on the buttons.
   const float middle = ImGui::GetCursorPosY() + 1.15f * ImGui::GetFrameHeight() / 2;
   draw_time(context.scene, middle);
   ImGui::SameLine();

@@ -25,14 +25,14 @@ struct Column {
 
 // The columns after the name.
 constexpr std::array columns{
-    Column{"distance", "of the centre of mass since birth: since the robot was added, or the last reset [m]",
+    Column{"distance", "of the center of mass since birth: since the robot was added, or the last reset [m]",
            [](const RankingRow& row) { return row.distance; }},
     Column{"mean speed", "distance divided by age [m/s]", [](const RankingRow& row) { return row.mean_speed; }},
     Column{"age", "time since birth: since the robot was added, or the last reset [s]",
            [](const RankingRow& row) { return row.age; }},
     Column{"at equal age", "distance when it was as old as the youngest robot is now: fair to young robots [m]",
            [](const RankingRow& row) { return row.distance_at_equal_age; }},
-    Column{"speed", "of the centre of mass, now [m/s]", [](const RankingRow& row) { return row.speed; }},
+    Column{"speed", "of the center of mass, now [m/s]", [](const RankingRow& row) { return row.speed; }},
     Column{"energy", "kinetic and elastic, now [J]",
            [](const RankingRow& row) { return row.kinetic_energy + row.elastic_energy; }},
     Column{"largest strain", "of any spring, so far", [](const RankingRow& row) { return row.largest_strain; }}};

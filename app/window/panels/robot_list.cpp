@@ -104,7 +104,7 @@ void RobotList::draw_row(PanelContext& context, const RobotEntry& entry, int ind
   if (entry.exploded) ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
   const std::string name = shortened(entry.name + (changed ? " *" : ""), ImGui::GetContentRegionAvail().x);
   if (entry.selected)
-    ImGui::PushStyleColor(ImGuiCol_Header, IM_COL32_BLACK_TRANS);  // the whole row has the colour already
+    ImGui::PushStyleColor(ImGuiCol_Header, IM_COL32_BLACK_TRANS);  // the whole row has the color already
   const bool clicked = ImGui::Selectable(name.c_str(), entry.selected, ImGuiSelectableFlags_AllowDoubleClick);
   if (entry.selected) ImGui::PopStyleColor();
   if (clicked && ImGui::IsMouseDoubleClicked(0))

@@ -37,7 +37,7 @@ void draw_physics(PanelContext& context) {
   figure("springs evaluated", short_number(snapshot.springs_per_second) + "/s", "while stepping");
   figure("one step of all robots", milliseconds(snapshot.step_seconds), "wall time of one time step");
   figure("reading results", milliseconds(snapshot.gathering_seconds),
-         "time that the physics thread takes to read positions and colour values");
+         "time that the physics thread takes to read positions and color values");
   figure("springs", short_number(static_cast<double>(snapshot.robots->springs)), "of all robots");
   figure("masses", short_number(static_cast<double>(snapshot.positions.size())), "of all robots");
   ImGui::EndTable();

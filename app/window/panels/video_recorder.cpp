@@ -14,8 +14,8 @@ namespace {
 
 void report_end(PanelContext& context, const VideoStatus& status) {
   if (status.state == VideoStatus::State::failed) context.toasts.show(Tone::error, status.error);
-  if (status.state == VideoStatus::State::cancelled)
-    context.toasts.show(Tone::info, "the video was cancelled; no file was kept");
+  if (status.state == VideoStatus::State::canceled)
+    context.toasts.show(Tone::info, "the video was canceled; no file was kept");
   if (status.state != VideoStatus::State::done) return;
   context.toasts.show(Tone::success, "video saved: " + status.file);
   context.log.write("recorded", {{"file", status.file}, {"frames", status.frames}});

@@ -38,13 +38,13 @@ bool draw_show_section(ViewSettings& view, const KeyMap& keys, EventLog& log) {
         check("Springs", with_keys(keys, "each spring as a rod", Action::springs), shown.springs, "springs", log);
     changed |= check("Masses", "each mass as a ball", shown.masses, "masses", log);
     changed |= check("Rounded skin", "smooth the edges of the skin", view.smooth, "smooth", log);
-    changed |= check("Path", "the path of each centre of mass", shown.path, "path", log);
+    changed |= check("Path", "the path of each center of mass", shown.path, "path", log);
     ImGui::TableNextColumn();
     changed |= check("Names", with_keys(keys, "name, distance and rank above each robot", Action::labels), shown.labels,
                      "labels", log);
-    changed |= check("Legend", with_keys(keys, "what the colours mean", Action::legend), shown.legend, "legend", log);
+    changed |= check("Legend", with_keys(keys, "what the colors mean", Action::legend), shown.legend, "legend", log);
     changed |= check("Clock", "simulated time, in videos and while the panels are hidden", shown.clock, "clock", log);
-    changed |= check("Scale bar", "a length in metres", shown.scale_bar, "scale_bar", log);
+    changed |= check("Scale bar", "a length in meters", shown.scale_bar, "scale_bar", log);
     ImGui::EndTable();
   }
   return changed;
@@ -67,9 +67,9 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, cons
         check("Lift", "lift of the water on each face; only in the ocean environment", shown.arrows.lift, "lift", log);
     ImGui::EndDisabled();
     ImGui::TableNextColumn();
-    changed |= check("Velocity", "velocity of each centre of mass", shown.arrows.velocity, "velocity", log);
+    changed |= check("Velocity", "velocity of each center of mass", shown.arrows.velocity, "velocity", log);
     ImGui::BeginDisabled(!has_gravity(environment) && !shown.arrows.gravity);
-    changed |= check("Gravity", "at each centre of mass, if there is gravity", shown.arrows.gravity, "gravity", log);
+    changed |= check("Gravity", "at each center of mass, if there is gravity", shown.arrows.gravity, "gravity", log);
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!is_land(environment) && !shown.arrows.contact);
     changed |= check("Contact", "force of the floor on each mass; only on land", shown.arrows.contact, "contact", log);

@@ -55,7 +55,7 @@ struct PlotView {
 // nothing; view->went_to then says where the mouse is.
 void plot(const char* id, const PlotAxes& axes, std::span<const PlotLine> lines, PlotView* view = nullptr);
 
-// The legend: colour and name of each line, in rows.
+// The legend: color and name of each line, in rows.
 void plot_legend(std::span<const PlotLine> lines);
 
 // A number with few digits: "12.3 k", "0.02", "4.1e-05".

@@ -11,7 +11,7 @@ ImVec4 hex(unsigned rgb, float alpha = 1) {
           static_cast<float>(rgb & 255) / 255, alpha};
 }
 
-// The colours that differ between the themes. All others derive from them.
+// The colors that differ between the themes. All others derive from them.
 struct BaseColors {
   unsigned panel, raised, hovered, pressed, line, text, faint, accent, on_accent;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours and spacing of the panels.
+// Colors and spacing of the panels.
 #pragma once
 
 #include <imgui.h>
@@ -12,14 +12,14 @@ namespace mercury::window {
 // Sets ImGui's style, with all lengths multiplied by `scale`.
 void apply_theme(render::Theme theme, float scale);
 
-// Colours in addition to ImGui's own, from the theme that was applied last.
+// Colors in addition to ImGui's own, from the theme that was applied last.
 struct Palette {
   ImU32 accent, good, warning, bad, faint, grid, panel, on_picture;
   ImU32 mark, mark_outline;  // contrast with everything in the picture
 };
 const Palette& palette();
 
-// Converts to ImGui's colour format.
+// Converts to ImGui's color format.
 inline ImU32 packed(render::Color color, float opacity = 1) {
   return IM_COL32(color.r, color.g, color.b, static_cast<int>(opacity * static_cast<float>(color.a)));
 }

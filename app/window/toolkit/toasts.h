@@ -13,7 +13,7 @@ namespace mercury::window {
 
 enum class Tone { info, success, warning, error };
 
-// "news", "success", "warning" or "error", and the colour that stands for it.
+// "news", "success", "warning" or "error", and the color that stands for it.
 const char* name_of(Tone tone);
 ImU32 color_of(Tone tone);
 
@@ -30,7 +30,7 @@ std::string clock_text(std::chrono::system_clock::time_point time);
 class Toasts {
  public:
   void show(Tone tone, std::string text);
-  // Draws the messages at the top centre of a rectangle. `dt`: time since the last frame [s].
+  // Draws the messages at the top center of a rectangle. `dt`: time since the last frame [s].
   void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }
   // The last 1,000 messages, the newest last.

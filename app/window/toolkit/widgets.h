@@ -26,7 +26,7 @@ bool pointer_rests();
 // A tooltip for the item that was just drawn.
 void tooltip(const char* text);
 
-// Secondary text in a fainter colour, wrapped at the panel's edge.
+// Secondary text in a fainter color, wrapped at the panel's edge.
 void note(const char* text);
 
 // Text at the right edge of a row or table cell.

@@ -15,15 +15,15 @@
 namespace mercury::window {
 namespace {
 
-// In metres, centimetres or millimetres, with a sign.
-std::string signed_length(double metres, const char* per = "") {
-  const double size = std::abs(metres);
-  if (size < 0.01) return fmt::format("{:+.1f} mm{}", 1000 * metres, per);
-  if (size < 1) return fmt::format("{:+.1f} cm{}", 100 * metres, per);
-  return fmt::format("{:+.2f} m{}", metres, per);
+// In meters, centimeters or millimeters, with a sign.
+std::string signed_length(double meters, const char* per = "") {
+  const double size = std::abs(meters);
+  if (size < 0.01) return fmt::format("{:+.1f} mm{}", 1000 * meters, per);
+  if (size < 1) return fmt::format("{:+.1f} cm{}", 100 * meters, per);
+  return fmt::format("{:+.2f} m{}", meters, per);
 }
 
-// Text with a background, centred below `at`. Returns its lower edge.
+// Text with a background, centered below `at`. Returns its lower edge.
 float centered(ImVec2 at, const std::string& text, ImU32 color, EventLog& log, const std::string& name) {
   const float font = ImGui::GetFontSize(), margin = 0.4f * font;
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());

@@ -91,7 +91,7 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   ImGui::PopStyleVar(2);
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   if (!active || (moved.x == 0 && moved.y == 0)) return false;
-  // A place in metres becomes a share of this robot, and of all others.
+  // A place in meters becomes a share of this robot, and of all others.
   view.cut->shift = 0;
   view.cut->percent = std::clamp(percent_at(ImGui::GetIO().MousePos, low, high, view.cut->percent), 0.0f, 100.0f);
   return true;

@@ -54,8 +54,8 @@ void draw_mark(const Line& line, bool chosen) {
     if (sees) list.AddCircle(at, ring, mark, 0, bar);
 }
 
-std::string length_text(float metres) {
-  return metres < 1 ? fmt::format("{:.3g} cm", 100 * metres) : fmt::format("{:.3g} m", metres);
+std::string length_text(float meters) {
+  return meters < 1 ? fmt::format("{:.3g} cm", 100 * meters) : fmt::format("{:.3g} m", meters);
 }
 
 std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {

@@ -49,7 +49,7 @@ void draw_swatches(const render::Legend& legend, ImVec2 low) {
 
 }  // namespace
 
-// The bar of colours: from `left` to `right`, the scale `axis` from `bottom` to `top`.
+// The bar of colors: from `left` to `right`, the scale `axis` from `bottom` to `top`.
 struct LegendView::Bar {
   float left, right, bottom, top;
   render::Scale axis;

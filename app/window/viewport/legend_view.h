@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The legend of the colours, over the picture: a scale whose ends the mouse drags, or swatches with names.
+// The legend of the colors, over the picture: a scale whose ends the mouse drags, or swatches with names.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,7 @@ class OrbitController {
   CameraMode mode() const { return mode_; }
   // Whether a grid should lie flat: since the camera looks down, until it is set to another mode.
   bool from_above() const { return from_above_; }
-  // Follows a robot, by its index; without a value, the centre of the group.
+  // Follows a robot, by its index; without a value, the center of the group.
   void follow(std::optional<std::size_t> robot);
   std::optional<std::size_t> followed() const { return robot_; }
 

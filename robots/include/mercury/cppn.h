@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Voxel robots whose grid is painted by a small network: a compositional pattern-producing network (CPPN; Stanley,
 // Genetic Programming and Evolvable Machines 8, 2007). The network sees where a voxel is, and says whether it is there,
-// of what kind it is, and when its muscle works. Neighbouring voxels get similar answers, so bodies and the phases of
+// of what kind it is, and when its muscle works. Neighboring voxels get similar answers, so bodies and the phases of
 // their muscles are smooth: waves that run through a body are what makes it swim.
 //
-//     x  y  z  distance  bias         the voxel's centre, each coordinate between -1 and 1; bias is 1
+//     x  y  z  distance  bias         the voxel's center, each coordinate between -1 and 1; bias is 1
 //      \  \ |   /       /
 //      functions of weighted sums     hidden nodes
 //        /    |     |      \          weighted sums
@@ -105,7 +105,7 @@ void validate(const CppnGenome& genome);
 
 // The grid that the network paints. A voxel is there if presence > 0. It is muscle if kind > 0, tissue if -1 < kind <=
 // 0, else bone. The phase counts in turns: rounded to the phases of the table and wrapped, so that a phase that grows
-// over several turns is a travelling wave. The frequency runs from the lowest at -1 to the highest at 1. Muscle number
+// over several turns is a traveling wave. The frequency runs from the lowest at -1 to the highest at 1. Muscle number
 // f * (20 / frequencies) + p + 1 has frequency f and phase p. Throws InputError as validate.
 VoxelGrid paint(const CppnGenome& genome);
 

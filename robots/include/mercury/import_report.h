@@ -25,7 +25,7 @@ struct ImportReport {
   std::string format;                     // "VXA of voxcraft-sim", "EvoGym world", ...
   std::string base;                       // the file that a .vxd or .rsc builds on; empty = none
   std::vector<std::string> robots;        // their names
-  double length_scale = 1;                // metres here per metre in the file
+  double length_scale = 1;                // meters here per meter in the file
   double time_scale = 1;                  // seconds here per second in the file
   std::vector<ImportedElement> elements;  // all of them, in the order of the file
   std::vector<std::string> notes;         // whatever belongs to no single element, such as rounded materials

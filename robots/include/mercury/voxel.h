@@ -58,7 +58,7 @@ struct VoxelRobotOptions {
 };
 
 // The largest connected body of the grid as a robot. The grid's middle is at the origin of coordinates.
-// Masses: the corners of its voxels, shared by neighbours, x fastest.
+// Masses: the corners of its voxels, shared by neighbors, x fastest.
 // Springs: every pair of a voxel's 8 masses, once. The material combines the two most common materials among the voxels
 // that share the pair, without air (ties go to the lower id).
 // Faces: the skin, two triangles per voxel side, counter-clockwise from outside; a closed oriented surface.

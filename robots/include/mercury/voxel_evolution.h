@@ -34,7 +34,7 @@ Mirror mirror_of(const VoxelGrid& grid);
 // InputError for a grid or a mutation that is not valid.
 VoxelGrid mutate(const VoxelGrid& parent, const VoxelMutation& mutation, std::uint64_t seed);
 
-// A child of a's size and edge, in blocks of `patch` voxels, each from a or b with probability 1/2. b is centred in a;
+// A child of a's size and edge, in blocks of `patch` voxels, each from a or b with probability 1/2. b is centered in a;
 // where b has no voxel because it is smaller, the child takes a's. With a mirror the child's halves are alike. A child
 // that would be all air is a copy of a. Throws InputError for a grid or a patch that is not valid.
 VoxelGrid cross(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t seed, int patch = 2,

@@ -56,7 +56,7 @@ class Motion {
  public:
   static constexpr bool needs_aos = EnvironmentModel::has_faces || gathered_springs;
 
-  // `scale`: units per newton, or per metre for corrections.
+  // `scale`: units per newton, or per meter for corrections.
   HWY_INLINE Motion(Body& body, const EnvironmentModel& model, const StepConstants& constants, float scale)
       : body_(body), arrays_(body), model_(model), constants_(constants), inverse_scale_(1 / scale), box_() {}
 

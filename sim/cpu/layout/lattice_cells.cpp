@@ -20,7 +20,7 @@ std::vector<LatticeCell> lattice_cells_of(const Robot& robot) {
   for (const Vec3 x : robot.masses) low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
 
   constexpr std::size_t across = max_cells_across;
-  const float per_metre = 1 / std::sqrt(shortest_squared);
+  const float per_meter = 1 / std::sqrt(shortest_squared);
   std::bitset<across * across * across> taken;
   std::vector<LatticeCell> cells;
   cells.reserve(robot.masses.size());
@@ -28,7 +28,7 @@ std::vector<LatticeCell> lattice_cells_of(const Robot& robot) {
     std::array<std::size_t, 3> cell{};
     const std::array<float, 3> distance{x.x - low.x, x.y - low.y, x.z - low.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float coordinate = distance[axis] * per_metre + 0.5f;  // rounded below; none is negative
+      const float coordinate = distance[axis] * per_meter + 0.5f;  // rounded below; none is negative
       if (!(coordinate < static_cast<float>(across))) return {};
       cell[axis] = static_cast<std::size_t>(coordinate);
     }

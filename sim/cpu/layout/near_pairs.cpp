@@ -29,7 +29,7 @@ bool NearPairs::joined(std::uint32_t i, std::uint32_t j) const {
   return std::find(joined_.begin() + start_[i], joined_.begin() + start_[i + 1], j) != joined_.begin() + start_[i + 1];
 }
 
-// Masses sorted by cell, x fastest. Cells are at least one radius wide, so that near masses are in neighbouring cells.
+// Masses sorted by cell, x fastest. Cells are at least one radius wide, so that near masses are in neighboring cells.
 struct NearPairs::Grid {
   std::array<std::uint32_t, 3> size{1, 1, 1};
   std::vector<std::uint32_t> start, sorted;

@@ -14,7 +14,7 @@
 // 4. A robot of few masses is searched by comparing all pairs, a tile at a time (kernels/near_search.h). One bit per
 //    pair says in advance whether the pair counts: once, and only without a spring.
 // 5. A larger robot is searched with a grid of cells that are at least as wide as the search radius. Masses are sorted
-//    by cell, x fastest, so that neighbouring cells along x are one stretch of the list. A mass in row * is compared
+//    by cell, x fastest, so that neighboring cells along x are one stretch of the list. A mass in row * is compared
 //    with those after it in its own row, and with rows 1 to 4, so that each pair is met once:
 //
 //      z + 1   | 2 | 3 | 4 |      rows of cells, seen along the x axis

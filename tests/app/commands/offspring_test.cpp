@@ -164,7 +164,7 @@ TEST_F(GrowCommand, InvalidInputIsReported) {
   document["origin"]["edge"] = "wide";
   write("a.json", document.dump());
   EXPECT_EQ(refusal({"grow", path("a.json"), "-o", path("c.json")}),
-            "mercury: voxel-1-0: /origin: edge must be a number of metres\n");
+            "mercury: voxel-1-0: /origin: edge must be a number of meters\n");
   EXPECT_EQ(refusal({"grow", path("b.json"), "-o", path("b.json")}),
             "mercury: -o: " + path("b.json") + " exists already; use --force to replace it, or give another name\n");
   EXPECT_THAT(refusal({"grow", path("b.json"), "-o", path("c.json"), "--seed", "3"}),

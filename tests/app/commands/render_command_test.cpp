@@ -173,7 +173,7 @@ TEST_F(RenderCommand, EachSideOfAComparisonIsThePictureOfItsSettings) {
 }
 
 TEST_F(RenderCommand, SidesOfAFilmShareCameraAndScale) {
-  // Equal settings: whatever the camera and the colours do over time, both sides do it.
+  // Equal settings: whatever the camera and the colors do over time, both sides do it.
   ASSERT_EQ(mercury(command("even", {"--fps", "4", "--seconds", "1", "--size", "320x90", "--color", "speed", "--show",
                                      "skin", "--compare", "dt=0.001"}))
                 .status,

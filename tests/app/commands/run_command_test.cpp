@@ -103,7 +103,7 @@ TEST_F(RunCommand, DifferentRunsHaveDifferentHashes) {
   EXPECT_NE(shorter, longer);
 }
 
-// A body falls from rest through vacuum (density 0) for 0.5 s. Without drag and damping, its centre of mass follows
+// A body falls from rest through vacuum (density 0) for 0.5 s. Without drag and damping, its center of mass follows
 // x = g t^2 / 2.
 TEST_F(RunCommand, DistanceIsThatOfAFallingBody) {
   const json report = run_json({"--random", "voxel:1", "--seconds", "0.5", "--density", "0", "--damping", "0",

@@ -158,7 +158,7 @@ TEST_F(RunPicture, OptionsOfRunsNeedARun) {
 
 class RunInfo : public RunPicture {};
 
-TEST_F(RunInfo, SummarisesTheRun) {
+TEST_F(RunInfo, SummarizesTheRun) {
   make_run(path("swim"), small_run(), 4);
   const RunHistory run(path("swim"));
   const Individual& best = run.individuals()[run.living().front()];

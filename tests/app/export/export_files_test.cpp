@@ -94,7 +94,7 @@ TEST_F(ExportFiles, ObjReadsBackToTheSameFloatsAndFaces) {
   EXPECT_EQ(faces, expected);
 }
 
-TEST_F(ExportFiles, ObjGivesEachFaceTheColourOfItsMaterial) {
+TEST_F(ExportFiles, ObjGivesEachFaceTheColorOfItsMaterial) {
   std::istringstream lines(written("obj")), materials(read("bent.mtl"));
   std::map<std::string, std::array<float, 3>> colors;
   std::string name;
@@ -129,7 +129,7 @@ TEST_F(ExportFiles, ObjWithSpringsHasALinePerSpring) {
   EXPECT_EQ(vertices, bent_.robot.masses.size());  // each mass of a voxel robot has a spring
 }
 
-TEST_F(ExportFiles, PlyHasExactColoursPerFaceAndThePositionsOfTheSkin) {
+TEST_F(ExportFiles, PlyHasExactColorsPerFaceAndThePositionsOfTheSkin) {
   const std::string ply = written("ply");
   const std::size_t masses = masses_of_skin(bent_.robot).size(), faces = bent_.robot.faces.size();
   EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(masses) + "\n"));

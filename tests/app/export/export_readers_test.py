@@ -175,7 +175,7 @@ class Vtk(Case):
 class Usd(Case):
     needs = "pxr"
 
-    def test_stage_has_metres_z_up_and_a_time_code_per_frame(self):
+    def test_stage_has_meters_z_up_and_a_time_code_per_frame(self):
         from pxr import Usd as usd, UsdGeom
         stage = usd.Stage.Open(self.export_motion("swim.usda", "--springs"))
         times, positions, _ = self.recorded()

@@ -15,7 +15,7 @@ using test::ids_of;
 using test::make_robots;
 using test::on_cpu;
 
-// Where the centre of mass of a robot is drawn.
+// Where the center of mass of a robot is drawn.
 Vector3f shown(LiveScene& scene, std::size_t robot) {
   Vector3f sum = Vector3f::Zero();
   const auto positions = scene.picture().positions_of(robot);

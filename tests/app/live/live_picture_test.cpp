@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene that the window draws: bodies, colours and shapes after edits.
+// The scene that the window draws: bodies, colors and shapes after edits.
 #include <gtest/gtest.h>
 
 #include <cmath>

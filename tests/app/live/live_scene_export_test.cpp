@@ -91,7 +91,7 @@ TEST_F(LiveExport, MotionIsThatOfASimulationFromTimeZero) {
   }
 }
 
-TEST_F(LiveExport, CancelledMotionLeavesNothingBehind) {
+TEST_F(LiveExport, CanceledMotionLeavesNothingBehind) {
   ASSERT_TRUE(scene_.export_motion(robot_, path("swim.usda"), 1000).ok());
   scene_.cancel_work(scene_.work().front().id);
   EXPECT_EQ(last_message(), "");

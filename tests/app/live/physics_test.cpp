@@ -149,7 +149,7 @@ TEST(LivePhysics, RobotsKeepTheirStateWhenOthersAreAddedAndRemoved) {
   EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(1), expected));
 }
 
-TEST(LivePhysics, PerturbationMovesTheCentreOfMassByItsForce) {
+TEST(LivePhysics, PerturbationMovesTheCenterOfMassByItsForce) {
   // Empty space without damping: the only outer force is k (target - x) on one mass.
   Configuration space = on_cpu(OceanSimple{.point_drag = 0});
   space.damping = 0;

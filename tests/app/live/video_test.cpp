@@ -63,16 +63,16 @@ TEST_F(LiveVideo, RecordingRunsInRealTime) {
   EXPECT_EQ(stream["height"], 48);
 }
 
-TEST_F(LiveVideo, FailedRecordingReportsWhyAndCancelledOneLeavesNoFile) {
+TEST_F(LiveVideo, FailedRecordingReportsWhyAndCanceledOneLeavesNoFile) {
   ScreenRecording wrong(path("screen.avi"), {64, 48});
   const VideoStatus status = over(wrong);
   EXPECT_EQ(status.state, VideoStatus::State::failed);
   EXPECT_THAT(status.error, testing::HasSubstr(".avi"));
   EXPECT_FALSE(wrong.offer(0, plain(64, 48, {})));
-  ScreenRecording cancelled(path("screen.mp4"), {64, 48});
-  cancelled.offer(0, plain(64, 48, {}));
-  cancelled.cancel();
-  EXPECT_EQ(over(cancelled).state, VideoStatus::State::cancelled);
+  ScreenRecording canceled(path("screen.mp4"), {64, 48});
+  canceled.offer(0, plain(64, 48, {}));
+  canceled.cancel();
+  EXPECT_EQ(over(canceled).state, VideoStatus::State::canceled);
   EXPECT_TRUE(listing().empty());
 }
 
@@ -94,7 +94,7 @@ TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
   EXPECT_EQ(test::probe(path("group.mp4"))["nb_read_frames"], "5");
 }
 
-TEST_F(LiveVideo, CancelledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {
+TEST_F(LiveVideo, CanceledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {
   LiveScene scene(test::on_cpu());
   EXPECT_EQ(over(*scene.export_video({.output = path("none.mp4")})).state, VideoStatus::State::failed);
   test::make_robots(scene, 1);
@@ -102,7 +102,7 @@ TEST_F(LiveVideo, CancelledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {
       {.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
   video->cancel();
   video->wait();
-  EXPECT_EQ(video->status().state, VideoStatus::State::cancelled);
+  EXPECT_EQ(video->status().state, VideoStatus::State::canceled);
   EXPECT_TRUE(listing().empty());
 }
 

@@ -108,7 +108,7 @@ TEST(VoxelEdit, WhatCannotBeEditedIsRefusedWithAReason) {
   EXPECT_FALSE(voxel_side_of(one, one.faces.size()));
 }
 
-TEST(CarriedState, MassesGoOnWhereTheyAreAndNewOnesMoveWithTheirNeighbours) {
+TEST(CarriedState, MassesGoOnWhereTheyAreAndNewOnesMoveWithTheirNeighbors) {
   const Robot before = block(1, 1, 1);
   const Robot after = with_voxel(before, side_towards(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 3});
   // The body has moved by (1, 2, 3) m and goes at 4 m/s.

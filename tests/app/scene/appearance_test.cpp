@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours and shapes of a robot.
+// Colors and shapes of a robot.
 #include "app/scene/appearance.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which values the ends of a colour map stand for.
+// Which values the ends of a color map stand for.
 #include "app/scene/color_scale.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace mercury::test {
 namespace {
 
-ViewSettings coloured_by(const char* quantity) {
+ViewSettings colored_by(const char* quantity) {
   ViewSettings settings;
   settings.color = &color_quantity(quantity);
   return settings;
@@ -31,7 +31,7 @@ std::vector<float> hundred(float factor) {
 }
 
 TEST(ColorScale, ReachesFromTheSecondToTheNinetyEighthPercentile) {
-  ColorScale scale(coloured_by("speed"));
+  ColorScale scale(colored_by("speed"));
   scale.fit(0, hundred(0.5f), true);
   EXPECT_FLOAT_EQ(scale.scale().low, 1);
   EXPECT_FLOAT_EQ(scale.scale().high, 49);
@@ -39,7 +39,7 @@ TEST(ColorScale, ReachesFromTheSecondToTheNinetyEighthPercentile) {
 }
 
 TEST(ColorScale, OfSignedQuantitiesReachesAsFarToBothSides) {
-  ColorScale scale(coloured_by("force"));
+  ColorScale scale(colored_by("force"));
   std::vector<float> values = hundred(1);
   for (float& value : values) value -= 70;
   scale.fit(0, values, true);
@@ -48,7 +48,7 @@ TEST(ColorScale, OfSignedQuantitiesReachesAsFarToBothSides) {
 }
 
 TEST(ColorScale, IsNotWidenedByAFewExtremes) {
-  ColorScale scale(coloured_by("energy"));
+  ColorScale scale(colored_by("energy"));
   std::vector<float> values = hundred(1);
   values.front() = 1e9f;
   values.back() = INFINITY;
@@ -57,7 +57,7 @@ TEST(ColorScale, IsNotWidenedByAFewExtremes) {
 }
 
 TEST(ColorScale, GrowsAtOnceAndShrinksAgainAfterOneSlowestPeriod) {
-  ColorScale scale(coloured_by("speed"));
+  ColorScale scale(colored_by("speed"));
   scale.fit(0, hundred(1), true);
   scale.fit(0.1, hundred(10), false);
   EXPECT_FLOAT_EQ(scale.scale().high, 980);
@@ -75,7 +75,7 @@ TEST(ColorScale, GrowsAtOnceAndShrinksAgainAfterOneSlowestPeriod) {
 }
 
 TEST(ColorScale, RestsWhileAMotionRepeats) {
-  ColorScale scale(coloured_by("speed"));
+  ColorScale scale(colored_by("speed"));
   const auto at = [&](double time) { scale.fit(time, hundred(1 + 0.8f * std::sin(static_cast<float>(time))), false); };
   double time = 0;
   for (; time < 7; time += 1.0 / 30) at(time);
@@ -89,7 +89,7 @@ TEST(ColorScale, RestsWhileAMotionRepeats) {
 
 TEST(ColorScale, DependsOnSimulatedTimeAlone) {
   const auto film = [](int repeats) {
-    ColorScale scale(coloured_by("speed"));
+    ColorScale scale(colored_by("speed"));
     std::vector<float> ends;
     for (int frame = 0; frame < 400; ++frame) {
       // A window may show the same state several times.
@@ -103,7 +103,7 @@ TEST(ColorScale, DependsOnSimulatedTimeAlone) {
 }
 
 TEST(ColorScale, StartsAgainWithOtherRobotsOrAnEarlierTime) {
-  ColorScale scale(coloured_by("speed"));
+  ColorScale scale(colored_by("speed"));
   scale.fit(5, hundred(10), true);
   scale.fit(5, hundred(1), true);
   EXPECT_FLOAT_EQ(scale.scale().high, 98);
@@ -112,7 +112,7 @@ TEST(ColorScale, StartsAgainWithOtherRobotsOrAnEarlierTime) {
 }
 
 TEST(ColorScale, KeepsAScaleThatTheUserGives) {
-  ViewSettings settings = coloured_by("speed");
+  ViewSettings settings = colored_by("speed");
   settings.scale = {0.5f, 2.0f};
   settings.colormap = render::Colormap::magma;
   ColorScale scale(settings);
@@ -123,14 +123,14 @@ TEST(ColorScale, KeepsAScaleThatTheUserGives) {
 }
 
 TEST(ColorScale, OfOneValueStartsAtZero) {
-  ColorScale scale(coloured_by("stiffness"));
+  ColorScale scale(colored_by("stiffness"));
   scale.fit(0, std::vector<float>(50, 80.0f), true);
   EXPECT_EQ(scale.scale().low, 0);
   EXPECT_EQ(scale.scale().high, 80);
 }
 
 TEST(ColorScale, LogarithmicOfAmountsStaysAboveZero) {
-  ViewSettings settings = coloured_by("energy");
+  ViewSettings settings = colored_by("energy");
   settings.log_scale = true;
   ColorScale scale(settings);
   scale.fit(0, {0, 0, 0, 1e-9f, 3, 5, 5}, true);
@@ -139,7 +139,7 @@ TEST(ColorScale, LogarithmicOfAmountsStaysAboveZero) {
 }
 
 TEST(ColorScale, HistogramCountsValuesOnTheScale) {
-  ViewSettings settings = coloured_by("speed");
+  ViewSettings settings = colored_by("speed");
   settings.scale = {0.0f, 32.0f};
   ColorScale scale(settings);
   scale.fit(0, {0.5f, 0.5f, 0.5f, 0.5f, 10.5f, 99, NAN}, true);
@@ -147,7 +147,7 @@ TEST(ColorScale, HistogramCountsValuesOnTheScale) {
   ASSERT_EQ(histogram.size(), 32u);
   EXPECT_FLOAT_EQ(histogram[0], 1);      // 4 values: the most
   EXPECT_FLOAT_EQ(histogram[10], 0.5f);  // 1 value: sqrt(1 / 4)
-  EXPECT_FLOAT_EQ(histogram[31], 0.5f);  // beyond the end, in its colour
+  EXPECT_FLOAT_EQ(histogram[31], 0.5f);  // beyond the end, in its color
   EXPECT_FLOAT_EQ(std::accumulate(histogram.begin(), histogram.end(), 0.0f), 2);
 }
 
@@ -169,7 +169,7 @@ TEST(Sample, TakesEveryElementOfTheRangesOrEvenlySpreadOnes) {
 TEST(GroupScene, TheScaleFitsRobotsThatAreVisible) {
   const Simulation simulation(Configuration{.device = {.kind = DeviceKind::cpu}},
                               std::vector<Robot>{random_voxel_robot({}, 1), random_voxel_robot({}, 2)});
-  GroupScene scene(simulation, {{0, 0, 0}, {5, 0, 0}}, coloured_by("speed"));
+  GroupScene scene(simulation, {{0, 0, 0}, {5, 0, 0}}, colored_by("speed"));
   const std::size_t first = simulation.robot(0).masses.size(), second = simulation.robot(1).masses.size();
   std::vector<Telemetry> telemetry = simulation.telemetry();
   const auto high = [&](double time) {

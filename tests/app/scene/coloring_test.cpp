@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour quantities, their scales, and arrows.
+// Color quantities, their scales, and arrows.
 #include "app/scene/coloring.h"
 
 #include <fmt/format.h>

@@ -27,7 +27,7 @@ GroupMotion motion(Layout layout, const Environment& environment = Ocean{}) {
   return motion;
 }
 
-TEST(Cells, TheCentreOfMassStaysInTheMiddleOfItsCell) {
+TEST(Cells, TheCenterOfMassStaysInTheMiddleOfItsCell) {
   const Room room{{1, 2, 3}, 1};
   const Vector3f offset(10, 20, 30);
   for (const Vec3 place : {Vec3{1, 2, 3}, Vec3{-40, 7, 900}, Vec3{1e4f, 0, 0}}) {

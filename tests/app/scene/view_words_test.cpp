@@ -51,7 +51,7 @@ TEST(ViewWords, WordsBecomeSettings) {
   EXPECT_TRUE(settings.shown.legend) << "values need a legend";
 }
 
-TEST(ViewWords, ACutIsAShareOfEachRobotOrMetresFromItsMiddle) {
+TEST(ViewWords, ACutIsAShareOfEachRobotOrMetersFromItsMiddle) {
   const auto cut = [](const char* text) { return view_settings({.cut = text}).cut.value(); };
   EXPECT_EQ(cut("x"), (render::Cut{.axis = 0, .percent = 50}));
   EXPECT_EQ(cut("z:0%"), (render::Cut{.axis = 2, .percent = 0}));

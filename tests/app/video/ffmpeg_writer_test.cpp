@@ -29,7 +29,7 @@ std::array<std::uint8_t, 3> yuv_of(Rgb color) {
   return {byte(16 + 219 * y), byte(128 + 224 * u), byte(128 + 224 * v)};
 }
 
-// A frame of one colour, in the format for that kind of video.
+// A frame of one color, in the format for that kind of video.
 Image plain(VideoKind kind, PictureSize size, Rgb color) {
   Image image{.width = size.width, .height = size.height, .format = pixel_format_of(kind), .bytes = {}};
   image.bytes.resize(render::image_size(image.format, size.width, size.height));
@@ -101,8 +101,8 @@ TEST_F(VideoTest, Mp4HasItsIndexBeforeItsData) {
   EXPECT_LT(place("moov"), place("mdat"));
 }
 
-// A player that honours the tags must show the original colours.
-TEST_F(VideoTest, ColoursArePreserved) {
+// A player that honors the tags must show the original colors.
+TEST_F(VideoTest, ColorsArePreserved) {
   const Rgb color{0.9, 0.3, 0.1};
   for (const char* name : {"a.mp4", "a.webm", "a.gif"}) {
     write_video(name, {.size = small, .frames_per_second = 25}, 3, color);

@@ -64,7 +64,7 @@ TEST(KeyMap, NumbersColorInTheOrderOfTheQuantities) {
     EXPECT_EQ(quantity_of(*action), &quantity);
     const auto binding = std::ranges::find(key_bindings(), *action, &KeyBinding::action);
     EXPECT_EQ(binding->name, "color_" + std::string(quantity.key));
-    EXPECT_EQ(binding->meaning, "colour by " + std::string(quantity.key));
+    EXPECT_EQ(binding->meaning, "color by " + std::string(quantity.key));
     EXPECT_EQ(map.command_of({.character = key++, .repeated = true}), std::nullopt);
   }
   EXPECT_EQ(quantity_of(Action::drag_arrows), nullptr);

@@ -89,7 +89,7 @@ class PlaybackTest(WindowCase):
         yellow, magenta = numpy.array([255, 225, 74]) / 255, numpy.array([209, 0, 108]) / 255
 
         def marked(color, place, reach):
-            """The number of pixels of a colour within `reach` of an item (None: the middle), once the camera rests."""
+            """The number of pixels of a color within `reach` of an item (None: the middle), once the camera rests."""
             while (before := window.frame())["where"] != window.frame()["where"]:
                 self.assertGreater(before["distance"], 0)
             x, y = window.place(place) if place else (640, 360)

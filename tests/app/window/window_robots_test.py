@@ -31,7 +31,7 @@ class RobotsTest(WindowCase):
         window = self.small("--paused")
         self.assertEqual(self.palette(window, "dark or light"), "dark or light theme")
         window.frame(lambda frame: frame["theme"] == "light")
-        self.assertEqual(self.palette(window, "strain"), "colour by Strain")
+        self.assertEqual(self.palette(window, "strain"), "color by Strain")
         window.frame(lambda frame: frame["color"] == "strain")
         self.assertEqual(self.palette(window, "eel"), "eel")
         window.frame(lambda frame: frame["selected"] == 1)

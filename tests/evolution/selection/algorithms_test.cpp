@@ -266,7 +266,7 @@ TEST(AgeFitnessPareto, OneChildIsRandomAndLivesOnHoweverBad) {
 
 TEST(Nsga2, FrontsThenCrowdingDecide) {
   // Front 0 is (0, 4), (1, 3), (3, 1), (4, 0); front 1 is (0, 3), (2, 1), (3, 0) and (1, 2). Three of front 1 fit:
-  // both ends, and then the one whose neighbours are further apart. (1, 2): (2 + 2) / 3; (2, 1): (2 + 2) / 3, the same;
+  // both ends, and then the one whose neighbors are further apart. (1, 2): (2 + 2) / 3; (2, 1): (2 + 2) / 3, the same;
   // the better first score wins.
   const std::vector<Individual> pool{individual(0, {0, 4}), individual(1, {0, 3}), individual(2, {1, 3}),
                                      individual(3, {1, 2}), individual(4, {2, 1}), individual(5, {3, 1}),

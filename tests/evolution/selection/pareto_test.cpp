@@ -69,7 +69,7 @@ TEST(Pareto, EqualPointsShareAFront) {
               ElementsAre(ElementsAre(1, 3, 4), ElementsAre(0, 2)));
 }
 
-// Points on a line from (0, 3) to (3, 0): inner ones have (difference of neighbours / range) summed over both values.
+// Points on a line from (0, 3) to (3, 0): inner ones have (difference of neighbors / range) summed over both values.
 TEST(Pareto, CrowdingOfAnEvenLine) {
   const Points points{.dimensions = 2, .values = {1, 2, 3, 0, 0, 3, 2, 1}};
   const std::vector<std::size_t> front{0, 1, 2, 3};
@@ -91,7 +91,7 @@ TEST(Pareto, CrowdingIsThatOfTheDefinition) {
     for (std::size_t k = 0; k < front.size(); ++k) {
       double expected = 0;
       for (std::size_t d = 0; d < points.dimensions; ++d) {
-        // All values differ, so the neighbours are the nearest values on either side.
+        // All values differ, so the neighbors are the nearest values on either side.
         const double x = points[front[k]][d];
         double below = -infinite, above = infinite, lowest = infinite, highest = -infinite;
         for (const std::size_t i : front) {

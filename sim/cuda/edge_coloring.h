@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours the springs of each tile so that springs of one colour share neither a lane nor a bank. A colour becomes a
+// Colors the springs of each tile so that springs of one color share neither a lane nor a bank. A color becomes a
 // row.
 //
 // The springs of a tile are the edges of a bipartite graph: on one side the 32 lanes of the owners, on the other the 32
@@ -10,13 +10,13 @@
 //              |  \ | /  |         |          edges that meet at a bank: one access per row and bank
 //   banks      0    1    2   ...  31
 //
-// 1. Such a graph can be coloured with as many colours as the busiest vertex has edges (Koenig's theorem). No
+// 1. Such a graph can be colored with as many colors as the busiest vertex has edges (Koenig's theorem). No
 //    schedule has fewer rows.
-// 2. Each vertex keeps the set of its free colours as bits. An edge takes the first bit of the intersection of its two
+// 2. Each vertex keeps the set of its free colors as bits. An edge takes the first bit of the intersection of its two
 //    ends' sets.
-// 3. If the intersection is empty, some colour p is free at the lane and some other colour q at the bank. Exchanging p
-//    and q along the path of edges coloured p, q, p, ... that starts at the bank frees p at the bank too. The path
-//    never ends at the lane, because it enters lanes by edges of colour p.
+// 3. If the intersection is empty, some color p is free at the lane and some other color q at the bank. Exchanging p
+//    and q along the path of edges colored p, q, p, ... that starts at the bank frees p at the bank too. The path
+//    never ends at the lane, because it enters lanes by edges of color p.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct ScheduledSpring {
 
 // Rows of tile t are [row_start[t], row_start[t + 1]): as many as its busiest lane or bank has springs. Returns the
 // entries of all rows, 32 per row.
-std::vector<ScheduledSpring> colour_springs(std::span<const OwnedSpring> springs,
-                                            std::span<const std::uint32_t> row_start);
+std::vector<ScheduledSpring> color_springs(std::span<const OwnedSpring> springs,
+                                           std::span<const std::uint32_t> row_start);
 
 }  // namespace mercury::cuda

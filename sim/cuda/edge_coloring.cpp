@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/cuda/edge_colouring.h"
+#include "sim/cuda/edge_coloring.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,63 +8,63 @@
 namespace mercury::cuda {
 namespace {
 
-// Words of 64 bits that the colours of the tile with most rows need.
-std::uint32_t words_of_colours(std::span<const std::uint32_t> row_start) {
+// Words of 64 bits that the colors of the tile with most rows need.
+std::uint32_t words_of_colors(std::span<const std::uint32_t> row_start) {
   std::uint32_t most = 1;
   for (std::size_t tile = 0; tile + 1 < row_start.size(); ++tile)
     most = std::max(most, row_start[tile + 1] - row_start[tile]);
   return (most + 63) / 64;
 }
 
-// All tiles at once, because their graphs have no edge in common. Nearly always a word has a bit for each colour, and
+// All tiles at once, because their graphs have no edge in common. Nearly always a word has a bit for each color, and
 // code for one word takes two thirds of the time.
 template <bool one_word>
-class EdgeColouring {
+class EdgeColoring {
  public:
-  EdgeColouring(std::span<const OwnedSpring> springs, std::span<const std::uint32_t> row_start)
-      : springs_(springs), row_start_(row_start), words_(one_word ? 1 : words_of_colours(row_start)),
+  EdgeColoring(std::span<const OwnedSpring> springs, std::span<const std::uint32_t> row_start)
+      : springs_(springs), row_start_(row_start), words_(one_word ? 1 : words_of_colors(row_start)),
         entries_(std::size_t{row_start.back()} * lanes), lane_at_bank_(entries_.size(), no_lane) {
     const auto tiles = static_cast<std::uint32_t>(row_start.size() - 1);
     free_.resize(std::size_t{tiles} * 2 * lanes * words_);
     for (std::uint32_t tile = 0; tile < tiles; ++tile)
       for (std::uint32_t vertex = 0; vertex < 2 * lanes; ++vertex)
         free_all(tile * 2 * lanes + vertex, row_start[tile + 1] - row_start[tile]);
-    // Neighbours often share a lane, and would wait for each other. So the halves take turns.
+    // Neighbors often share a lane, and would wait for each other. So the halves take turns.
     const auto half = static_cast<std::uint32_t>(springs.size() / 2);
-    for (std::uint32_t i = 0; i < half; ++i) colour(i), colour(half + i);
-    if (springs.size() % 2 != 0) colour(2 * half);
+    for (std::uint32_t i = 0; i < half; ++i) color(i), color(half + i);
+    if (springs.size() % 2 != 0) color(2 * half);
   }
 
   std::vector<ScheduledSpring> take() { return std::move(entries_); }
 
  private:
   static constexpr std::uint8_t no_lane = 0xff;
-  static constexpr std::uint32_t no_colour = 0xffffffffu;
+  static constexpr std::uint32_t no_color = 0xffffffffu;
 
   std::uint32_t words() const { return one_word ? 1 : words_; }
   std::uint64_t& free_word(std::uint32_t vertex, std::uint32_t word) { return free_[vertex * words() + word]; }
 
-  void free_all(std::uint32_t vertex, std::uint32_t colours) {
-    for (std::uint32_t word = 0; word < words(); ++word, colours -= std::min(colours, 64u))
-      free_word(vertex, word) = colours >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << colours) - 1;
+  void free_all(std::uint32_t vertex, std::uint32_t colors) {
+    for (std::uint32_t word = 0; word < words(); ++word, colors -= std::min(colors, 64u))
+      free_word(vertex, word) = colors >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << colors) - 1;
   }
-  void flip(std::uint32_t vertex, std::uint32_t colour) {
-    free_word(vertex, colour / 64) ^= std::uint64_t{1} << colour % 64;
+  void flip(std::uint32_t vertex, std::uint32_t color) {
+    free_word(vertex, color / 64) ^= std::uint64_t{1} << color % 64;
   }
-  // The first colour that is free at both vertices.
-  std::uint32_t common_colour(std::uint32_t u, std::uint32_t v) {
+  // The first color that is free at both vertices.
+  std::uint32_t common_color(std::uint32_t u, std::uint32_t v) {
     for (std::uint32_t word = 0; word < words(); ++word)
       if (const std::uint64_t both = free_word(u, word) & free_word(v, word); both != 0)
         return word * 64 + static_cast<std::uint32_t>(std::countr_zero(both));
-    return no_colour;
+    return no_color;
   }
 
-  void colour(std::uint32_t i) {
+  void color(std::uint32_t i) {
     const OwnedSpring s = springs_[i];
     const std::uint32_t tile = s.owner / lanes, first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
     const std::uint32_t lane = s.owner % lanes, bank = s.partner % lanes;
-    const std::uint32_t c = common_colour(first_lane + lane, first_bank + bank);
-    if (c == no_colour) return exchange_path(tile, lane, {i, s.partner});
+    const std::uint32_t c = common_color(first_lane + lane, first_bank + bank);
+    if (c == no_color) return exchange_path(tile, lane, {i, s.partner});
     flip(first_lane + lane, c);
     flip(first_bank + bank, c);
     const std::size_t row = (row_start_[tile] + c) * std::size_t{lanes};
@@ -72,13 +72,13 @@ class EdgeColouring {
     lane_at_bank_[row + bank] = static_cast<std::uint8_t>(lane);
   }
 
-  // Gives an edge a colour p that is free at its lane. Along the path, each edge that has p gives way and takes q, and
+  // Gives an edge a color p that is free at its lane. Along the path, each edge that has p gives way and takes q, and
   // each edge that has q gives way in turn and takes p.
   void exchange_path(std::uint32_t tile, std::uint32_t lane, ScheduledSpring edge) {
     const std::uint32_t first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
     std::uint32_t bank = edge.partner % lanes;
-    const std::uint32_t p = common_colour(first_lane + lane, first_lane + lane);
-    const std::uint32_t q = common_colour(first_bank + bank, first_bank + bank);
+    const std::uint32_t p = common_color(first_lane + lane, first_lane + lane);
+    const std::uint32_t q = common_color(first_bank + bank, first_bank + bank);
     const std::size_t row_p = (row_start_[tile] + p) * std::size_t{lanes};
     const std::size_t row_q = (row_start_[tile] + q) * std::size_t{lanes};
     flip(first_lane + lane, p);
@@ -108,18 +108,18 @@ class EdgeColouring {
 
   const std::span<const OwnedSpring> springs_;
   const std::span<const std::uint32_t> row_start_;
-  const std::uint32_t words_;               // of a set of colours
-  std::vector<std::uint64_t> free_;         // [tile][lane or bank][word], a bit per colour
+  const std::uint32_t words_;               // of a set of colors
+  std::vector<std::uint64_t> free_;         // [tile][lane or bank][word], a bit per color
   std::vector<ScheduledSpring> entries_;    // [row][lane]
   std::vector<std::uint8_t> lane_at_bank_;  // [row][bank]
 };
 
 }  // namespace
 
-std::vector<ScheduledSpring> colour_springs(std::span<const OwnedSpring> springs,
-                                            std::span<const std::uint32_t> row_start) {
-  if (words_of_colours(row_start) == 1) return EdgeColouring<true>(springs, row_start).take();
-  return EdgeColouring<false>(springs, row_start).take();
+std::vector<ScheduledSpring> color_springs(std::span<const OwnedSpring> springs,
+                                           std::span<const std::uint32_t> row_start) {
+  if (words_of_colors(row_start) == 1) return EdgeColoring<true>(springs, row_start).take();
+  return EdgeColoring<false>(springs, row_start).take();
 }
 
 }  // namespace mercury::cuda
