@@ -12,18 +12,18 @@ enum Phase : std::uint32_t { phase_environment = 0, phase_prediction = 1, phase_
 struct Failure {
   static constexpr std::uint32_t never = 0xffffffffu;
 
-  std::uint32_t when;      // 4 step + phase, or never
+  std::uint32_t when;      // 1 + 4 step + phase; 0 = before the launch; or never
   std::uint32_t bad_mass;  // the lowest one, or never
 
   __device__ bool before(std::uint32_t step, Phase phase) const {
-    return *static_cast<const volatile std::uint32_t*>(&when) < 4 * step + phase;
+    return *static_cast<const volatile std::uint32_t*>(&when) <= 4 * step + phase;
   }
   __device__ void report(std::uint32_t step, Phase phase, std::uint32_t mass) {
-    atomicMin(&when, 4 * step + phase);
+    atomicMin(&when, 1 + 4 * step + phase);
     atomicMin(&bad_mass, mass);
   }
   __device__ bool happened() const { return when != never; }
-  __device__ std::uint32_t step() const { return when / 4; }
+  __device__ std::uint32_t step() const { return (when - 1) / 4; }
 };
 
 }  // namespace mercury::cuda

@@ -9,8 +9,7 @@ StepSetting setting_of(const Configuration& configuration) {
   StepSetting setting;
   setting.solver = configuration.solver;
   setting.model = solver_model_of(configuration.environment);
-  if (const Land* land = std::get_if<Land>(&configuration.environment))
-    setting.contact_stiffness = contact_stiffness_of(*land, configuration.solver, configuration.dt);
+  setting.contact_stiffness = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt);
   setting.constants = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                        static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
   return setting;

@@ -9,8 +9,8 @@ namespace mercury::cpu {
 
 struct StepSetting {
   Solver solver = Solver::force;
-  AnyEnvironmentModel model = OceanModel(Ocean{});
-  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no self-collision
+  AnyEnvironmentModel model = solver_model_of(Ocean{});
+  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no contacts
   StepConstants constants;
 };
 
