@@ -12,6 +12,8 @@
 namespace mercury::window {
 namespace {
 
+bool is_dry(const Environment& environment) { return has_ground(environment) && !has_water(environment); }
+
 // On land every spring is 200 times as stiff. Of the 12 swimmers in robots/library, 7 explode there within 3 ms with
 // the force solver at 1 ms, 7 at 0.5 ms, 4 at 0.2 ms and none at 0.1 ms; with XPBD none does at 0.5 to 5 ms (10 s
 // each).
@@ -33,9 +35,11 @@ void EnvironmentChoice::count(const LiveScene& scene) {
   if (robots.revision == made_.revision) return;
   made_ = {.revision = robots.revision};
   for (const LiveRobot& robot : robots.robots) {
-    const std::string environment = environment_of(*robot.robot);
-    if (environment == "land") ++made_.for_land;
-    if (environment.starts_with("ocean")) ++made_.for_water;
+    const std::string name = environment_of(*robot.robot);
+    if (!is_environment(name)) continue;
+    const Environment environment = environment_named(name);
+    if (is_dry(environment)) ++made_.for_land;
+    if (has_water(environment)) ++made_.for_water;
   }
 }
 
@@ -78,7 +82,7 @@ bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configur
   const bool open = ImGui::BeginCombo("##environment", now.c_str());
   if (!open) context.log.item("tune.environment");
   if (!open) return false;
-  const bool unsafe = made_.for_water > 0 && !has_ground(configuration.environment) && !is_safe(configuration);
+  const bool unsafe = made_.for_water > 0 && !is_dry(configuration.environment) && !is_safe(configuration);
   for (const EnvironmentPreset& preset : environment_presets) {
     const std::string name(preset.name);
     const auto choose = [&](const std::string& label, const char* item, void (*adjust)(Configuration&)) {
@@ -90,7 +94,7 @@ bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configur
       changed = true;
     };
     choose(name, ("tune.environment." + name).c_str(), nullptr);
-    if (!unsafe || !has_ground(preset.environment)) continue;
+    if (!unsafe || !is_dry(preset.environment)) continue;
     choose(fmt::format("   {} with XPBD", name), "tune.environment.xpbd", use_xpbd);
     tooltip("the force solver would tear robots apart that are made for water; XPBD keeps them whole");
     choose(fmt::format("   {} with a time step of 0.1 ms", name), "tune.environment.small", use_small_step);
@@ -102,7 +106,7 @@ bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configur
 
 // For robots that are made for another environment.
 bool EnvironmentChoice::draw_hint(PanelContext& context, Configuration& configuration) const {
-  const bool land = has_ground(configuration.environment);
+  const bool land = is_dry(configuration.environment);
   const std::size_t strangers = land ? made_.for_water : made_.for_land;
   if (strangers == 0) return false;
   const std::string who = fmt::format("{} of {} robots {} made for {}", strangers, context.scene.robot_count(),
