@@ -259,8 +259,9 @@ inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
     if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
     return model;
   }
-  const auto* water = std::get_if<PointDrag>(&environment.water);
-  return OceanSimpleModel(water ? *water : PointDrag{.point_drag = 0}, gravity);
+  if (const auto* water = std::get_if<PointDrag>(&environment.water)) return OceanSimpleModel(*water, gravity);
+  if (!has_water(environment)) return OceanSimpleModel(PointDrag{.point_drag = 0}, gravity);
+  return GeneralModel(environment);
 }
 
 // Repulsion of two masses that no spring joins, F = k_c (distance - |d|) away from each other; zero at and beyond the
