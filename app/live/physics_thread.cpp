@@ -135,8 +135,9 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   replayed_repro = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool dt_changed = configuration.dt != simulation.configuration().dt;
-  const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
-  const bool to_land = moved && std::holds_alternative<Land>(configuration.environment);
+  const Environment& before = simulation.configuration().environment;
+  const bool moved = !same_parts(before, configuration.environment);
+  const bool to_land = has_ground(configuration.environment) && !has_ground(before);
   if (next_surroundings != surroundings) population.keep_surroundings(surroundings);
   if (configuration != simulation.configuration()) simulation.configure(configuration);
   simulation.set_perturbations({});
