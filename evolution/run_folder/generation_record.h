@@ -1,4 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
+// What differs between two strings of bytes that are alike at the same places.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evolution/bytes.h"
+#include "mercury/evolution.h"
+#include "mercury/individual.h"
+#include "mercury/run_folder.h"
+
+namespace mercury {
+
+// Turns `base` into `target`: pairs of (how many bytes to copy from the base, new bytes that replace as many of it);
+// then the rest of the base follows, up to the target's length. Numbers are LEB128.
+std::string difference_of(std::string_view base, std::string_view target);
+
+// The target. Throws DamagedBytes for bytes that are no difference from this base.
+std::string with_difference(std::string_view base, std::string_view difference);
+
+// Assessments as bytes: in the journal, in the files of shards, and between ranks.
+void encode(ByteWriter& writer, const Assessment& assessment);
+// Throws DamagedBytes.
+Assessment decode_assessment(ByteReader& reader);
+
+void encode(ByteWriter& writer, const std::vector<Assessment>& assessments);
+std::vector<Assessment> decode_assessments(ByteReader& reader);
+
 // A generation as a record of the journal.
 //
 // A record is a head, an index and the genomes:
@@ -9,19 +41,6 @@
 //     genomes  one after the other, in the order of ids: whole, or as the difference from the first parent's
 //
 // So a reader that does not need the genomes skips them.
-#pragma once
-
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "mercury/evolution.h"
-#include "mercury/run_folder.h"
-
-namespace mercury {
 
 // Genomes are read by applying at most as many differences one after the other.
 inline constexpr int longest_chain = 32;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/import.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <utility>
 
 #include "mercury/error.h"
+#include "robots/file/whole_file.h"
 #include "robots/importers/report_builder.h"
-#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {
@@ -92,6 +94,61 @@ Import import_file(const fs::path& path, const ImportOptions& options) {
   } catch (const InputError& problem) {
     throw InputError(path.string(), problem.what());
   }
+}
+
+std::string to_toml(const ImportedSettings& settings, const ImportReport& report) {
+  std::string file;
+  for (const char letter : report.file) file += static_cast<unsigned char>(letter) < ' ' ? ' ' : letter;
+  std::string text = fmt::format("# World of {}, for mercury run, render and view --config.\n", file);
+  text += fmt::format("# 1 m of the file is {:.4g} m here, 1 s is {:.4g} s.\n", report.length_scale, report.time_scale);
+  text += fmt::format("environment = \"{}\"\ngravity = [0, 0, {:.9g}]\nstiffness-scale = {:.9g}\n",
+                      settings.environment, settings.gravity, settings.stiffness_scale);
+  if (settings.environment == "land") {
+    text += fmt::format("friction = {:.9g}\n", settings.friction);
+    if (settings.self_collision)
+      text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
+    else
+      text += "no-self-collision = true\n";
+  } else if (settings.environment == "ocean") {
+    text += fmt::format("drag-coefficient = {:.9g}\nlift-coefficient = {:.9g}\n", settings.drag_coefficient,
+                        settings.lift_coefficient);
+  } else {
+    text += "point-drag = 0\n";
+  }
+  text += fmt::format("dt = {:.9g}\ndamping = {:.9g}\n", settings.dt, settings.damping);
+  if (!settings.seconds && !settings.settle) return text;
+  text += "\n[run]\n";
+  if (settings.seconds) text += fmt::format("seconds = {:.9g}\n", *settings.seconds);
+  if (settings.settle) text += fmt::format("settle = {:.9g}\n", *settings.settle);
+  return text;
+}
+
+std::string_view name_of(ImportOutcome outcome) {
+  switch (outcome) {
+    case ImportOutcome::mapped:
+      return "mapped";
+    case ImportOutcome::approximated:
+      return "approximated";
+    case ImportOutcome::ignored:
+      break;
+  }
+  return "ignored";
+}
+
+void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
+                const ImportOptions& options, Import& import) {
+  const std::vector<VoxelBody> bodies = separate_bodies(grid);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::string own = i == 0 ? name : fmt::format("{}-{}", name, i + 1);
+    Rounding rounding;
+    import.robots.push_back(
+        voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding));
+    import.report.robots.push_back(own);
+    if (!rounding.is_exact()) import.report.notes.push_back(fmt::format("{}: {}", own, text_of(rounding)));
+  }
+  if (bodies.size() > 1)
+    import.report.notes.push_back(fmt::format(
+        "{} separate bodies became a robot each; robots of Mercury do not touch each other", bodies.size()));
 }
 
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/run_folder/byte_difference.h"
+#include "evolution/run_folder/generation_record.h"
 
 #include <gtest/gtest.h>
 
