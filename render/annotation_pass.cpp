@@ -11,32 +11,27 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
 constexpr float exposure = 1.0f / 12;  // [s]: what flows by leaves a streak this long
 
 // As shaders/arrow.vert has it.
 struct ArrowRecord {
-  Vector4f from, vector, color;
+  Vector4 from, vector, color;
 };
 
 // The layout of shaders/tile.vert.
 struct TileRecord {
-  Vector4f center, half_width, half_height, fill, frame;
+  Vector4 center, half_width, half_height, fill, frame;
 };
 
 // The layout of shaders/path.vert.
 struct PathPoint {
-  Vector4f position, color;
+  Vector4 position, color;
 };
 
-Vector4f linear(Color color, float alpha = 1) {
+Vector4 linear(Color color, float alpha = 1) {
   const auto light = linear_of(color);
   return {light[0], light[1], light[2], alpha};
 }
-
-Vector4f with(const Vector3f& v, float w) { return {v.x(), v.y(), v.z(), w}; }
 
 float bits_of(std::uint32_t value) { return std::bit_cast<float>(value); }
 
@@ -76,9 +71,8 @@ void AnnotationPass::draw_arrows(std::span<const Arrow> arrows) {
   std::vector<ArrowRecord> records;
   records.reserve(arrows.size());
   for (const Arrow& a : arrows)
-    records.push_back({{a.from.x(), a.from.y(), a.from.z(), bits_of(a.body)},
-                       {a.vector.x(), a.vector.y(), a.vector.z(), 0},
-                       linear(a.color)});
+    records.push_back(
+        {{a.from.x, a.from.y, a.from.z, bits_of(a.body)}, {a.vector.x, a.vector.y, a.vector.z, 0}, linear(a.color)});
   arrows_.write(records);
   arrows_.bind_storage(binding::first_free);
   glUseProgram(arrow_.get());
@@ -94,7 +88,7 @@ void AnnotationPass::draw_tiles(std::span<const Tile> tiles) {
   records.reserve(tiles.size());
   for (const Tile& t : tiles)
     records.push_back(
-        {with(t.center, 0), with(t.half_width, 0), with(t.half_height, 0), linear(t.fill), linear(t.frame)});
+        {Vector4(t.center, 0), Vector4(t.half_width, 0), Vector4(t.half_height, 0), linear(t.fill), linear(t.frame)});
   tiles_.write(records);
   tiles_.bind_storage(binding::first_free);
   const Blending blending;
@@ -126,14 +120,14 @@ void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, in
 
 void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count, float half_side,
                                     float share) const {
-  const Vector3f sight = (camera.target - camera.eye).normalized();
-  const Vector3f middle = camera.target - 0.2f * half_side * sight;
+  const Vector3 sight = (camera.target - camera.eye).normalized();
+  const Vector3 middle = camera.target - 0.2f * half_side * sight;
   const auto drift = [&](float speed) { return float(std::remainder(double(speed) * scene.time, 2.0 * half_side)); };
   const Blending blending;
   glUseProgram(particle_.get());
-  glUniform4f(0, middle.x(), middle.y(), middle.z(), half_side);
-  glUniform4f(1, scene.flow.x(), scene.flow.y(), scene.flow.z(), exposure);
-  glUniform3f(2, drift(scene.flow.x()), drift(scene.flow.y()), drift(scene.flow.z()));
+  glUniform4f(0, middle.x, middle.y, middle.z, half_side);
+  glUniform4f(1, scene.flow.x, scene.flow.y, scene.flow.z, exposure);
+  glUniform3f(2, drift(scene.flow.x), drift(scene.flow.y), drift(scene.flow.z));
   glUniform1f(3, share);
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 6 * count);

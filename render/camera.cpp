@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/camera.h"
-
-#include <Eigen/Geometry>
-#include <Eigen/LU>
+#include "render/vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +10,17 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Matrix4f;
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
 constexpr float steepest = 1.5533f;  // [rad], 89 degrees
 
 struct Axes {
-  Vector3f right, up, back;
+  Vector3 right, up, back;
 };
 
 Axes axes_of(const Camera& camera) {
-  const Vector3f back = (camera.eye - camera.target).normalized();
-  Vector3f right = camera.up.cross(back);
-  if (right.norm() < 1e-4f) right = Vector3f::UnitY().cross(back);
-  right.normalize();
+  const Vector3 back = (camera.eye - camera.target).normalized();
+  Vector3 right = camera.up.cross(back);
+  if (right.norm() < 1e-4f) right = Vector3::unit(1).cross(back);
+  right = right.normalized();
   return {right, back.cross(right), back};
 }
 
@@ -42,60 +36,61 @@ struct Interval {
 };
 
 // The shifts of the target along an axis for which all points, seen from `distance`, lie in the free part.
-Interval shifts(std::span<const Vector3f> points, int axis, Span free, float distance) {
+Interval shifts(std::span<const Vector3> points, int axis, Span free, float distance) {
   Interval interval;
-  for (const Vector3f& p : points) {
-    interval.low = std::max(interval.low, p[axis] - free.high * (distance - p.z()));
-    interval.high = std::min(interval.high, p[axis] - free.low * (distance - p.z()));
+  for (const Vector3& p : points) {
+    interval.low = std::max(interval.low, p[axis] - free.high * (distance - p.z));
+    interval.high = std::min(interval.high, p[axis] - free.low * (distance - p.z));
   }
   return interval;
 }
 
-std::vector<Vector3f> corners_of(std::span<const Bounds> boxes) {
-  std::vector<Vector3f> corners;
+std::vector<Vector3> corners_of(std::span<const Bounds> boxes) {
+  std::vector<Vector3> corners;
   for (const Bounds& box : boxes)
     for (int corner = 0; corner < 8 && !box.empty(); ++corner)
-      corners.emplace_back((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
-                           (corner & 4) ? box.high.z() : box.low.z());
+      corners.emplace_back((corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
+                           (corner & 4) ? box.high.z : box.low.z);
   return corners;
 }
 
 }  // namespace
 
-void Bounds::extend(const Vector3f& point) {
-  low = low.cwiseMin(point);
-  high = high.cwiseMax(point);
+void Bounds::extend(const Vector3& point) {
+  low = smallest(low, point);
+  high = largest(high, point);
 }
 
 void Bounds::extend(const Bounds& other) {
-  low = low.cwiseMin(other.low);
-  high = high.cwiseMax(other.high);
+  low = smallest(low, other.low);
+  high = largest(high, other.high);
 }
 
-Bounds Bounds::moved(const Vector3f& offset) const { return empty() ? *this : Bounds{low + offset, high + offset}; }
+Bounds Bounds::moved(const Vector3& offset) const { return empty() ? *this : Bounds{low + offset, high + offset}; }
 
 Bounds bounds_of(std::span<const float> points) {
   Bounds bounds;
   for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-    const Vector3f point(points[i], points[i + 1], points[i + 2]);
-    if (point.allFinite()) bounds.extend(point);
+    const Vector3 point(points[i], points[i + 1], points[i + 2]);
+    if (point.is_finite()) bounds.extend(point);
   }
   return bounds;
 }
 
-Matrix4f Camera::view() const {
+Matrix4 Camera::view() const {
   const Axes axes = axes_of(*this);
-  Matrix4f m = Matrix4f::Identity();
-  m.block<1, 3>(0, 0) = axes.right.transpose();
-  m.block<1, 3>(1, 0) = axes.up.transpose();
-  m.block<1, 3>(2, 0) = axes.back.transpose();
-  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * eye;
+  Matrix4 m = Matrix4::identity();
+  const Vector3 rows[] = {axes.right, axes.up, axes.back};
+  for (int row = 0; row < 3; ++row) {
+    m.set_row(row, rows[row]);
+    m(row, 3) = -rows[row].dot(eye);
+  }
   return m;
 }
 
-Matrix4f Camera::projection(float aspect) const {
+Matrix4 Camera::projection(float aspect) const {
   const float scale = 1 / std::tan(0.5f * field_of_view);
-  Matrix4f m = Matrix4f::Zero();
+  Matrix4 m = Matrix4{};
   m(0, 0) = scale / aspect;
   m(1, 1) = scale;
   m(2, 2) = near / (far - near);
@@ -104,10 +99,10 @@ Matrix4f Camera::projection(float aspect) const {
   return m;
 }
 
-Vector3f Camera::project(const Vector3f& point, int width, int height) const {
-  const Vector4f seen = view() * point.homogeneous();
-  const Vector4f clip = projection(float(width) / float(height)) * seen;
-  return {float(width) * 0.5f * (1 + clip.x() / clip.w()), float(height) * 0.5f * (1 - clip.y() / clip.w()), -seen.z()};
+Vector3 Camera::project(const Vector3& point, int width, int height) const {
+  const Vector4 seen = view() * Vector4(point, 1);
+  const Vector4 clip = projection(float(width) / float(height)) * seen;
+  return {float(width) * 0.5f * (1 + clip.x / clip.w), float(height) * 0.5f * (1 - clip.y / clip.w), -seen.z};
 }
 
 Ray Camera::ray(float x, float y, int width, int height) const {
@@ -119,14 +114,14 @@ Ray Camera::ray(float x, float y, int width, int height) const {
 }
 
 Camera Orbit::camera() const {
-  const Vector3f direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                           std::sin(elevation));
+  const Vector3 direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                          std::sin(elevation));
   Camera camera;
   camera.target = target;
   camera.eye = target + distance * direction;
   // Derivative of `direction` by the elevation: points up in the picture even when the camera looks straight down.
   camera.up =
-      Vector3f(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth), std::cos(elevation));
+      Vector3(-std::sin(elevation) * std::cos(azimuth), -std::sin(elevation) * std::sin(azimuth), std::cos(elevation));
   camera.field_of_view = field_of_view;
   camera.near = std::max(1e-3f, 0.01f * distance);
   camera.far = 200 * distance;
@@ -151,18 +146,18 @@ void Orbit::frame(const Bounds& bounds, float aspect, float margin, const Insets
 }
 
 void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, const Insets& free) {
-  const std::vector<Vector3f> corners = corners_of(boxes);
+  const std::vector<Vector3> corners = corners_of(boxes);
   if (corners.empty()) return;
   target = bounds_of({corners[0].data(), 3 * corners.size()}).center();
   distance = 1;
   const Axes axes = axes_of(camera());
   const float half = std::tan(0.5f * field_of_view);
-  std::vector<Vector3f> seen;  // corners along the picture's axes, from the target
+  std::vector<Vector3> seen;  // corners along the picture's axes, from the target
   float nearest = -1e30f;
-  for (const Vector3f& corner : corners) {
-    const Vector3f p = corner - target;
+  for (const Vector3& corner : corners) {
+    const Vector3 p = corner - target;
     seen.push_back({p.dot(axes.right), p.dot(axes.up), p.dot(axes.back)});
-    nearest = std::max(nearest, seen.back().z());
+    nearest = std::max(nearest, seen.back().z);
   }
   // Bisects for the smallest distance at which some sideways shift fits along both axes.
   const Span across{half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)};
@@ -192,7 +187,7 @@ Orbit turntable(Orbit start, double time, double period) {
   return start;
 }
 
-void follow(Orbit& orbit, const Vector3f& target, double dt, double lag) {
+void follow(Orbit& orbit, const Vector3& target, double dt, double lag) {
   orbit.target += float(1 - std::exp(-dt / lag)) * (target - orbit.target);
 }
 

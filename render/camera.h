@@ -2,20 +2,21 @@
 // Cameras, and ways to move them.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
+
+#include "render/vector.h"
 
 namespace mercury::render {
 
 // An axis-aligned box; empty until extend() is called.
 struct Bounds {
-  Eigen::Vector3f low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-  bool empty() const { return !(low.x() <= high.x()); }
-  Eigen::Vector3f center() const { return 0.5f * (low + high); }
+  Vector3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+  bool empty() const { return !(low.x <= high.x); }
+  Vector3 center() const { return 0.5f * (low + high); }
   float radius() const { return empty() ? 0.0f : 0.5f * (high - low).norm(); }
-  void extend(const Eigen::Vector3f& point);
+  void extend(const Vector3& point);
   void extend(const Bounds& other);
-  Bounds moved(const Eigen::Vector3f& offset) const;
+  Bounds moved(const Vector3& offset) const;
 };
 
 // The box around points, 3 floats each; ignores points that are not finite.
@@ -23,24 +24,24 @@ Bounds bounds_of(std::span<const float> points);
 
 // A half-line.
 struct Ray {
-  Eigen::Vector3f origin, direction;  // direction has length 1
+  Vector3 origin, direction;  // direction has length 1
 };
 
 struct Camera {
-  Eigen::Vector3f eye{3, -4, 3};    // [m]
-  Eigen::Vector3f target{0, 0, 0};  // [m]
-  Eigen::Vector3f up{0, 0, 1};      // any direction that is not the line of sight
-  float field_of_view = 0.6f;       // of the picture's height [rad]
-  float near = 0.05f, far = 1000;   // the range of depths that is drawn [m]
+  Vector3 eye{3, -4, 3};           // [m]
+  Vector3 target{0, 0, 0};         // [m]
+  Vector3 up{0, 0, 1};             // any direction that is not the line of sight
+  float field_of_view = 0.6f;      // of the picture's height [rad]
+  float near = 0.05f, far = 1000;  // the range of depths that is drawn [m]
 
   // World to eye, eye looking along -z.
-  Eigen::Matrix4f view() const;
+  Matrix4 view() const;
   // Eye to clip coordinates, with depth 1 at `near` and 0 at `far`: reversed, so that float depth is precise
   // everywhere. `aspect` = width / height.
-  Eigen::Matrix4f projection(float aspect) const;
+  Matrix4 projection(float aspect) const;
   // A point in a picture of width x height: pixels from the upper left corner, and depth along the line of sight [m]
   // (negative = behind the eye).
-  Eigen::Vector3f project(const Eigen::Vector3f& point, int width, int height) const;
+  Vector3 project(const Vector3& point, int width, int height) const;
   // The line of sight through a point of the picture, in pixels from the upper left corner.
   Ray ray(float x, float y, int width, int height) const;
 };
@@ -52,11 +53,11 @@ struct Insets {
 
 // A camera that turns around a target.
 struct Orbit {
-  Eigen::Vector3f target{0, 0, 0};  // [m]
-  float azimuth = -1.0f;            // direction from target to eye, from +x towards +y [rad]
-  float elevation = 0.45f;          // above the horizon [rad], -pi/2 to pi/2
-  float distance = 6;               // [m]
-  float field_of_view = 0.6f;       // [rad]
+  Vector3 target{0, 0, 0};     // [m]
+  float azimuth = -1.0f;       // direction from target to eye, from +x towards +y [rad]
+  float elevation = 0.45f;     // above the horizon [rad], -pi/2 to pi/2
+  float distance = 6;          // [m]
+  float field_of_view = 0.6f;  // [rad]
 
   Camera camera() const;
   // Turns by angles [rad]; elevation stops short of the poles.
@@ -79,6 +80,6 @@ Orbit turntable(Orbit start, double time, double period = 20);
 
 // Follows a moving target smoothly: call once per frame with the time since the last one [s]. The distance between the
 // orbit's target and `target` shrinks by the factor exp(-dt / lag).
-void follow(Orbit& orbit, const Eigen::Vector3f& target, double dt, double lag = 0.5);
+void follow(Orbit& orbit, const Vector3& target, double dt, double lag = 0.5);
 
 }  // namespace mercury::render

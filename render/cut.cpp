@@ -11,14 +11,17 @@ namespace {
 
 using Eigen::Matrix3f;
 using Eigen::Matrix4f;
-using Eigen::Vector3f;
 
 constexpr int squarings = 16;
 constexpr float upright = 1e-4f;  // a body that may turn freely, such as a straight line of masses, stays as at rest
 
-Vector3f mass_of(std::span<const float> positions, std::size_t i) { return Vector3f(positions.data() + 3 * i); }
+Eigen::Vector3f eigen(const Vector3& v) { return {v.x, v.y, v.z}; }
 
-bool counts(const Vector3f& point) { return point.cwiseAbs().maxCoeff() < 1e9f; }  // also false for NaN
+Vector3 mass_of(std::span<const float> positions, std::size_t i) { return Vector3(positions.data() + 3 * i); }
+
+bool counts(const Vector3& p) {
+  return std::fabs(p.x) < 1e9f && std::fabs(p.y) < 1e9f && std::fabs(p.z) < 1e9f;
+}  // also false for NaN
 
 // The rotation R that minimizes the sum of |now - R rest|^2, as a unit quaternion: the dominant eigenvector of Horn's
 // matrix. `s` = sum of rest now^T. Squaring a matrix again and again leaves its dominant eigenvector.
@@ -57,7 +60,7 @@ CutPlane CutFrame::plane_of(const Cut& cut) const {
 
 std::optional<CutFrame> cut_frame(int axis, std::span<const float> rest, std::span<const float> now) {
   const std::size_t masses = std::min(rest.size(), now.size()) / 3;
-  Vector3f rest_sum = Vector3f::Zero(), sum = Vector3f::Zero();
+  Vector3 rest_sum = Vector3(), sum = Vector3();
   float count = 0;
   for (std::size_t i = 0; i < masses; ++i) {
     if (!counts(mass_of(now, i))) continue;
@@ -66,13 +69,14 @@ std::optional<CutFrame> cut_frame(int axis, std::span<const float> rest, std::sp
     ++count;
   }
   if (count == 0) return std::nullopt;
-  const Vector3f rest_center = rest_sum / count;
+  const Vector3 rest_center = rest_sum / count;
   CutFrame frame{.center = sum / count};
   Matrix3f covariance = Matrix3f::Zero();
   for (std::size_t i = 0; i < masses; ++i)
     if (counts(mass_of(now, i)))
-      covariance += (mass_of(rest, i) - rest_center) * (mass_of(now, i) - frame.center).transpose();
-  frame.axis = rotation_of(covariance) * Vector3f::Unit(axis);
+      covariance += eigen(mass_of(rest, i) - rest_center) * eigen(mass_of(now, i) - frame.center).transpose();
+  const Eigen::Vector3f turned = rotation_of(covariance) * Eigen::Vector3f::Unit(axis);
+  frame.axis = {turned[0], turned[1], turned[2]};
   frame.low = INFINITY;
   frame.high = -INFINITY;
   for (std::size_t i = 0; i < masses; ++i) {

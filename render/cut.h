@@ -2,10 +2,10 @@
 // A cut that opens bodies, and the plane that it means for one of them.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <span>
+
+#include "render/vector.h"
 
 namespace mercury::render {
 
@@ -21,16 +21,16 @@ struct Cut {
 
 // The side normal . x > offset is removed, in the body's coordinates.
 struct CutPlane {
-  Eigen::Vector3f normal{0, 0, 0};
+  Vector3 normal{0, 0, 0};
   float offset = 1;  // [m]
-  bool removes(const Eigen::Vector3f& point) const { return normal.dot(point) > offset; }
+  bool removes(const Vector3& point) const { return normal.dot(point) > offset; }
 };
 
 // A body along one axis of its frame.
 struct CutFrame {
-  Eigen::Vector3f center{0, 0, 0};  // mean of its masses [m]
-  Eigen::Vector3f axis{0, 1, 0};    // unit, in the body's coordinates
-  float low = 0, high = 0;          // of its masses: dot(axis, x) [m]
+  Vector3 center{0, 0, 0};  // mean of its masses [m]
+  Vector3 axis{0, 1, 0};    // unit, in the body's coordinates
+  float low = 0, high = 0;  // of its masses: dot(axis, x) [m]
 
   // A plane perpendicular to the axis: dot(axis, x) = place_of(cut).
   float place_of(const Cut& cut) const;

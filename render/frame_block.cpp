@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/frame_block.h"
-
-#include <Eigen/Geometry>
-#include <Eigen/LU>
+#include "render/vector.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace mercury::render {
-namespace {
-
-using Eigen::Matrix4f;
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
-Vector4f with(const Vector3f& v, float w) { return {v.x(), v.y(), v.z(), w}; }
-
-}  // namespace
-
 Octave octave_of(float distance) {
   const float power = std::log2(std::max(distance, 1e-6f));
   const float whole = std::floor(power);
@@ -31,18 +19,18 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   const float aspect = float(width) / float(height);
   b.view = camera.view();
   b.view_projection = camera.projection(aspect) * b.view;
-  b.inverse_view_projection = b.view_projection.inverse();
+  b.inverse_view_projection = inverse(b.view_projection);
   const float distance = (camera.eye - camera.target).norm();
-  b.eye = with(camera.eye, float(std::fmod(scene.time, 3600.0)));
-  b.to_key = with(style.to_key.normalized(), style.key_size);
-  b.key_light = with(style.key_light, style.glow);
-  b.sky_light = with(style.sky_light, 0);
-  b.ground_light = with(style.ground_light, 0);
-  b.backdrop_high = with(style.backdrop_high, 0);
-  b.backdrop_low = with(style.backdrop_low, 0);
-  b.floor_color = with(style.floor_color, 0);
-  b.line_color = with(style.line_color, scene.patches.empty() ? 1 : 0);
-  b.fog = with(style.fog / distance, 0.55f * distance);
+  b.eye = Vector4(camera.eye, float(std::fmod(scene.time, 3600.0)));
+  b.to_key = Vector4(style.to_key.normalized(), style.key_size);
+  b.key_light = Vector4(style.key_light, style.glow);
+  b.sky_light = Vector4(style.sky_light, 0);
+  b.ground_light = Vector4(style.ground_light, 0);
+  b.backdrop_high = Vector4(style.backdrop_high, 0);
+  b.backdrop_low = Vector4(style.backdrop_low, 0);
+  b.floor_color = Vector4(style.floor_color, 0);
+  b.line_color = Vector4(style.line_color, scene.patches.empty() ? 1 : 0);
+  b.fog = Vector4(style.fog / distance, 0.55f * distance);
   b.screen = {float(width), float(height), 1 / float(width), 1 / float(height)};
   const float scale = 1 / std::tan(0.5f * camera.field_of_view);
   // Depth d in the buffer is the distance near far / (near + d (far - near)).

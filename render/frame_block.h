@@ -2,18 +2,17 @@
 // The uniform block that all shaders of one picture share; shaders/frame.glsl explains the members, in the same order.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "render/camera.h"
 #include "render/scene.h"
 #include "render/style.h"
+#include "render/vector.h"
 
 namespace mercury::render {
 
 struct FrameBlock {
-  Eigen::Matrix4f view_projection, inverse_view_projection, view, shadow = Eigen::Matrix4f::Identity();
-  Eigen::Vector4f eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color,
-      fog, screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
+  Matrix4 view_projection, inverse_view_projection, view, shadow = Matrix4::identity();
+  Vector4 eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color, fog,
+      screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
 };
 
 // The size of a pattern that is fixed in the world and suits any viewing distance: a power of two, which fades into its

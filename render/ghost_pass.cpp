@@ -9,12 +9,10 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector4f;
-
-void append_corners(const Ghost& ghost, std::vector<Vector4f>& corners) {
+void append_corners(const Ghost& ghost, std::vector<Vector4>& corners) {
   for (const std::uint32_t mass : ghost.faces) {
     const float* p = ghost.positions.data() + 3 * std::size_t{mass};
-    corners.push_back({p[0] + ghost.offset.x(), p[1] + ghost.offset.y(), p[2] + ghost.offset.z(), 1});
+    corners.push_back({p[0] + ghost.offset.x, p[1] + ghost.offset.y, p[2] + ghost.offset.z, 1});
   }
 }
 
@@ -23,7 +21,7 @@ void append_corners(const Ghost& ghost, std::vector<Vector4f>& corners) {
 GhostPass::GhostPass() : empty_(make_vertex_array()), program_(make_program({"ghost.vert", "ghost.frag"})) {}
 
 void GhostPass::draw(std::span<const Ghost> ghosts) {
-  std::vector<Vector4f> corners;
+  std::vector<Vector4> corners;
   for (const Ghost& ghost : ghosts) append_corners(ghost, corners);
   if (corners.empty()) return;
   corners_.write(corners);

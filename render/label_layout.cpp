@@ -49,18 +49,17 @@ float disturbance(const Rectangle& place, std::size_t own, std::span<const Label
 
 std::optional<Rectangle> covered_by(const Bounds& box, const Camera& camera, int width, int height) {
   if (box.empty()) return std::nullopt;
-  Eigen::Vector2f low(1e30f, 1e30f), high(-1e30f, -1e30f);
+  Vector2 low(1e30f, 1e30f), high(-1e30f, -1e30f);
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f point((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
-                                (corner & 4) ? box.high.z() : box.low.z());
-    const Eigen::Vector3f seen = camera.project(point, width, height);
-    if (seen.z() < camera.near) continue;
-    low = low.cwiseMin(seen.head<2>());
-    high = high.cwiseMax(seen.head<2>());
+    const Vector3 point((corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
+                        (corner & 4) ? box.high.z : box.low.z);
+    const Vector3 seen = camera.project(point, width, height);
+    if (seen.z < camera.near) continue;
+    low = smallest(low, seen.xy());
+    high = largest(high, seen.xy());
   }
-  if (low.x() > high.x() || high.x() < 0 || high.y() < 0 || low.x() > float(width) || low.y() > float(height))
-    return std::nullopt;
-  return Rectangle{low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
+  if (low.x > high.x || high.x < 0 || high.y < 0 || low.x > float(width) || low.y > float(height)) return std::nullopt;
+  return Rectangle{low.x, low.y, high.x - low.x, high.y - low.y};
 }
 
 std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest> requests, const Rectangle& picture) {

@@ -107,7 +107,7 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
     const std::vector<std::string_view> lines = lines_of(label.text);
     LabelRequest request{.body = *body,
                          .height = text_size_ * (1 + small * float(lines.size() - 1)) + 0.8f * pad,
-                         .depth = camera.project(bodies[label.body].center(), int(width_), int(height_)).z(),
+                         .depth = camera.project(bodies[label.body].center(), int(width_), int(height_)).z,
                          .priority = label.priority,
                          .forced = label.forced};
     for (std::size_t i = 0; i < lines.size(); ++i)
@@ -122,9 +122,9 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
 
 void Overlay::texts(std::span<const Text> texts, const Camera& camera) {
   for (const Text& t : texts) {
-    const Eigen::Vector3f at = camera.project(t.at, int(width_), int(height_));
+    const Vector3 at = camera.project(t.at, int(width_), int(height_));
     const float size = t.size * text_size_;
-    if (at.z() > camera.near) text(t.text, at.x(), at.y() - t.align_y * size, size, t.align_x);
+    if (at.z > camera.near) text(t.text, at.x, at.y - t.align_y * size, size, t.align_x);
   }
 }
 

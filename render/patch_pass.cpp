@@ -10,8 +10,8 @@ namespace {
 
 // The layout of shaders/patch.vert.
 struct PatchRecord {
-  Eigen::Vector4f disc;   // center x, y; radius; unused
-  Eigen::Vector4f slide;  // x, y; unused
+  Vector4 disc;   // center x, y; radius; unused
+  Vector4 slide;  // x, y; unused
 };
 
 }  // namespace
@@ -23,8 +23,7 @@ void PatchPass::draw(std::span<const Patch> patches, const std::string& variant)
   std::vector<PatchRecord> records;
   records.reserve(patches.size());
   for (const Patch& patch : patches)
-    records.push_back(
-        {{patch.center.x(), patch.center.y(), patch.radius, 0}, {patch.slide.x(), patch.slide.y(), 0, 0}});
+    records.push_back({{patch.center.x, patch.center.y, patch.radius, 0}, {patch.slide.x, patch.slide.y, 0, 0}});
   patches_.write(records);
   patches_.bind_storage(binding::first_free);
   glEnable(GL_BLEND);

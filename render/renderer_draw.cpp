@@ -14,13 +14,13 @@ namespace {
 bool shows_horizon(const Camera& camera, int width, int height) {
   bool high = false;
   for (const int x : {0, width})
-    for (const int y : {0, height}) high = high || camera.ray(float(x), float(y), width, height).direction.z() > -0.06f;
+    for (const int y : {0, height}) high = high || camera.ray(float(x), float(y), width, height).direction.z > -0.06f;
   return high;
 }
 
 // Properties of the scene that shaders are compiled for.
 std::string surroundings_variant(const Scene& scene, const FrameBlock& block) {
-  return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z() > 0 ? 2 : 1);
+  return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z > 0 ? 2 : 1);
 }
 
 template <typename Property>

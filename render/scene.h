@@ -11,11 +11,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "render/colormap.h"
 #include "render/cut.h"
 #include "render/scale.h"
+#include "render/vector.h"
 
 namespace mercury::render {
 
@@ -36,7 +35,7 @@ struct RenderMaterial {
 
 // Where and how a body is drawn.
 struct Placement {
-  Eigen::Vector3f offset{0, 0, 0};  // added to the body's coordinates [m]
+  Vector3 offset{0, 0, 0};  // added to the body's coordinates [m]
   bool hidden = false;
   bool selected = false;             // drawn with a bright outline around it
   bool faulty = false;               // drawn gray, with a red rim: it has exploded
@@ -55,8 +54,8 @@ enum class Theme { dark, light };
 // An arrow in a body's coordinates.
 struct Arrow {
   std::uint32_t body = 0;
-  Eigen::Vector3f from{0, 0, 0};
-  Eigen::Vector3f vector{0, 0, 0};  // from tail to tip [m]
+  Vector3 from{0, 0, 0};
+  Vector3 vector{0, 0, 0};  // from tail to tip [m]
   Color color;
 };
 
@@ -79,13 +78,13 @@ struct Label {
 
 // A flat rectangle behind bodies, with round corners: a cell of a table. It takes shadows, but no other light.
 struct Tile {
-  Eigen::Vector3f center{0, 0, 0}, half_width{1, 0, 0}, half_height{0, 0, 1};  // in the picture's coordinates [m]
+  Vector3 center{0, 0, 0}, half_width{1, 0, 0}, half_height{0, 0, 1};  // in the picture's coordinates [m]
   Color fill, frame;
 };
 
 // A line of text at a point in the picture's coordinates.
 struct Text {
-  Eigen::Vector3f at{0, 0, 0};
+  Vector3 at{0, 0, 0};
   std::string text;
   float align_x = 0.5f, align_y = 0.5f;  // where the point is in the line: 0 = left and upper end, 1 = right and lower
   float size = 1;                        // of the picture's usual size of text
@@ -105,16 +104,16 @@ struct Legend {
 // A disc on the ground that slides under a body which is kept in its place, so that the body is seen to move. While
 // there are patches, only they have meter lines.
 struct Patch {
-  Eigen::Vector2f center{0, 0};  // in the picture's coordinates [m]
-  float radius = 1;              // [m]
-  Eigen::Vector2f slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
+  Vector2 center{0, 0};  // in the picture's coordinates [m]
+  float radius = 1;      // [m]
+  Vector2 slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
 // A body in one translucent color, without a shadow. What is nearer hides it.
 struct Ghost {
   std::span<const float> positions;      // 3 per mass
   std::span<const std::uint32_t> faces;  // 3 masses per face, counter-clockwise seen from outside
-  Eigen::Vector3f offset{0, 0, 0};       // added to the positions [m]
+  Vector3 offset{0, 0, 0};               // added to the positions [m]
   Color color;
   float opacity = 0.4f;
 };
@@ -144,9 +143,9 @@ struct Scene {
 
   Surroundings surroundings = Surroundings::water;
   Theme theme = Theme::dark;
-  float floor = 0;                // height of the ground or sand [m]
-  Eigen::Vector3f flow{0, 0, 0};  // of the water; particles drift with it [m/s]
-  double time = 0;                // moves caustics and particles [s]
+  float floor = 0;        // height of the ground or sand [m]
+  Vector3 flow{0, 0, 0};  // of the water; particles drift with it [m/s]
+  double time = 0;        // moves caustics and particles [s]
 
   std::span<const Patch> patches;  // on land
   std::span<const Tile> tiles;

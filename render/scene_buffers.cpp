@@ -10,14 +10,11 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
 // The layout of shaders/bodies.glsl.
 struct PlacementRecord {
   float x = 0, y = 0, z = 0;
   std::uint32_t flags = 0;
-  Vector4f cut{0, 0, 0, 1};  // filled in by CutPass
+  Vector4 cut{0, 0, 0, 1};  // filled in by CutPass
 };
 
 std::uint32_t flags_of(const Placement& placement) {
@@ -28,17 +25,17 @@ std::uint32_t flags_of(const Placement& placement) {
 std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
   std::vector<PlacementRecord> records(std::max<std::size_t>(bodies, 1));
   for (std::size_t i = 0; i < placements.size(); ++i) {
-    const Vector3f& offset = placements[i].offset;
-    records[i].x = offset.x();
-    records[i].y = offset.y();
-    records[i].z = offset.z();
+    const Vector3& offset = placements[i].offset;
+    records[i].x = offset.x;
+    records[i].y = offset.y;
+    records[i].z = offset.z;
     records[i].flags = flags_of(placements[i]);
   }
   return records;
 }
 
-std::vector<Vector4f> material_records(std::span<const RenderMaterial> materials) {
-  std::vector<Vector4f> records;
+std::vector<Vector4> material_records(std::span<const RenderMaterial> materials) {
+  std::vector<Vector4> records;
   for (const RenderMaterial& material : materials) {
     const auto linear = linear_of(material.color);
     records.push_back({linear[0], linear[1], linear[2], material.activation});

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/skin_topology.h"
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+#include "render/vector.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace mercury::render {
 namespace {
-
-using Eigen::Vector3f;
 
 constexpr float flat_cosine = 0.9994f;  // 2 degrees
 constexpr float most_skewed = 0.35f;    // cosine at the corner of a quadrilateral; a right angle has 0
@@ -30,9 +26,9 @@ struct Skin {
   std::uint32_t mass(std::uint32_t face, std::uint32_t corner) const {
     return faces[3 * std::size_t(face) + corner % 3];
   }
-  Vector3f position(std::uint32_t mass) const { return Vector3f(positions.data() + 3 * std::size_t(mass)); }
-  Vector3f normal(std::uint32_t face) const {
-    const Vector3f a = position(mass(face, 0));
+  Vector3 position(std::uint32_t mass) const { return Vector3(positions.data() + 3 * std::size_t(mass)); }
+  Vector3 normal(std::uint32_t face) const {
+    const Vector3 a = position(mass(face, 0));
     return (position(mass(face, 1)) - a).cross(position(mass(face, 2)) - a).normalized();
   }
 };
@@ -64,9 +60,9 @@ std::uint32_t across(const Skin& skin, std::uint32_t face, std::uint32_t a, std:
 }
 
 float corner_cosine(const Skin& skin, std::uint32_t face, std::uint32_t corner) {
-  const Vector3f at = skin.position(skin.mass(face, corner));
-  const Vector3f u = skin.position(skin.mass(face, corner + 1)) - at;
-  const Vector3f v = skin.position(skin.mass(face, corner + 2)) - at;
+  const Vector3 at = skin.position(skin.mass(face, corner));
+  const Vector3 u = skin.position(skin.mass(face, corner + 1)) - at;
+  const Vector3 v = skin.position(skin.mass(face, corner + 2)) - at;
   return u.dot(v) / std::max(u.norm() * v.norm(), 1e-20f);
 }
 

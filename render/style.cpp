@@ -4,8 +4,6 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-
 constexpr float dimmed_water = 0.25f;  // of its light, behind values
 
 Style dark_water() {
@@ -114,7 +112,7 @@ Style style_of(Surroundings surroundings, Theme theme, bool values) {
   Style s = dark ? dark_plain() : light_plain();
   if (surroundings == Surroundings::water) s = dark ? dark_water() : light_water();
   if (surroundings == Surroundings::land) s = dark ? dark_land() : light_land();
-  if (surroundings == Surroundings::none) s.fog.setZero();
+  if (surroundings == Surroundings::none) s.fog = {};
   if (values && dark && surroundings == Surroundings::water) {
     s.backdrop_high *= dimmed_water;
     s.backdrop_low *= dimmed_water;

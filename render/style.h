@@ -2,22 +2,21 @@
 // Light and colors of each theme and surroundings.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "render/scene.h"
+#include "render/vector.h"
 
 namespace mercury::render {
 
 // All colors of light are linear.
 struct Style {
-  Eigen::Vector3f to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
-  Eigen::Vector3f key_light, sky_light, ground_light;
-  float key_size = 0.08f;                       // tangent of the key light's half angle; larger = softer shadows
-  Eigen::Vector3f backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
-  Eigen::Vector3f floor_color, line_color;
-  Eigen::Vector3f fog{0, 0, 0};  // extinction of each color [1 / distance from eye to target]
-  float caustics = 0;            // contrast of the light pattern under water
-  float glow = 1;                // of contracting muscles
+  Vector3 to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
+  Vector3 key_light, sky_light, ground_light;
+  float key_size = 0.08f;               // tangent of the key light's half angle; larger = softer shadows
+  Vector3 backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
+  Vector3 floor_color, line_color;
+  Vector3 fog{0, 0, 0};  // extinction of each color [1 / distance from eye to target]
+  float caustics = 0;    // contrast of the light pattern under water
+  float glow = 1;        // of contracting muscles
   float vignette = 0.25f;
   Color text, text_edge;  // of labels and legends
   float text_edge_opacity = 0.85f;

@@ -299,32 +299,31 @@ int bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& program, const Choose& choose) {
+void add_bench_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = program.add_subcommand("bench", "Measure springs evaluated per second");
-  add_value(*command, "--size", options->size, "Size of a robot in voxels; each voxel has a random material", "XxYxZ",
+  const Command command = program.add_command("bench", "Measure springs evaluated per second");
+  add_value(command, "--size", options->size, "Size of a robot in voxels; each voxel has a random material", "XxYxZ",
             [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); });
-  add_number(*command, "--count", options->count,
+  add_number(command, "--count", options->count,
              "Number of robots (default: several times what the device steps at once)", "N");
-  add_number(*command, "--seed", options->seed, "Seed of the robots", "S");
-  add_number(*command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
+  add_number(command, "--seed", options->seed, "Seed of the robots", "S");
+  add_number(command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->add_flag(
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.add_flag(
       "--sweep", options->sweep,
       "Measure 1, 2, 4, ... robots, until a GPU is full, a quarter of a CPU's memory, or --count is reached");
-  add_text(*command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)",
-           "FILE");
-  options->output.add_force_to(*command);
-  options->simulation.add_to(*command);
-  command->footer(
+  add_text(command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)", "FILE");
+  options->output.add_force_to(command);
+  options->simulation.add_to(command);
+  command.set_footer(
       "Springs per second = robots x springs x steps / time. The time covers whole steps (muscles, springs,\n"
       "environment, contact, integration) on the device. It does not cover the upload.\n\n"
       "Examples:\n"
       "  mercury bench --environment land --solver xpbd\n"
       "  mercury bench --size 5x5x5 --json\n"
       "  mercury bench --sweep --csv sweep.csv && bench/plot.py sweep.csv -o sweep.png");
-  command->callback([options, choose] { choose([options] { return bench(*options); }); });
+  command.when_chosen([options, choose] { choose([options] { return bench(*options); }); });
 }
 
 }  // namespace mercury

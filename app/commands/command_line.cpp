@@ -12,17 +12,12 @@
 namespace mercury {
 namespace {
 
-// The subcommands, also hidden ones.
-std::vector<CLI::App*> children_of(CLI::App& command) {
-  return command.get_subcommands([](const CLI::App*) { return true; });
-}
-
 // An option of that name of a command or of one below it; no two of them differ in whether they take a value.
-const CLI::Option* find_option(CLI::App& command, const std::string& name) {
-  if (const CLI::Option* own = command.get_option_no_throw(name)) return own;
-  for (CLI::App* child : children_of(command))
-    if (const CLI::Option* found = find_option(*child, name)) return found;
-  return nullptr;
+std::optional<Option> find_option(const Command& command, const std::string& name) {
+  if (const std::optional<Option> own = command.find_option(name)) return own;
+  for (const Command& child : command.commands(true))
+    if (const std::optional<Option> found = find_option(child, name)) return found;
+  return std::nullopt;
 }
 
 // "--dt" of "--dt=0.1", "-o" of "-ofile".
@@ -33,19 +28,19 @@ std::string name_of_option(const std::string& argument) {
 // Splits a command line into the words of its command, the options before them and the arguments behind them.
 class Reordering {
  public:
-  Reordering(CLI::App& program, const std::vector<std::string>& given) : program_(program), given_(given) {}
+  Reordering(const Command& program, const std::vector<std::string>& given) : program_(program), given_(given) {}
 
   CommandLine result() {
-    CLI::App* command = &program_;
-    while (!children_of(*command).empty()) {
+    Command command = program_;
+    while (!command.commands(true).empty()) {
       take_options();
       if (place_ == given_.size()) break;
-      CLI::App* child = child_named(*command, given_[place_]);
-      if (!child) throw unknown_command(*command, given_[place_]);
+      const std::optional<Command> child = command.find_command(given_[place_]);
+      if (!child) throw unknown_command(command, given_[place_]);
       words_.push_back(given_[place_++]);
-      command = child;
+      command = *child;
     }
-    if (!children_of(*command).empty() && !asks_for_help()) throw no_command(*command);
+    if (!command.commands(true).empty() && !asks_for_help()) throw no_command(command);
     CommandLine line{.command = command, .words = words_.size(), .arguments = words_};
     line.arguments.insert(line.arguments.end(), before_.begin(), before_.end());
     line.arguments.insert(line.arguments.end(), given_.begin() + static_cast<std::ptrdiff_t>(place_), given_.end());
@@ -56,11 +51,11 @@ class Reordering {
   void take_options() {
     while (place_ < given_.size() && given_[place_].size() > 1 && given_[place_].starts_with("-")) {
       const std::string name = name_of_option(given_[place_]);
-      const CLI::Option* option = find_option(program_, name);
+      const std::optional<Option> option = find_option(program_, name);
       if (!option)
         throw InputError(name, fmt::format("not an option{}; see mercury --help",
                                            suggestion(name, names_of_options(program_, true))));
-      const bool has_value = option->get_items_expected_max() > 0 && given_[place_] == name;
+      const bool has_value = option->takes_value() && given_[place_] == name;
       before_.push_back(given_[place_++]);
       if (has_value && place_ < given_.size()) before_.push_back(given_[place_++]);
     }
@@ -72,22 +67,16 @@ class Reordering {
     });
   }
 
-  static CLI::App* child_named(CLI::App& command, const std::string& word) {
-    const std::vector<CLI::App*> children = children_of(command);
-    const auto found = std::ranges::find(children, word, [](const CLI::App* child) { return child->get_name(); });
-    return found == children.end() ? nullptr : *found;
-  }
-
-  static InputError unknown_command(const CLI::App& command, const std::string& word) {
+  static InputError unknown_command(const Command& command, const std::string& word) {
     return InputError(fmt::format("\"{}\" is not a command{}; see {} --help", printable(word, 200),
-                                  suggestion(word, names_of_commands(command)), full_name(command)));
+                                  suggestion(word, names_of_commands(command)), command.full_name()));
   }
 
-  static InputError no_command(const CLI::App& command) {
-    return InputError(fmt::format("no command given; see {} --help", full_name(command)));
+  static InputError no_command(const Command& command) {
+    return InputError(fmt::format("no command given; see {} --help", command.full_name()));
   }
 
-  CLI::App& program_;
+  Command program_;
   const std::vector<std::string>& given_;
   std::size_t place_ = 0;
   std::vector<std::string> words_, before_;
@@ -95,7 +84,7 @@ class Reordering {
 
 }  // namespace
 
-CommandLine command_line(CLI::App& program, std::vector<std::string> arguments) {
+CommandLine command_line(const Command& program, std::vector<std::string> arguments) {
   const bool asks_to_explain =
       !arguments.empty() && arguments.front() == "help" && std::ranges::find(arguments, "--help") == arguments.end();
   if (asks_to_explain) {
@@ -108,24 +97,19 @@ CommandLine command_line(CLI::App& program, std::vector<std::string> arguments) 
   return Reordering(program, arguments).result();
 }
 
-std::string full_name(const CLI::App& command) {
-  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
-}
-
-std::vector<std::string> names_of_commands(const CLI::App& command) {
+std::vector<std::string> names_of_commands(const Command& command) {
   std::vector<std::string> names;
-  for (const CLI::App* child : command.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
-    names.push_back(child->get_name());
+  for (const Command& child : command.commands()) names.push_back(child.name());
   return names;
 }
 
-std::vector<std::string> names_of_options(const CLI::App& command, bool below) {
+std::vector<std::string> names_of_options(const Command& command, bool below) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const Option& option : command.options())
+    for (const std::string& name : option.long_names()) names.push_back(name);
   if (below)
-    for (const CLI::App* child : command.get_subcommands([](const CLI::App*) { return true; })) {
-      const std::vector<std::string> more = names_of_options(*child, true);
+    for (const Command& child : command.commands(true)) {
+      const std::vector<std::string> more = names_of_options(child, true);
       names.insert(names.end(), more.begin(), more.end());
     }
   return names;

@@ -58,46 +58,45 @@ std::string kind_from_form(const std::string& form) {
   return form == "PROGRAM" ? "program" : "text";
 }
 
-void add_commands(const CLI::App& command, std::vector<std::string> words, std::vector<CommandDescription>& list) {
-  const std::vector<const CLI::App*> children =
-      command.get_subcommands([](const CLI::App* child) { return !child->get_group().empty(); });
+void add_commands(const Command& command, std::vector<std::string> words, std::vector<CommandDescription>& list) {
+  const std::vector<Command> children = command.commands();
   list.push_back({.words = words,
-                  .help = command.get_description(),
-                  .footer = footer_of(command),
+                  .help = command.help(),
+                  .footer = command.footer(),
                   .options = options_of(command),
                   .family = !children.empty()});
-  for (const CLI::App* child : children) {
+  for (const Command& child : children) {
     std::vector<std::string> below = words;
-    below.push_back(child->get_name());
-    add_commands(*child, std::move(below), list);
+    below.push_back(child.name());
+    add_commands(child, std::move(below), list);
   }
 }
 
 }  // namespace
 
-OptionDescription description_of(const CLI::Option& option) {
+OptionDescription description_of(const Option& option) {
   OptionDescription found;
-  found.positional = option.get_positional();
+  found.positional = option.is_positional();
   if (found.positional) {
-    found.names = {option.get_single_name()};
+    found.names = {option.name()};
   } else {
-    for (const std::string& name : option.get_snames()) found.names.push_back("-" + name);
-    for (const std::string& name : option.get_lnames()) found.names.push_back("--" + name);
+    found.names = option.short_names();
+    for (const std::string& name : option.long_names()) found.names.push_back(name);
   }
-  found.help = option.get_description();
-  found.group = option.get_group();
-  found.required = option.get_required();
-  if (option.get_items_expected_max() == 0) {
+  found.help = option.help();
+  found.group = option.group();
+  found.required = option.is_required();
+  if (!option.takes_value()) {
     found.kind = "switch";
     return found;
   }
-  found.form = option.get_type_name();
-  found.repeatable = option.get_multi_option_policy() != CLI::MultiOptionPolicy::TakeLast;
-  found.many = option.get_expected_max() >= CLI::detail::expected_max_vector_size && option.get_allow_extra_args();
+  found.form = option.form();
+  found.repeatable = !option.takes_last();
+  found.many = option.takes_several();
   const auto [words, closed] = words_of(found.form);
-  const std::vector<std::string> offered = offered_values(option);
+  const std::vector<std::string> offered = option.offered();
   found.choices = offered.empty() ? words : offered;
-  found.kind = number_kind(option);
+  found.kind = option.number_kind();
   if (found.kind.empty()) found.kind = closed ? "choice" : kind_from_form(found.form);
   if (found.kind == "file" || found.kind == "path") {
     found.extensions = extensions_in(found.form);
@@ -106,25 +105,20 @@ OptionDescription description_of(const CLI::Option& option) {
   return found;
 }
 
-std::string footer_of(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  return parent && parent->get_footer() == command.get_footer() ? "" : command.get_footer();
-}
-
 std::string CommandDescription::name() const {
   return words.empty() ? "mercury" : fmt::format("mercury {}", fmt::join(words, " "));
 }
 
-std::vector<OptionDescription> options_of(const CLI::App& command) {
+std::vector<OptionDescription> options_of(const Command& command) {
   std::vector<OptionDescription> options;
-  for (const CLI::Option* option : command.get_options())
-    if (!option->get_group().empty()) options.push_back(description_of(*option));
+  for (const Option& option : command.options())
+    if (!option.group().empty()) options.push_back(description_of(option));
   std::stable_partition(options.begin(), options.end(),
                         [](const OptionDescription& option) { return option.positional; });
   return options;
 }
 
-std::vector<CommandDescription> command_list(const CLI::App& program) {
+std::vector<CommandDescription> command_list(const Command& program) {
   std::vector<CommandDescription> list;
   add_commands(program, {}, list);
   return list;

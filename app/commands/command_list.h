@@ -3,10 +3,10 @@
 // programs (`mercury describe-options json`) are made from it.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
+
+#include "app/options/command.h"
 
 namespace mercury {
 
@@ -34,14 +34,14 @@ struct CommandDescription {
 };
 
 // The explanation and examples below the help of a command; CLI11 passes those of the program on to commands without.
-std::string footer_of(const CLI::App& command);
+std::string footer_of(const Command& command);
 
 // The program, its commands and the kinds of each, parents first. Leaves out hidden commands.
-std::vector<CommandDescription> command_list(const CLI::App& program);
+std::vector<CommandDescription> command_list(const Command& program);
 
-OptionDescription description_of(const CLI::Option& option);
+OptionDescription description_of(const Option& option);
 // The options of one command, in the same form.
-std::vector<OptionDescription> options_of(const CLI::App& command);
+std::vector<OptionDescription> options_of(const Command& command);
 
 // The list as JSON:
 //

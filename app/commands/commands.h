@@ -2,9 +2,9 @@
 // The subcommands of the program, one source file per command.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
+
+#include "app/options/command.h"
 
 namespace mercury {
 
@@ -16,19 +16,19 @@ using CommandBody = std::function<int()>;
 using Choose = std::function<void(CommandBody)>;
 
 // Each function adds one subcommand to the program. Parsing the command line calls `choose`.
-void add_run_command(CLI::App& program, const Choose& choose);
-void add_view_command(CLI::App& program, const Choose& choose);
-void add_render_command(CLI::App& program, const Choose& choose);
-void add_evolve_command(CLI::App& program, const Choose& choose);
-void add_new_command(CLI::App& program, const Choose& choose);
-void add_mutate_command(CLI::App& program, const Choose& choose);
-void add_cross_command(CLI::App& program, const Choose& choose);
-void add_grow_command(CLI::App& program, const Choose& choose);
-void add_import_command(CLI::App& program, const Choose& choose);
-void add_bench_command(CLI::App& program, const Choose& choose);
-void add_export_command(CLI::App& program, const Choose& choose);
-void add_verify_command(CLI::App& program, const Choose& choose);
-void add_info_command(CLI::App& program, const Choose& choose);
-void add_describe_command(CLI::App& program, const Choose& choose);
+void add_run_command(const Command& program, const Choose& choose);
+void add_view_command(const Command& program, const Choose& choose);
+void add_render_command(const Command& program, const Choose& choose);
+void add_evolve_command(const Command& program, const Choose& choose);
+void add_new_command(const Command& program, const Choose& choose);
+void add_mutate_command(const Command& program, const Choose& choose);
+void add_cross_command(const Command& program, const Choose& choose);
+void add_grow_command(const Command& program, const Choose& choose);
+void add_import_command(const Command& program, const Choose& choose);
+void add_bench_command(const Command& program, const Choose& choose);
+void add_export_command(const Command& program, const Choose& choose);
+void add_verify_command(const Command& program, const Choose& choose);
+void add_info_command(const Command& program, const Choose& choose);
+void add_describe_command(const Command& program, const Choose& choose);
 
 }  // namespace mercury

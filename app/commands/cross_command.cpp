@@ -48,14 +48,13 @@ int cross(const CrossOptions& options) {
 
 }  // namespace
 
-void add_cross_command(CLI::App& program, const Choose& choose) {
+void add_cross_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<CrossOptions>();
-  CLI::App* command = program.add_subcommand("cross", "Make children of two robots of one kind");
-  options->robots.add_to(*command, "Two robot files (.json, .cbor)");
-  options->output.add_to(*command, "How many children (default 1)");
-  add_text(*command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)",
-           "NAME");
-  command->footer(
+  const Command command = program.add_command("cross", "Make children of two robots of one kind");
+  options->robots.add_to(command, "Two robot files (.json, .cbor)");
+  options->output.add_to(command, "How many children (default 1)");
+  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)", "NAME");
+  command.set_footer(
       "Body and muscles are mixed; size and environment are those of the first robot. A child differs from its "
       "parents\n"
       "and from the other children. The same files and seed give the same children on every machine. Their origin "
@@ -64,7 +63,7 @@ void add_cross_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury cross paddler.json wriggler.json -o child.json\n"
       "  mercury cross paddler.json wriggler.json -o children/ --count 20 --seed 3");
-  command->callback([options, choose] { choose([options] { return options->robots.status(cross(*options)); }); });
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(cross(*options)); }); });
 }
 
 }  // namespace mercury

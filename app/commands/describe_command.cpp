@@ -26,7 +26,7 @@ void write_man_pages(const std::filesystem::path& folder, const std::vector<Comm
     write_whole_file(folder / (man_page_name(command) + ".1"), man_page(command, commands));
 }
 
-int describe(const DescribeOptions& options, const CLI::App& program) {
+int describe(const DescribeOptions& options, const Command& program) {
   const std::vector<CommandDescription> commands = command_list(program);
   if (options.form == "json") fmt::print("{}", json_of(commands));
   if (options.form == "bash") fmt::print("{}", bash_completion(commands));
@@ -41,16 +41,16 @@ int describe(const DescribeOptions& options, const CLI::App& program) {
 
 }  // namespace
 
-void add_describe_command(CLI::App& program, const Choose& choose) {
+void add_describe_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<DescribeOptions>();
-  CLI::App* command =
-      program.add_subcommand("describe-options", "Print all commands and options, for other programs")->group("");
-  add_choice(*command, "FORM", options->form, {"json", "bash", "zsh", "fish", "man"},
+  const Command command = program.add_command("describe-options", "Print all commands and options, for other programs");
+  command.hide();
+  add_choice(command, "FORM", options->form, {"json", "bash", "zsh", "fish", "man"},
              "A list, a completion script, or manual pages")
-      ->required();
-  add_text(*command, "FOLDER", options->folder, "Where manual pages go", "FOLDER");
-  command->callback(
-      [options, choose, &program] { choose([options, &program] { return describe(*options, program); }); });
+      .required();
+  add_text(command, "FOLDER", options->folder, "Where manual pages go", "FOLDER");
+  command.when_chosen(
+      [options, choose, program] { choose([options, program] { return describe(*options, program); }); });
 }
 
 }  // namespace mercury

@@ -26,13 +26,13 @@ std::string error_text(const std::exception& error) {
   return std::string(text);
 }
 
-std::string with_suggestion(const std::string& message, const CLI::App& command) {
+std::string with_suggestion(const std::string& message, const Command& command) {
   const std::size_t colon = message.find(": \"");
   if (colon == std::string::npos || message.find("did you mean") != std::string::npos) return message;
   const std::size_t begin = colon + 3, end = message.find("\" is n", begin);  // "is not", "is neither"
   if (end == std::string::npos) return message;
   const std::string name = message.substr(0, colon), value = message.substr(begin, end - begin);
-  const CLI::Option* option = name.starts_with("-") ? command.get_option_no_throw(name) : nullptr;
+  const std::optional<Option> option = name.starts_with("-") ? command.find_option(name) : std::nullopt;
   if (!option) return message;
   const std::vector<std::string> choices = description_of(*option).choices;
   const std::string word = value.substr(0, value.find(':'));

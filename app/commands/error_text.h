@@ -2,10 +2,10 @@
 // Errors of libraries in words of ours. Errors are described where they arise; this is for those that nobody expected.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <exception>
 #include <string>
+
+#include "app/options/command.h"
 
 namespace mercury {
 
@@ -15,6 +15,6 @@ std::string error_text(const std::exception& error);
 
 // Adds "; did you mean xpbd?" to a message about a mistyped value of an option, such as
 // "--solver: \"xpdb\" is not a solver; give force or xpbd".
-std::string with_suggestion(const std::string& message, const CLI::App& command);
+std::string with_suggestion(const std::string& message, const Command& command);
 
 }  // namespace mercury

@@ -50,7 +50,7 @@ double median_score(const Evolution& evolution) {
   return *middle;
 }
 
-RunFolder open_folder(const EvolveOptions& options, const CLI::App& command) {
+RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   const std::filesystem::path folder = options.folder;
   if (options.resume) {
     options.run.require_only_what_may_change(command);
@@ -107,7 +107,7 @@ void report(const EvolveOptions& options, const RunFolder& run, const Evolution&
 }
 
 // The settings of the run with the device that the user gave for this process.
-EvolutionSettings settings_here(const EvolveOptions& options, const CLI::App& command, const RunSettings& run) {
+EvolutionSettings settings_here(const EvolveOptions& options, const Command& command, const RunSettings& run) {
   EvolutionSettings settings = run.evolution;
   options.run.choose_device(command, settings.configuration);
   return settings;
@@ -128,7 +128,7 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
   return done ? 0 : 1;
 }
 
-int evolve_here(const EvolveOptions& options, const CLI::App& command) {
+int evolve_here(const EvolveOptions& options, const Command& command) {
   RunFolder run = open_folder(options, command);
   if (options.prepare) return 0;
   const EvolutionSettings settings = settings_here(options, command, run.history().settings());
@@ -143,7 +143,7 @@ void choose_gpu_of_rank(const Ranks& ranks, Device& device) {
   if (gpus > 0) device = {.kind = DeviceKind::cuda, .index = ranks.rank_on_host() % gpus, .threads = device.threads};
 }
 
-int evolve_as_rank_0(const EvolveOptions& options, const CLI::App& command, Ranks& ranks) {
+int evolve_as_rank_0(const EvolveOptions& options, const Command& command, Ranks& ranks) {
   std::optional<RunFolder> run;
   try {
     run = open_folder(options, command);
@@ -158,7 +158,7 @@ int evolve_as_rank_0(const EvolveOptions& options, const CLI::App& command, Rank
   return evolve_in(options, *run, settings, *ranks.distribute(*local));
 }
 
-int evolve_as_other_rank(const EvolveOptions& options, const CLI::App& command, Ranks& ranks) {
+int evolve_as_other_rank(const EvolveOptions& options, const Command& command, Ranks& ranks) {
   const std::optional<RunSettings> run = ranks.receive_settings();
   if (!run) return 2;
   EvolutionSettings settings = settings_here(options, command, *run);
@@ -187,7 +187,7 @@ void require_more_generations(const EvolveOptions& options, const Evolution& evo
                                                  evolution.settings().generations, options.folder));
 }
 
-int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
+int evolve_shard(const EvolveOptions& options, const Command& command) {
   const auto [shard, count] = shard_from(options.shard);
   options.run.require_only_what_may_change(command);
   const RunHistory history(options.folder);
@@ -210,7 +210,7 @@ int evolve_shard(const EvolveOptions& options, const CLI::App& command) {
   return 0;
 }
 
-int merge(const EvolveOptions& options, const CLI::App& command) {
+int merge(const EvolveOptions& options, const Command& command) {
   options.run.require_only_what_may_change(command);
   RunFolder run = RunFolder::open(options.folder);
   const auto finished = static_cast<int>(run.history().generations().size());
@@ -229,7 +229,7 @@ int merge(const EvolveOptions& options, const CLI::App& command) {
 
 // --- Without doing it
 
-int describe_more(const EvolveOptions& options, const CLI::App& command) {
+int describe_more(const EvolveOptions& options, const Command& command) {
   options.run.require_only_what_may_change(command);
   if (!options.shard.empty()) shard_from(options.shard);
   const RunHistory history(options.folder);
@@ -244,7 +244,7 @@ int describe_more(const EvolveOptions& options, const CLI::App& command) {
                         {"on", device_text(settings.configuration.device)}});
 }
 
-int describe_work(const EvolveOptions& options, const CLI::App& command) {
+int describe_work(const EvolveOptions& options, const Command& command) {
   if (options.resume || options.merge || !options.shard.empty()) return describe_more(options, command);
   require_new_folder(options.folder, options.output.force());
   OutputFiles outputs = options.output.files();
@@ -270,7 +270,7 @@ int describe_work(const EvolveOptions& options, const CLI::App& command) {
        {"write", "the folder " + options.folder}});
 }
 
-int evolve(const EvolveOptions& options, const CLI::App& command) {
+int evolve(const EvolveOptions& options, const Command& command) {
   if (options.resume + options.prepare + options.merge + !options.shard.empty() > 1)
     throw InputError("--resume, --prepare, --shard and --merge", "give one of them");
   if (options.output.dry_run()) return rank_by_launcher() > 0 ? 0 : describe_work(options, command);
@@ -285,19 +285,19 @@ int evolve(const EvolveOptions& options, const CLI::App& command) {
 
 }  // namespace
 
-void add_evolve_command(CLI::App& program, const Choose& choose) {
+void add_evolve_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<EvolveOptions>();
-  CLI::App* command = program.add_subcommand("evolve", "Evolve robots; every ancestor is kept, and a run can go on");
-  command->add_option("RUN", options->folder, "The folder of the run")->type_name("FOLDER")->required();
-  command->add_flag("--resume", options->resume, "Go on with the run in the folder");
-  command->add_flag("--prepare", options->prepare, "Make the folder of a run, for --shard")->group("Several hosts");
-  add_text(*command, "--shard", options->shard, "Try part I of N of the next generation, into a file of the folder",
+  const Command command = program.add_command("evolve", "Evolve robots; every ancestor is kept, and a run can go on");
+  add_text(command, "RUN", options->folder, "The folder of the run", "FOLDER").required();
+  command.add_flag("--resume", options->resume, "Go on with the run in the folder");
+  command.add_flag("--prepare", options->prepare, "Make the folder of a run, for --shard").in_group("Several hosts");
+  add_text(command, "--shard", options->shard, "Try part I of N of the next generation, into a file of the folder",
            "I/N")
-      ->group("Several hosts");
-  command->add_flag("--merge", options->merge, "Select from the files of all parts")->group("Several hosts");
-  options->output.add_to(*command);
-  options->run.add_to(*command);
-  command->footer(
+      .in_group("Several hosts");
+  command.add_flag("--merge", options->merge, "Select from the files of all parts").in_group("Several hosts");
+  options->output.add_to(command);
+  options->run.add_to(command);
+  command.set_footer(
       "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"
       "docs/evolution.md explains algorithms, genomes and the files of the folder.\n\n"
       "Examples:\n"
@@ -307,8 +307,8 @@ void add_evolve_command(CLI::App& program, const Choose& choose) {
       "  mercury evolve map --from cppn:6x4x4 --axis masses:20:120 --axis muscle_share\n"
       "  mercury evolve swim --resume --generations 200\n"
       "  mpirun -n 8 mercury evolve swim --from voxel:6x4x4 --population 4096");
-  command->callback([options, choose, command] {
-    choose([options, command] { return options->run.status(evolve(*options, *command)); });
+  command.when_chosen([options, choose, command] {
+    choose([options, command] { return options->run.status(evolve(*options, command)); });
   });
 }
 

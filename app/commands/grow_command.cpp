@@ -43,19 +43,19 @@ int grow(const GrowOptions& options) {
 
 }  // namespace
 
-void add_grow_command(CLI::App& program, const Choose& choose) {
+void add_grow_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<GrowOptions>();
-  CLI::App* command = program.add_subcommand("grow", "Grow robots again from their origin, which may be edited");
-  options->robots.add_to(*command);
-  options->output.add_files_to(*command);
-  command->footer(
+  const Command command = program.add_command("grow", "Grow robots again from their origin, which may be edited");
+  options->robots.add_to(command);
+  options->output.add_files_to(command);
+  command.set_footer(
       "Masses, springs and faces are made again from the origin in the file: the voxels of a grid, the weights of a\n"
       "network, the numbers of a shell (docs/formats.md). Name, origin and the robot's own materials stay.\n"
       "An origin that nobody edited gives the same robot. The names of the files are printed.\n\n"
       "Examples:\n"
       "  mercury grow edited.json -o edited.json --force\n"
       "  mercury grow edited/ -o grown/");
-  command->callback([options, choose] { choose([options] { return options->robots.status(grow(*options)); }); });
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(grow(*options)); }); });
 }
 
 }  // namespace mercury

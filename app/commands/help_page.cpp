@@ -129,20 +129,19 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   return lines;
 }
 
-std::string help_page(const CLI::App& command, bool brief, int columns) {
+std::string help_page(const Command& command, bool brief, int columns) {
   const auto width = static_cast<std::size_t>(columns);
-  const std::string name = full_name(command);
+  const std::string name = command.full_name();
   const std::vector<OptionDescription> options = options_of(command);
   const std::vector<std::string> commands = names_of_commands(command);
-  std::string page = fmt::format("{}.\n\n{}\n", fmt::join(wrapped(command.get_description(), width), "\n"),
+  std::string page = fmt::format("{}.\n\n{}\n", fmt::join(wrapped(command.help(), width), "\n"),
                                  fmt::join(wrapped(usage_of(name, options, !commands.empty()), width), "\n         "));
   while (page.find("..\n") != std::string::npos) page.replace(page.find("..\n"), 3, ".\n");
   if (options.front().positional) page += "\n";
   for (const OptionDescription& option : options)
     if (option.positional) page += entry(option, width);
   if (!commands.empty()) page += "\nCommands:\n";
-  for (const std::string& child : commands)
-    page += entry(child, command.get_subcommand_ptr(child)->get_description(), width);
+  for (const std::string& child : commands) page += entry(child, command.find_command(child)->help(), width);
   const std::vector<std::string> groups = groups_of(options), rare = rare_groups(groups);
   std::size_t left_out = 0;
   for (const std::string& group : groups) {
@@ -157,7 +156,7 @@ std::string help_page(const CLI::App& command, bool brief, int columns) {
     }
   }
   if (left_out > 0) page += fmt::format("\n{} more options: {} --help\n", left_out, name);
-  if (const std::string footer = footer_of(command); !footer.empty()) page += "\n" + footer_page(footer, width);
+  if (const std::string footer = command.footer(); !footer.empty()) page += "\n" + footer_page(footer, width);
   return page;
 }
 

@@ -2,18 +2,17 @@
 // The help of a command, for a terminal.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
 
 #include "app/commands/command_list.h"
+#include "app/options/command.h"
 
 namespace mercury {
 
 // Usage, arguments, options by group, explanation and examples, in lines of at most `columns` letters; only words and
 // examples that are longer stand out. `brief` leaves out the groups that few need and says how to see them.
-std::string help_page(const CLI::App& command, bool brief, int columns);
+std::string help_page(const Command& command, bool brief, int columns);
 
 // Titles of groups of options in the order of the page: what belongs to this command alone first, what all have last.
 std::vector<std::string> groups_of(const std::vector<OptionDescription>& options);

@@ -275,30 +275,30 @@ int import_files(ImportCommandOptions options) {
 
 }  // namespace
 
-void add_import_command(CLI::App& program, const Choose& choose) {
+void add_import_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<ImportCommandOptions>();
-  CLI::App* command = program.add_subcommand("import", "Make robots from files of other simulators");
+  const Command command = program.add_command("import", "Make robots from files of other simulators");
   command
-      ->add_option("FILES", options->paths,
-                   "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json), and "
-                   "folders of them")
-      ->type_name("PATH")
-      ->required();
-  add_text(*command, "-o,--output", options->output, "Folder for the robots and their configurations", "FOLDER")
-      ->required();
-  add_choice(*command, "--format", options->format, {"json", "cbor"}, "Of the robot files (default json)");
-  add_text(*command, "--base", options->base,
+      .add_list("FILES", options->paths,
+                "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json), and "
+                "folders of them")
+      .with_form("PATH")
+      .required();
+  add_text(command, "-o,--output", options->output, "Folder for the robots and their configurations", "FOLDER")
+      .required();
+  add_choice(command, "--format", options->format, {"json", "cbor"}, "Of the robot files (default json)");
+  add_text(command, "--base", options->base,
            "File that a .vxd or .rsc builds on (default: base.vxa or env.rsc beside it)", "FILE");
-  add_number(*command, "--depth", options->reading.depth, "Thickness of flat robots of EvoGym in voxels (default 1)",
+  add_number(command, "--depth", options->reading.depth, "Thickness of flat robots of EvoGym in voxels (default 1)",
              "N");
-  add_number(*command, "--materials", options->reading.most_materials,
+  add_number(command, "--materials", options->reading.most_materials,
              "Most materials of a robot; with 22 or fewer its body can mutate and evolve (default 255)", "N");
-  command->add_flag("--recursive", options->recursive, "Also import the folders inside folders");
-  command->add_flag("--keep-going", options->keep_going, "Report files that cannot be used, and go on (exit status 1)");
-  command->add_flag("--brief", options->brief, "Print no line per element");
-  command->add_flag("--json", options->json, "Print the report as JSON instead of a table");
-  options->outputs.add_to(*command);
-  command->footer(
+  command.add_flag("--recursive", options->recursive, "Also import the folders inside folders");
+  command.add_flag("--keep-going", options->keep_going, "Report files that cannot be used, and go on (exit status 1)");
+  command.add_flag("--brief", options->brief, "Print no line per element");
+  command.add_flag("--json", options->json, "Print the report as JSON instead of a table");
+  options->outputs.add_to(command);
+  command.set_footer(
       "Writes each robot as a robot file and, beside it, its world as a configuration (NAME.toml: environment, "
       "gravity,\n"
       "friction, time step). Prints what became of every element of the file: mapped, approximated or ignored, and "
@@ -310,7 +310,7 @@ void add_import_command(CLI::App& program, const Choose& choose) {
       "  mercury import generation-12/ -o robots --keep-going --json > report.json\n"
       "  mercury import robot.vxd --base base.vxa -o robots --materials 22\n"
       "  mercury import world.json -o robots --depth 3");
-  command->callback([options, choose] { choose([options] { return import_files(*options); }); });
+  command.when_chosen([options, choose] { choose([options] { return import_files(*options); }); });
 }
 
 }  // namespace mercury

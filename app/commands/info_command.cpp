@@ -260,17 +260,17 @@ int info(const InfoOptions& options) {
 
 }  // namespace
 
-void add_info_command(CLI::App& program, const Choose& choose) {
+void add_info_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command =
-      program.add_subcommand("info", "Describe robot files, recordings and runs; without a file, this machine");
-  options->robots.add_to(*command,
+  const Command command =
+      program.add_command("info", "Describe robot files, recordings and runs; without a file, this machine");
+  options->robots.add_to(command,
                          "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), scenes "
                          "(.toml), runs of mercury evolve");
-  command->add_flag("--json", options->json, "Print JSON instead of text");
-  add_text(*command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
+  command.add_flag("--json", options->json, "Print JSON instead of text");
+  add_text(command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
            "PROGRAM");
-  command->callback([options, choose] { choose([options] { return options->robots.status(info(*options)); }); });
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(info(*options)); }); });
 }
 
 }  // namespace mercury

@@ -54,25 +54,25 @@ int mutate(const MutateOptions& options) {
 
 }  // namespace
 
-void add_mutate_command(CLI::App& program, const Choose& choose) {
+void add_mutate_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<MutateOptions>();
-  CLI::App* command = program.add_subcommand("mutate", "Make changed copies of robots");
-  options->robots.add_to(*command);
-  options->output.add_to(*command, "Children of each robot (default 1)");
-  add_number(*command, "--strength", options->mutation.strength,
+  const Command command = program.add_command("mutate", "Make changed copies of robots");
+  options->robots.add_to(command);
+  options->output.add_to(command, "Children of each robot (default 1)");
+  add_number(command, "--strength", options->mutation.strength,
              "How much bodies change: 1 = a little, as in a search (default 1); 0 = not at all", "X");
-  add_number(*command, "--muscles", options->mutation.muscles,
+  add_number(command, "--muscles", options->mutation.muscles,
              "How much amplitudes, frequencies and phases of muscles change (default 0)", "X");
-  add_text(*command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: PARENT-m0, ...)",
+  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: PARENT-m0, ...)",
            "NAME");
-  command->footer(
+  command.set_footer(
       "A child differs from its parent and from the other children. The same files, options and seed give the same\n"
       "children on every machine. Their origin names the parent and the seed. The names of the files are printed.\n\n"
       "Examples:\n"
       "  mercury mutate eel.json -o children/ --count 20 --seed 3\n"
       "  mercury mutate eel.json -o late.json --strength 0 --muscles 1\n"
       "  mercury mutate best/ -o generation-2/ --count 8 --strength 2 --muscles 0.5");
-  command->callback([options, choose] { choose([options] { return options->robots.status(mutate(*options)); }); });
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(mutate(*options)); }); });
 }
 
 }  // namespace mercury

@@ -29,7 +29,7 @@ struct NewOptions {
   TrialSettings trials;
   SimulationOptions simulation;
 
-  void add_to(CLI::App& command) {
+  void add_to(const Command& command) {
     output.add_to(command);
     add_number(command, "--best-of", best_of, "Simulate N robots and keep the --count that get farthest", "N");
     add_text(command, "--csv", csv, "With --best-of: write a line per candidate to this file, in their order", "FILE");
@@ -164,17 +164,17 @@ std::string footer_of(const Generator& generator) {
 }
 
 // The command for one kind of robot.
-void add_kind(CLI::App& family, const Choose& choose, const Generator& generator) {
+void add_kind(const Command& family, const Choose& choose, const Generator& generator) {
   struct Options {
     NewOptions shared;
     GeneratorOptions shape;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = family.add_subcommand(generator.kind, generator.help);
-  options->shape.add_to(*command, generator);
-  options->shared.add_to(*command);
-  command->footer(footer_of(generator));
-  command->callback([options, choose, &generator] {
+  const Command command = family.add_command(generator.kind, generator.help);
+  options->shape.add_to(command, generator);
+  options->shared.add_to(command);
+  command.set_footer(footer_of(generator));
+  command.when_chosen([options, choose, &generator] {
     choose([options, &generator] {
       const ParameterValues& values = options->shape.values();
       generator.validate(values);
@@ -188,10 +188,10 @@ void add_kind(CLI::App& family, const Choose& choose, const Generator& generator
 
 }  // namespace
 
-void add_new_command(CLI::App& program, const Choose& choose) {
-  CLI::App* command = program.add_subcommand("new", "Make robot files");
-  command->require_subcommand(1);
-  for (const Generator& generator : generators()) add_kind(*command, choose, generator);
+void add_new_command(const Command& program, const Choose& choose) {
+  const Command command = program.add_command("new", "Make robot files");
+  command.require_command();
+  for (const Generator& generator : generators()) add_kind(command, choose, generator);
 }
 
 }  // namespace mercury

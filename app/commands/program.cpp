@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -64,37 +63,37 @@ void print_message(const std::string& message) {
 
 // Values of text options that may be empty. For all others an empty text is a mistake: a variable that a script did not
 // set.
-bool may_be_empty(const CLI::Option& option) { return option.check_lname("caption"); }
+bool may_be_empty(const Option& option) { return option.name() == "caption"; }
 
 class Program {
  public:
   Program() {
-    app_.footer(footer);
-    app_.set_help_flag("-h,--help", "Print help: -h the most used options, --help all");
+    const Command program = tree_.root();
+    program.set_footer(footer);
     const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
-    add_view_command(app_, choose);
-    add_render_command(app_, choose);
-    add_run_command(app_, choose);
-    add_evolve_command(app_, choose);
-    add_new_command(app_, choose);
-    add_mutate_command(app_, choose);
-    add_cross_command(app_, choose);
-    add_grow_command(app_, choose);
-    add_export_command(app_, choose);
-    add_import_command(app_, choose);
-    add_bench_command(app_, choose);
-    add_verify_command(app_, choose);
-    add_info_command(app_, choose);
-    add_help_command();
-    add_describe_command(app_, choose);
-    add_general_options(app_);
+    add_view_command(program, choose);
+    add_render_command(program, choose);
+    add_run_command(program, choose);
+    add_evolve_command(program, choose);
+    add_new_command(program, choose);
+    add_mutate_command(program, choose);
+    add_cross_command(program, choose);
+    add_grow_command(program, choose);
+    add_export_command(program, choose);
+    add_import_command(program, choose);
+    add_bench_command(program, choose);
+    add_verify_command(program, choose);
+    add_info_command(program, choose);
+    add_help_command(program);
+    add_describe_command(program, choose);
+    add_general_options(program);
   }
 
   int run(std::vector<std::string> arguments) {
     const auto start = std::chrono::steady_clock::now();
     try {
       parse(std::move(arguments));
-      if (body_) say_detail(fmt::format("{}: {}", program_version, full_name(*command_)));
+      if (body_) say_detail(fmt::format("{}: {}", program_version, command_->full_name()));
       int status = body_ ? body_() : status_done;
       if (status == status_failed && interrupted()) status = stopped_status();
       flush_standard_output();
@@ -119,26 +118,26 @@ class Program {
   }
 
  private:
-  void add_help_command() {
+  void add_help_command(const Command& program) {
     // command_line() puts --help behind the words instead.
-    CLI::App* command = app_.add_subcommand("help", "Explain a command, as in mercury help new voxel");
-    offer(command->add_option("COMMAND", words_of_help_, "A command, and the kind of robots of new"),
-          names_of_commands(app_));
+    program.add_command("help", "Explain a command, as in mercury help new voxel")
+        .add_list("COMMAND", words_of_help_, "A command, and the kind of robots of new")
+        .offering(names_of_commands(program));
   }
 
   // The options that every command has, and --config.
-  void add_general_options(CLI::App& command) {
-    const auto add = [](CLI::Option* option) { option->group("General"); };
-    add(command.get_help_ptr());
-    add(command.set_version_flag("-V,--version", program_version, "Print the version"));
+  void add_general_options(const Command& command) {
+    const auto add = [](const Option& option) { option.in_group("General"); };
+    add(command.help_option());
+    add(command.add_version_option("-V,--version", program_version, "Print the version"));
     add(command.add_flag("-q,--quiet", quiet_, "Print only errors and warnings on standard error"));
     add(command.add_flag("-v,--verbose", verbose_, "Say in detail what is done, with times"));
-    const auto children = command.get_subcommands([](CLI::App*) { return true; });
+    const std::vector<Command> children = command.commands(true);
     if (children.empty())
       add(add_text(command, "--config", config_path_,
                    "Read options from a TOML file; the command line overrides them (docs/command-line.md)",
                    "FILE.toml"));
-    for (CLI::App* child : children) add_general_options(*child);
+    for (const Command& child : children) add_general_options(child);
   }
 
   int refuse(const std::string& message) const {
@@ -156,17 +155,17 @@ class Program {
   }
 
   // Puts the robots and the options of a scene in its place among the robots of a command.
-  void expand_scene(const CLI::App& command, std::size_t words, std::vector<std::string>& arguments) {
+  void expand_scene(const Command& command, std::size_t words, std::vector<std::string>& arguments) {
     // `info` describes the scene itself.
-    if (!command.get_option_no_throw("ROBOTS") || command.get_name() == "info") return;
+    if (!command.find_option("ROBOTS") || command.name() == "info") return;
     const std::vector<std::size_t> places = scenes_in(command, words, arguments);
     if (places.empty()) return;
     if (places.size() > 1) throw InputError(arguments[places[1]], "is a second scene; give one");
     scene_.emplace(arguments[places.front()]);
-    if (!scene_->random().empty() && !command.get_option_no_throw("--random"))
+    if (!scene_->random().empty() && !command.find_option("--random"))
       throw InputError(scene_->path().string(),
-                       fmt::format("has random robots, which {} does not take; give robot files", full_name(command)));
-    if (!scene_->attached().empty() && !command.get_option_no_throw("--attach"))
+                       fmt::format("has random robots, which {} does not take; give robot files", command.full_name()));
+    if (!scene_->attached().empty() && !command.find_option("--attach"))
       warn(fmt::format("{}: pins and attached springs are left out; only mercury view has them",
                        scene_->path().string()));
     scene_options_ = scene_->arguments(command, arguments);
@@ -177,7 +176,7 @@ class Program {
   }
 
   // Which arguments are scenes, and no values of options.
-  static std::vector<std::size_t> scenes_in(const CLI::App& command, std::size_t words,
+  static std::vector<std::size_t> scenes_in(const Command& command, std::size_t words,
                                             const std::vector<std::string>& arguments) {
     std::vector<std::size_t> places;
     bool only_files = false;
@@ -188,43 +187,43 @@ class Program {
         continue;
       }
       only_files = argument == "--";
-      const CLI::Option* option = command.get_option_no_throw(argument);
-      if (option && option->get_items_expected_max() > 0) ++i;
+      const std::optional<Option> option = command.find_option(argument);
+      if (option && option->takes_value()) ++i;
     }
     return places;
   }
 
   void parse(std::vector<std::string> given) {
-    auto [command, words, arguments] = command_line(app_, std::move(given));
+    auto [command, words, arguments] = command_line(tree_.root(), std::move(given));
     command_ = command;
     if (const std::string path = config_path_in(arguments); !path.empty()) {
-      config_.emplace(path, app_, *command, arguments);
+      config_.emplace(path, tree_.root(), command, arguments);
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
                        config_->arguments().end());
     }
-    expand_scene(*command, words, arguments);
-    require_values(*command, arguments);
+    expand_scene(command, words, arguments);
+    require_values(command, arguments);
     try {
-      app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::Success& request) {
-      body_ = nullptr;
-      if (rank_by_launcher() == 0) answer(request, *command, arguments);
-    } catch (const CLI::ExtrasError&) {
-      throw unknown_argument(*command);
-    } catch (const CLI::ArgumentMismatch& error) {
-      const std::string what = error.what();
-      throw InputError(what.substr(0, what.find(':')), "needs a value; see " + full_name(*command) + " --help");
-    } catch (const CLI::ParseError& error) {
-      throw InputError(fmt::format("{}; see {} --help", error.what(), full_name(*command)));
+      const ParsedRequest request = tree_.parse(arguments);
+      if (request != ParsedRequest::run) {
+        body_ = nullptr;
+        if (rank_by_launcher() == 0) answer(request, command, arguments);
+      }
+    } catch (const UnknownArgument& argument) {
+      throw unknown_argument(argument.text, command);
+    } catch (const MissingValue& missing) {
+      throw InputError(missing.option, "needs a value; see " + command.full_name() + " --help");
+    } catch (const ParseFailure& error) {
+      throw InputError(fmt::format("{}; see {} --help", error.text, command.full_name()));
     }
     set_verbosity(quiet_ ? Verbosity::quiet : verbose_ ? Verbosity::verbose : Verbosity::normal);
-    if (body_) require_texts(*command);
+    if (body_) require_texts(command);
     if (config_) say_detail("options from " + config_path_);
   }
 
   // Prints help or version.
-  static void answer(const CLI::Success& request, const CLI::App& command, const std::vector<std::string>& arguments) {
-    if (request.get_name() == "CallForVersion") {
+  static void answer(ParsedRequest request, const Command& command, const std::vector<std::string>& arguments) {
+    if (request == ParsedRequest::version) {
       fmt::print("{}\n", program_version);
       return;
     }
@@ -234,48 +233,47 @@ class Program {
   }
 
   // CLI11 would read the next argument as the value of "--dt=", and the value of a switch in its own way.
-  static void require_values(const CLI::App& command, const std::vector<std::string>& arguments) {
+  static void require_values(const Command& command, const std::vector<std::string>& arguments) {
     for (const std::string& argument : arguments) {
       if (argument == "--") return;
       const std::size_t equals = argument.find('=');
       if (!argument.starts_with("--") || equals == std::string::npos) continue;
       const std::string name = argument.substr(0, equals);
-      const CLI::Option* option = command.get_option_no_throw(name);
-      if (option && option->get_items_expected_max() == 0)
-        throw InputError(name, "is a switch; give it without a value");
+      const std::optional<Option> option = command.find_option(name);
+      if (option && !option->takes_value()) throw InputError(name, "is a switch; give it without a value");
       if (equals == argument.size() - 1 && !(option && may_be_empty(*option))) throw empty_value(name, command);
     }
   }
 
-  static void require_texts(const CLI::App& command) {
-    for (const CLI::Option* option : command.get_options()) {
-      const std::vector<std::string>& texts = option->results();
-      if (option->get_items_expected_max() == 0 || may_be_empty(*option)) continue;
+  static void require_texts(const Command& command) {
+    for (const Option& option : command.options()) {
+      const std::vector<std::string> texts = option.values();
+      if (!option.takes_value() || may_be_empty(option)) continue;
       if (std::ranges::find(texts, "") == texts.end()) continue;
-      throw empty_value(option->get_positional() ? option->get_single_name() : first_name(*option), command);
+      throw empty_value(option.is_positional() ? option.name() : first_name(option), command);
     }
   }
 
   // As add_value() names it in messages: "-o" of "-o,--output".
-  static std::string first_name(const CLI::Option& option) {
-    return option.get_snames().empty() ? "--" + option.get_single_name() : "-" + option.get_snames().front();
+  static std::string first_name(const Option& option) {
+    const std::vector<std::string> names = option.short_names();
+    return names.empty() ? "--" + option.name() : names.front();
   }
 
-  static InputError empty_value(const std::string& name, const CLI::App& command) {
-    const CLI::Option* option = command.get_option_no_throw(name);
-    const std::string form = option ? option->get_type_name() : "";
+  static InputError empty_value(const std::string& name, const Command& command) {
+    const std::optional<Option> option = command.find_option(name);
+    const std::string form = option ? option->form() : "";
     return InputError(name, fmt::format("an empty value is not accepted; give {}, or leave {} out",
                                         form.empty() ? "a value" : form, name.starts_with("-") ? "the option" : "it"));
   }
 
-  InputError unknown_argument(const CLI::App& command) const {
-    const std::vector<std::string> rest = app_.remaining(true);
-    const std::string word = rest.empty() ? "" : rest.front().substr(0, rest.front().find('='));
+  static InputError unknown_argument(const std::string& argument, const Command& command) {
+    const std::string word = argument.substr(0, argument.find('='));
     if (!word.starts_with("-"))
-      return InputError(printable(word, 200), fmt::format("one argument too many; see {} --help", full_name(command)));
+      return InputError(printable(word, 200), fmt::format("one argument too many; see {} --help", command.full_name()));
     return InputError(printable(word, 200),
-                      fmt::format("not an option of {}{}; see {} --help", full_name(command),
-                                  suggestion(word, names_of_options(command)), full_name(command)));
+                      fmt::format("not an option of {}{}; see {} --help", command.full_name(),
+                                  suggestion(word, names_of_options(command)), command.full_name()));
   }
 
   static void say_costs(double seconds) {
@@ -285,9 +283,9 @@ class Program {
                            static_cast<double>(usage.ru_maxrss) / 1024));
   }
 
-  CLI::App app_{"Mercury simulates soft robots, shows them in a window and makes videos of them.", "mercury"};
+  CommandTree tree_{"mercury", "Mercury simulates soft robots, shows them in a window and makes videos of them."};
   CommandBody body_;
-  const CLI::App* command_ = nullptr;  // that the command line names
+  std::optional<Command> command_;  // that the command line names
   std::optional<ConfigFile> config_;
   std::optional<SceneFile> scene_;
   std::vector<std::string> scene_options_;  // "--dt=0.002": those that the command took from the scene

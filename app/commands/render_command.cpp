@@ -196,18 +196,18 @@ int render_robots(RenderOptions& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App& program, const Choose& choose) {
+void add_render_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = program.add_subcommand("render", "Make a video or picture of robots, without a window");
-  options->robots.add_to(*command);
-  command->get_option("ROBOTS")->description(
+  const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
+  options->robots.add_to(command);
+  command.find_option("ROBOTS")->with_help(
       "Robot files (.json, .cbor) and folders of them, or a recording (.h5), or the folder of a run");
-  options->video.add_to(*command);
-  options->view.add_to(*command);
-  options->film.add_to(*command);
-  options->output.add_to(*command);
-  options->simulation.add_to(*command);
-  command->footer(
+  options->video.add_to(command);
+  options->view.add_to(command);
+  options->film.add_to(command);
+  options->output.add_to(command);
+  options->simulation.add_to(command);
+  command.set_footer(
       "Examples:\n"
       "  mercury render --random voxel:12 --seed 1 -o group.mp4\n"
       "  mercury render my-robots --environment land --size 1080p --seconds 20 --speed 2 -o land.webm\n"
@@ -219,7 +219,7 @@ void add_render_command(CLI::App& program, const Choose& choose) {
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
-  command->callback(
+  command.when_chosen(
       [options, choose] { choose([options] { return options->robots.status(render_robots(*options)); }); });
 }
 

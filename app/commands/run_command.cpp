@@ -331,29 +331,29 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& program, const Choose& choose) {
+void add_run_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Simulate robots and print a table or JSON");
-  options->robots.add_to(*command);
-  command->get_option("ROBOTS")->description(
+  const Command command = program.add_command("run", "Simulate robots and print a table or JSON");
+  options->robots.add_to(command);
+  command.find_option("ROBOTS")->with_help(
       "Robot files (.json, .cbor) and folders of them, or an explosion that the window saved (.repro)");
-  add_text(*command, "--csv", options->csv,
+  add_text(command, "--csv", options->csv,
            "Also write one line per robot to this file; - prints it instead of the table", "FILE");
-  add_text(*command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
+  add_text(command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
            "FILE.h5");
-  add_number(*command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
-  add_text(*command, "--checkpoint", options->checkpoint,
+  add_number(command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
+  add_text(command, "--checkpoint", options->checkpoint,
            "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
-  add_number(*command, "--checkpoint-every", options->checkpoint_every,
-             "Wall time between two checkpoints (default 60)", "S");
-  command->add_flag("--resume", options->goes_on, "Go on with the run that --checkpoint has saved, bit for bit");
-  options->output.add_to(*command);
-  command->add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
-  add_trial_options(*command, options->trials);
-  options->simulation.add_to(*command);
-  command->footer(
+  add_number(command, "--checkpoint-every", options->checkpoint_every, "Wall time between two checkpoints (default 60)",
+             "S");
+  command.add_flag("--resume", options->goes_on, "Go on with the run that --checkpoint has saved, bit for bit");
+  options->output.add_to(command);
+  command.add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
+  add_trial_options(command, options->trials);
+  options->simulation.add_to(command);
+  command.set_footer(
       "Distance is how far the center of mass got from where it was after --settle; on land along the ground, so a "
       "fall\n"
       "counts for nothing. Speed is the length of its path divided by the time. Strain is the largest of any spring;\n"
@@ -367,7 +367,7 @@ void add_run_command(CLI::App& program, const Choose& choose) {
       "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
-  command->callback([options, choose] {
+  command.when_chosen([options, choose] {
     choose([options] {
       if (options->goes_on && options->checkpoint.empty())
         throw InputError("--resume", "goes on from the file of --checkpoint; give that, too");

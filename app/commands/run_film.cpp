@@ -136,8 +136,8 @@ RunFilm film_of_map(const RunHistory& run) {
 
 }  // namespace
 
-void RunFilmOptions::add_to(CLI::App& command) {
-  const auto add = [](CLI::Option* option) { option->group(group); };
+void RunFilmOptions::add_to(const Command& command) {
+  const auto add = [](const Option& option) { option.in_group(group); };
   add(add_text(command, "--lineage", lineage_,
                "The ancestors of a robot of a run in order, of its best or of one with that number", "best|ROBOT"));
   add(add_number(

@@ -2,13 +2,12 @@
 // Films and pictures of an evolution: which of its individuals they show, and what is written beside them.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/options/command.h"
 #include "app/scene/board.h"
 #include "mercury/run_folder.h"
 
@@ -31,7 +30,7 @@ struct RunFilm {
 class RunFilmOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // Throws InputError for options that do not go together.
   void validate() const;

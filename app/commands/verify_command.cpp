@@ -221,16 +221,16 @@ int run_verify(const VerifyOptions& options) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& program, const Choose& choose) {
+void add_verify_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command = program.add_subcommand("verify", "Run a recording again and compare");
-  add_text(*command, "FILE", options->file, "A recording (.h5)", "FILE.h5")->required();
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  add_number(*command, "--tolerance", options->tolerance,
+  const Command command = program.add_command("verify", "Run a recording again and compare");
+  add_text(command, "FILE", options->file, "A recording (.h5)", "FILE.h5").required();
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  add_number(command, "--tolerance", options->tolerance,
              "Differences of positions that still count as the same (default 0: every bit)", "M");
-  add_value(*command, "--device", options->device, "What computes (default: the kind that made the recording)",
+  add_value(command, "--device", options->device, "What computes (default: the kind that made the recording)",
             "auto|cpu|cuda[:N]", [](const std::string&, const std::string& text) { return device_named(text); });
-  command->footer(
+  command.set_footer(
       "Starts at the first frame and compares positions and velocities at all others. On the kind of device that made\n"
       "the recording they are the same bit for bit; elsewhere the table says how far they part. What a program "
       "changed\n"
@@ -239,7 +239,7 @@ void add_verify_command(CLI::App& program, const Choose& choose) {
       "Examples:\n"
       "  mercury verify swim.h5\n"
       "  mercury verify swim.h5 --device cpu --tolerance 0.001 --json");
-  command->callback([options, choose] { choose([options] { return run_verify(*options); }); });
+  command.when_chosen([options, choose] { choose([options] { return run_verify(*options); }); });
 }
 
 }  // namespace mercury

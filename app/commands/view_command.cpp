@@ -141,39 +141,39 @@ int view(const ViewCommandOptions& options) {
 
 }  // namespace
 
-void add_view_command(CLI::App& program, const Choose& choose) {
+void add_view_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<ViewCommandOptions>();
-  CLI::App* command = program.add_subcommand("view", "Show robots in an interactive window");
-  options->robots.add_to(*command);
-  command->get_option("ROBOTS")->description(
+  const Command command = program.add_command("view", "Show robots in an interactive window");
+  options->robots.add_to(command);
+  command.find_option("ROBOTS")->with_help(
       "Robot files (.json, .cbor) and folders of them, or a recording (.h5), an explosion (.repro) or the folder of a "
       "run");
-  add_text(*command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
-      ->group("Window");
-  add_choice(*command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
-      ->group("Window");
-  offer(add_value(*command, "--speed", options->speed,
-                  "Simulated seconds per second, or max: as fast as possible (default 1)", "X|max", speed_from),
-        {"max"})
-      ->group("Window");
-  command->add_flag("--paused", options->paused, "Start paused")->group("Window");
+  add_text(command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
+      .in_group("Window");
+  add_choice(command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
+      .in_group("Window");
+  add_value(command, "--speed", options->speed, "Simulated seconds per second, or max: as fast as possible (default 1)",
+            "X|max", speed_from)
+      .offering({"max"})
+      .in_group("Window");
+  command.add_flag("--paused", options->paused, "Start paused").in_group("Window");
   command
-      ->add_flag("--no-interop", options->no_interop,
-                 "Copy positions through the host even where CUDA and OpenGL can share them on the card")
-      ->group("Window");
+      .add_flag("--no-interop", options->no_interop,
+                "Copy positions through the host even where CUDA and OpenGL can share them on the card")
+      .in_group("Window");
   command
-      ->add_flag("--unpaced", options->unpaced,
-                 "Draw as many pictures as possible, more than the display shows: for measurements")
-      ->group("Window");
-  command->add_flag("--fresh", options->fresh, "Neither load nor save settings")->group("Window");
-  add_text(*command, "--report", options->report,
+      .add_flag("--unpaced", options->unpaced,
+                "Draw as many pictures as possible, more than the display shows: for measurements")
+      .in_group("Window");
+  command.add_flag("--fresh", options->fresh, "Neither load nor save settings").in_group("Window");
+  add_text(command, "--report", options->report,
            "Write the events of the window to a file, one JSON object per line (docs/window.md)", "FILE")
-      ->group("Window");
-  options->attachments.add_to(*command);
-  options->output.add_force_to(*command);
-  options->view.add_to(*command);
-  options->simulation.add_to(*command);
-  command->footer(
+      .in_group("Window");
+  options->attachments.add_to(command);
+  options->output.add_force_to(command);
+  options->view.add_to(command);
+  options->simulation.add_to(command);
+  command.set_footer(
       "Without ROBOTS the window shows the sample robots. Press F1 for a list of all keys.\n"
       "A RUN of mercury evolve opens with its scores, champions and families; it may still be running.\n"
       "Examples:\n"
@@ -182,7 +182,7 @@ void add_view_command(CLI::App& program, const Choose& choose) {
       "  mercury view --random voxel:12 --seed 3 --color strain\n"
       "  mercury view swim                 (a run)\n"
       "  mercury view swim.h5              (a recording: play, drag, go on from any frame)");
-  command->callback([options, choose] { choose([options] { return options->robots.status(view(*options)); }); });
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(view(*options)); }); });
 }
 
 }  // namespace mercury

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "app/scene/eigen_vec3.h"
 #include "app/scene/group_layout.h"
 
 namespace mercury {
@@ -14,16 +13,16 @@ render::Bounds surroundings_of(const CulpritSpring& spring, const render::Bounds
   constexpr float most = 12;  // of the robot's size
   const float size = std::max(2 * rest.radius(), 1e-3f);
   render::Bounds box;
-  for (const Eigen::Vector3f& end : {spring.at_a, spring.at_b})
+  for (const render::Vector3& end : {spring.at_a, spring.at_b})
     if ((end - rest.center()).norm() < most * size) box.extend(end);
   if (box.empty()) box = rest;
-  box.low.array() -= 0.3f * size;
-  box.high.array() += 0.3f * size;
+  box.low -= render::Vector3::all(0.3f * size);
+  box.high += render::Vector3::all(0.3f * size);
   return box;
 }
 
 std::optional<CulpritSpring> culprit_spring_of(const Snapshot& snapshot, std::size_t index,
-                                               const Eigen::Vector3f& offset, const render::Bounds& box) {
+                                               const render::Vector3& offset, const render::Bounds& box) {
   const Robot& robot = *snapshot.robots->robots[index].robot;
   const std::uint32_t spring_index = snapshot.telemetry[index].culprit_spring;
   if (spring_index >= robot.springs.size()) return std::nullopt;
@@ -32,18 +31,18 @@ std::optional<CulpritSpring> culprit_spring_of(const Snapshot& snapshot, std::si
   CulpritSpring found{.index = spring_index,
                       .a = spring.a,
                       .b = spring.b,
-                      .at_a = eigen(positions[spring.a]) + offset,
-                      .at_b = eigen(positions[spring.b]) + offset,
+                      .at_a = render::Vector3(positions[spring.a]) + offset,
+                      .at_b = render::Vector3(positions[spring.b]) + offset,
                       .figures = spring_details(snapshot, index, spring_index),
                       .surroundings = {}};
-  if (!found.at_a.allFinite() || !found.at_b.allFinite()) return std::nullopt;
+  if (!found.at_a.is_finite() || !found.at_b.is_finite()) return std::nullopt;
   found.surroundings = surroundings_of(found, box);
   return found;
 }
 
 }  // namespace
 
-std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets,
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const render::Vector3> offsets,
                                            std::span<const render::Bounds> boxes) {
   std::vector<ExplodedRobot> exploded;
   for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {

@@ -2,8 +2,6 @@
 // Exploded robots, and where the spring that caused it is in the picture.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,6 +10,7 @@
 
 #include "app/live/picking.h"
 #include "render/camera.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -19,7 +18,7 @@ namespace mercury {
 struct CulpritSpring {
   std::uint32_t index = 0;       // in Robot::springs
   std::uint16_t a = 0, b = 0;    // its masses
-  Eigen::Vector3f at_a, at_b;    // their positions in the picture; the robot is frozen there [m]
+  render::Vector3 at_a, at_b;    // their positions in the picture; the robot is frozen there [m]
   HitDetails::OfSpring figures;  // at the explosion
   render::Bounds surroundings;   // the part of the picture that shows the spring and enough of its robot
 };
@@ -34,7 +33,7 @@ struct ExplodedRobot {
 
 // The exploded robots of a snapshot in the order of their explosions. `offsets`: per robot, added to its coordinates in
 // the picture [m]. `boxes`: where each robot was last in the picture; empty = where it was at rest.
-std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets,
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const render::Vector3> offsets,
                                            std::span<const render::Bounds> boxes = {});
 
 }  // namespace mercury

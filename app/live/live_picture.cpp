@@ -44,7 +44,7 @@ Group group_of(const Snapshot& snapshot) {
   return group;
 }
 
-std::vector<Eigen::Vector3f> offsets_of(const Snapshot& snapshot, const ViewSettings& settings, float aspect) {
+std::vector<render::Vector3> offsets_of(const Snapshot& snapshot, const ViewSettings& settings, float aspect) {
   std::vector<render::Bounds> bounds;
   for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
     bounds.push_back(i < snapshot.robots->shapes.size() ? snapshot.robots->shapes[i]->box
@@ -175,8 +175,8 @@ std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
   const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }
-std::span<const Eigen::Vector3f> LivePicture::offsets() const {
-  return parts_->scene ? parts_->scene->offsets() : std::span<const Eigen::Vector3f>{};
+std::span<const render::Vector3> LivePicture::offsets() const {
+  return parts_->scene ? parts_->scene->offsets() : std::span<const render::Vector3>{};
 }
 std::span<const render::Bounds> LivePicture::last_boxes() const {
   return parts_->scene ? parts_->scene->last_boxes() : std::span<const render::Bounds>{};

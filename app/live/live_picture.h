@@ -2,8 +2,6 @@
 // The scene that the window draws, made from the newest snapshot: layout, colors, arrows, labels.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <memory>
 #include <optional>
 #include <set>
@@ -12,6 +10,7 @@
 
 #include "app/live/snapshot.h"
 #include "app/scene/group_scene.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -53,7 +52,7 @@ class LivePicture {
   // The positions of a robot's masses as drawn, without its offset [m].
   std::span<const Vec3> positions_of(std::size_t robot) const;
   // What is added to each robot's own coordinates in the picture [m].
-  std::span<const Eigen::Vector3f> offsets() const;
+  std::span<const render::Vector3> offsets() const;
 
  private:
   struct Parts;

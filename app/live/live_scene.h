@@ -39,7 +39,7 @@ struct LiveSceneOptions {
 struct PerturbationDetails {
   RobotId robot = 0;
   std::uint16_t mass = 0;
-  Eigen::Vector3f at, target;  // of the mass and of the mouse [m]
+  render::Vector3 at, target;  // of the mass and of the mouse [m]
   float stiffness = 0;         // [N/m]
   float force = 0;             // [N]
 };
@@ -209,7 +209,7 @@ class LiveScene {
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitDetails describe(const Hit& hit) const;
   void begin_perturbation(const Hit& hit, float stiffness = 0);  // [N/m]; 0 = suits the robot
-  void move_perturbation(const Eigen::Vector3f& target);
+  void move_perturbation(const render::Vector3& target);
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
   std::optional<PerturbationDetails> perturbation() const;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "app/live/live_scene_parts.h"
-#include "app/scene/eigen_vec3.h"
 
 namespace mercury {
 namespace {
@@ -58,12 +57,12 @@ void LiveScene::begin_perturbation(const Hit& hit, float stiffness) {
   parts_->send_perturbation();
 }
 
-void LiveScene::move_perturbation(const Eigen::Vector3f& target) {
-  if (!parts_->perturbation || !target.allFinite()) return;
+void LiveScene::move_perturbation(const render::Vector3& target) {
+  if (!parts_->perturbation || !target.is_finite()) return;
   const auto index = parts_->pointed_snapshot().robots->index_of(parts_->perturbation->robot);
   if (!index || *index >= parts_->pointed_picture().offsets().size()) return;
-  const Eigen::Vector3f own = target - parts_->pointed_picture().offsets()[*index];
-  parts_->perturbation->target = {own.x(), own.y(), own.z()};
+  const render::Vector3 own = target - parts_->pointed_picture().offsets()[*index];
+  parts_->perturbation->target = {own.x, own.y, own.z};
   parts_->send_perturbation();
 }
 
@@ -87,12 +86,12 @@ std::optional<PerturbationDetails> LiveScene::Parts::details_of(const LivePertur
   if (!index || *index >= pointed_picture().offsets().size() ||
       pull.mass >= pointed_picture().positions_of(*index).size())
     return std::nullopt;
-  const Eigen::Vector3f offset = pointed_picture().offsets()[*index];
+  const render::Vector3 offset = pointed_picture().offsets()[*index];
   const Vec3 mass = pointed_picture().positions_of(*index)[pull.mass];
   return PerturbationDetails{.robot = pull.robot,
                              .mass = pull.mass,
-                             .at = eigen(mass) + offset,
-                             .target = eigen(pull.target) + offset,
+                             .at = render::Vector3(mass) + offset,
+                             .target = render::Vector3(pull.target) + offset,
                              .stiffness = pull.stiffness,
                              .force = pull.stiffness * length(pull.target - mass)};
 }

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/picking.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "app/scene/eigen_vec3.h"
 #include "mercury/observables.h"
+#include "render/vector.h"
 
 namespace mercury {
 namespace {
 
-using Eigen::Vector3f;
+using render::Vector3;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
@@ -24,14 +22,14 @@ std::span<const float> floats(std::span<const Vec3> points) {
 }
 
 // Distance along the ray to a triangle, from either side; infinity if the ray misses it (Moeller and Trumbore 1997).
-float distance_to_triangle(const render::Ray& ray, const Vector3f& a, const Vector3f& b, const Vector3f& c) {
-  const Vector3f ab = b - a, ac = c - a, across = ray.direction.cross(ac);
+float distance_to_triangle(const render::Ray& ray, const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 ab = b - a, ac = c - a, across = ray.direction.cross(ac);
   const float determinant = ab.dot(across);
   if (determinant == 0 || !std::isfinite(determinant)) return far_away;
-  const Vector3f from_a = ray.origin - a;
+  const Vector3 from_a = ray.origin - a;
   const float u = from_a.dot(across) / determinant;
   if (!(u >= 0 && u <= 1)) return far_away;
-  const Vector3f up = from_a.cross(ab);
+  const Vector3 up = from_a.cross(ab);
   const float v = ray.direction.dot(up) / determinant;
   if (!(v >= 0 && u + v <= 1)) return far_away;
   const float t = ac.dot(up) / determinant;
@@ -43,16 +41,16 @@ struct Nearest {
   float apart = far_away;  // distance from the ray [m]
 };
 
-Nearest nearest_to_point(const render::Ray& ray, const Vector3f& point) {
+Nearest nearest_to_point(const render::Ray& ray, const Vector3& point) {
   const float along = (point - ray.origin).dot(ray.direction);
   if (!(along > 0)) return {};
   return {along, (ray.origin + along * ray.direction - point).norm()};
 }
 
 // The nearest points of the ray and the segment from a to b.
-Nearest nearest_to_segment(const render::Ray& ray, const Vector3f& a, const Vector3f& b) {
-  const Vector3f d = b - a, w = a - ray.origin;
-  const float dd = d.squaredNorm(), rd = ray.direction.dot(d), rw = ray.direction.dot(w), dw = d.dot(w);
+Nearest nearest_to_segment(const render::Ray& ray, const Vector3& a, const Vector3& b) {
+  const Vector3 d = b - a, w = a - ray.origin;
+  const float dd = d.squared_norm(), rd = ray.direction.dot(d), rw = ray.direction.dot(w), dw = d.dot(w);
   const float determinant = dd - rd * rd;
   // If the lines are parallel, any point is nearest.
   const float s = determinant > 1e-12f * dd ? std::clamp((rd * rw - dw) / determinant, 0.0f, 1.0f) : 0.0f;
@@ -91,15 +89,15 @@ struct Candidate {
 };
 
 // Nearest first. A look at each position costs little beside a look at each face.
-std::vector<Candidate> candidates_on(const Snapshot& snapshot, std::span<const Vector3f> offsets,
-                                     const render::Ray& ray, const PickOptions& options) {
+std::vector<Candidate> candidates_on(const Snapshot& snapshot, std::span<const Vector3> offsets, const render::Ray& ray,
+                                     const PickOptions& options) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
     if (!options.hidden.empty() && options.hidden[i]) continue;
     const float room = room_around(*snapshot.robots->robots[i].robot, options.radius);
     render::Bounds box = render::bounds_of(floats(snapshot.positions_of(i))).moved(offsets[i]);
-    box.low.array() -= room;
-    box.high.array() += room;
+    box.low -= render::Vector3::all(room);
+    box.high += render::Vector3::all(room);
     const float enter = distance_to_box(ray, box);
     if (enter < far_away) candidates.push_back({i, enter, room});
   }
@@ -110,7 +108,7 @@ std::vector<Candidate> candidates_on(const Snapshot& snapshot, std::span<const V
 // One robot that the ray may hit.
 class Target {
  public:
-  Target(const Robot& robot, std::span<const Vec3> positions, const Vector3f& offset,
+  Target(const Robot& robot, std::span<const Vec3> positions, const Vector3& offset,
          const std::optional<render::Cut>& cut)
       : robot_(robot) {
     if (const auto frame = cut ? render::cut_frame(cut->axis, floats(robot.masses), floats(positions)) : std::nullopt) {
@@ -118,7 +116,7 @@ class Target {
       cut_.offset += cut_.normal.dot(offset);
     }
     points_.reserve(positions.size());
-    for (const Vec3 p : positions) points_.push_back(eigen(p) + offset);
+    for (const Vec3 p : positions) points_.push_back(Vector3(p) + offset);
   }
 
   void meet_skin(const render::Ray& ray, Hit& best) const {
@@ -135,7 +133,7 @@ class Target {
       const Spring& spring = robot_.springs[i];
       const Nearest near = nearest_to_segment(ray, points_[spring.a], points_[spring.b]);
       if (!(near.apart <= room && near.along < best.distance)) continue;
-      const Vector3f point = ray.origin + near.along * ray.direction;
+      const Vector3 point = ray.origin + near.along * ray.direction;
       if (cut_.removes(point)) continue;
       best = {.spring = i, .point = point, .distance = near.along};
       best.mass = nearest_of({spring.a, spring.b}, point);
@@ -150,7 +148,7 @@ class Target {
   }
 
   // The spring along an edge of a face that is nearest to a point on the face.
-  std::optional<std::uint32_t> spring_at(std::uint32_t face_index, const Vector3f& point) const {
+  std::optional<std::uint32_t> spring_at(std::uint32_t face_index, const Vector3& point) const {
     const Face& face = robot_.faces[face_index];
     std::optional<std::uint32_t> found;
     float nearest = far_away;
@@ -167,24 +165,24 @@ class Target {
   }
 
  private:
-  static float distance_to_segment(const Vector3f& point, const Vector3f& a, const Vector3f& b) {
-    const Vector3f d = b - a;
-    const float s = d.squaredNorm() > 0 ? std::clamp((point - a).dot(d) / d.squaredNorm(), 0.0f, 1.0f) : 0.0f;
+  static float distance_to_segment(const Vector3& point, const Vector3& a, const Vector3& b) {
+    const Vector3 d = b - a;
+    const float s = d.squared_norm() > 0 ? std::clamp((point - a).dot(d) / d.squared_norm(), 0.0f, 1.0f) : 0.0f;
     return (a + s * d - point).norm();
   }
-  std::uint16_t nearest_of(std::initializer_list<std::uint16_t> masses, const Vector3f& point) const {
+  std::uint16_t nearest_of(std::initializer_list<std::uint16_t> masses, const Vector3& point) const {
     return *std::ranges::min_element(masses, {},
-                                     [&](std::uint16_t mass) { return (points_[mass] - point).squaredNorm(); });
+                                     [&](std::uint16_t mass) { return (points_[mass] - point).squared_norm(); });
   }
 
   const Robot& robot_;
   render::CutPlane cut_;  // in the picture's coordinates
-  std::vector<Vector3f> points_;
+  std::vector<Vector3> points_;
 };
 
 }  // namespace
 
-std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Vector3f> offsets, const render::Ray& ray,
+std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Vector3> offsets, const render::Ray& ray,
                         const PickOptions& options) {
   std::optional<Hit> nearest;
   for (const auto& [i, enter, room] : candidates_on(snapshot, offsets, ray, options)) {

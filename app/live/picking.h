@@ -2,8 +2,6 @@
 // Finds what is under the mouse: the nearest face, spring or mass that a ray meets.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +9,7 @@
 #include "app/live/snapshot.h"
 #include "render/camera.h"
 #include "render/scene.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -20,7 +19,7 @@ struct Hit {
   std::uint16_t mass = 0;               // the mass of the face or spring that is nearest to `point`
   std::optional<std::uint32_t> face;    // index in Robot::faces, if the ray met the skin
   std::optional<std::uint32_t> spring;  // index in Robot::springs: the one met, or the nearest edge of the face
-  Eigen::Vector3f point{0, 0, 0};       // in the picture [m]
+  render::Vector3 point{0, 0, 0};       // in the picture [m]
   float distance = 0;                   // from the ray's origin [m]
 };
 
@@ -33,7 +32,7 @@ struct PickOptions {
 
 // Returns the nearest hit. `offsets`: per robot, added to its coordinates in the picture [m]. A robot without faces is
 // hit at its springs, a robot without springs at its masses.
-std::optional<Hit> pick(const Snapshot& snapshot, std::span<const Eigen::Vector3f> offsets, const render::Ray& ray,
+std::optional<Hit> pick(const Snapshot& snapshot, std::span<const render::Vector3> offsets, const render::Ray& ray,
                         const PickOptions& options = {});
 
 // The numbers that the window shows beside the mouse.

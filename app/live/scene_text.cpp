@@ -117,8 +117,8 @@ std::string camera_text(const CameraPlan& camera) {
   add("field_of_view", camera.field_of_view);
   add("period", static_cast<float>(camera.period));
   if (camera.target)
-    text += fmt::format("target = [{}, {}, {}]\n", number(camera.target->x()), number(camera.target->y()),
-                        number(camera.target->z()));
+    text += fmt::format("target = [{}, {}, {}]\n", number(camera.target->x), number(camera.target->y),
+                        number(camera.target->z));
   if (camera.distance) add("distance", *camera.distance);
   return text;
 }

@@ -25,21 +25,21 @@ namespace fs = std::filesystem;
 class SettingsParser {
  public:
   SettingsParser() {
-    CLI::App& scene = *program_.add_subcommand("scene");
+    const Command scene = program_.root().add_command("scene", "");
     view_.add_to(scene);
     generators_.add_to(scene);
     add_text(scene, "--kind", generation_.kind, "", "KIND");
     add_number(scene, "--count", generation_.count, "", "N");
     add_number(scene, "--seed", generation_.seed, "", "N");
-    scene.add_flag("--pause-on-explosion", pause_);
+    scene.add_flag("--pause-on-explosion", pause_, "");
     add_text(scene, "--folder", folder_, "", "PATH");
   }
 
   SessionSettings read(const fs::path& path) {
-    const ConfigFile file(path.string(), program_, *program_.get_subcommand("scene"), {});
+    const ConfigFile file(path.string(), program_.root(), *program_.root().find_command("scene"), {});
     std::vector<std::string> arguments{"scene"};
     arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
-    program_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    program_.parse(arguments);
     SessionSettings settings{.view = view_.settings(Layout::cells), .pause_on_explosion = pause_, .folder = folder_};
     generation_.count = std::clamp<std::size_t>(generation_.count, 1, 100'000);
     generation_.values = generators_.values();
@@ -50,7 +50,7 @@ class SettingsParser {
   }
 
  private:
-  CLI::App program_{"", "mercury"};
+  CommandTree program_{"mercury"};
   ViewOptions view_;
   GeneratorOptions generators_;
   RandomRobots generation_;

@@ -50,13 +50,13 @@ AttachedMass attached_mass_from(const std::string& option, const std::string& te
   return attached;
 }
 
-void AttachmentOptions::add_to(CLI::App& command) {
+void AttachmentOptions::add_to(const Command& command) {
   command
-      .add_option("--attach", texts_,
-                  "Pin a mass of a robot, both counted from 0, or hold it by a spring; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name(form)
-      ->group("Robots");
+      .add_list("--attach", texts_,
+                "Pin a mass of a robot, both counted from 0, or hold it by a spring; may be repeated")
+      .one_value_each()
+      .with_form(form)
+      .in_group("Robots");
 }
 
 std::vector<AttachedMass> AttachmentOptions::attached() const {

@@ -2,14 +2,13 @@
 // Masses that are pinned or held by a spring from the start: --attach, and the key `attach` of a scene.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/options/command.h"
 #include "mercury/vec3.h"
 
 namespace mercury {
@@ -36,7 +35,7 @@ AttachedMass attached_mass_from(const std::string& option, const std::string& te
 class AttachmentOptions {
  public:
   // Adds the option to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
   // Throws InputError.
   std::vector<AttachedMass> attached() const;
 

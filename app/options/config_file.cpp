@@ -20,18 +20,12 @@
 namespace mercury {
 namespace {
 
-CLI::Option* find_option(CLI::App& command, const std::string& key) { return command.get_option_no_throw("--" + key); }
-
-std::vector<CLI::App*> children_of(CLI::App& command) {
-  return command.get_subcommands([](CLI::App*) { return true; });
-}
-
 // The options of a command and of those below it, without dashes.
-void collect_keys(CLI::App& command, std::vector<std::string>& keys) {
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames())
-      if (name != "config" && name != "help" && name != "version") keys.push_back(name);
-  for (CLI::App* child : children_of(command)) collect_keys(*child, keys);
+void collect_keys(const Command& command, std::vector<std::string>& keys) {
+  for (const Option& option : command.options())
+    for (const std::string& name : option.long_names())
+      if (name != "--config" && name != "--help" && name != "--version") keys.push_back(name.substr(2));
+  for (const Command& child : command.commands(true)) collect_keys(child, keys);
 }
 
 // A scalar as written on the command line; empty for other nodes.
@@ -44,8 +38,8 @@ std::string scalar_text(const toml::node& node) {
 
 // The arguments of one key; empty for a flag that is false. Throws std::invalid_argument for a value that no option
 // accepts.
-std::vector<std::string> arguments_of(const CLI::Option& option, const std::string& name, const toml::node& value) {
-  const bool is_flag = option.get_expected_max() == 0;
+std::vector<std::string> arguments_of(const Option& option, const std::string& name, const toml::node& value) {
+  const bool is_flag = !option.takes_value();
   if (const auto flag = value.value_exact<bool>()) {
     if (!is_flag) throw std::invalid_argument("is not a switch; give a value");
     return *flag ? std::vector{name} : std::vector<std::string>{};
@@ -66,17 +60,6 @@ std::vector<std::string> arguments_of(const CLI::Option& option, const std::stri
   if (!value.is_string() && scalar_text(value).empty())
     throw std::invalid_argument("is of a kind that no option takes");
   return {name + "=" + scalar_text(value)};
-}
-
-std::string full_name(const CLI::App& command) {
-  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
-}
-
-// Whether the command is `scope` or below it.
-bool is_within(const CLI::App* command, const CLI::App& scope) {
-  for (; command; command = command->get_parent())
-    if (command == &scope) return true;
-  return false;
 }
 
 toml::table parse(const std::string& path, ConfigFile::Content content) {
@@ -105,17 +88,17 @@ toml::table parse(const std::string& path, ConfigFile::Content content) {
 
 }  // namespace
 
-bool is_given(const CLI::Option& option, const std::vector<std::string>& given) {
+bool is_given(const Option& option, const std::vector<std::string>& given) {
   return std::any_of(given.begin(), given.end(), [&](const std::string& argument) {
-    for (const std::string& name : option.get_lnames())
-      if (argument == "--" + name || argument.starts_with("--" + name + "=")) return true;
-    for (const std::string& name : option.get_snames())
-      if (argument.starts_with("-" + name) && !argument.starts_with("--")) return true;
+    for (const std::string& name : option.long_names())
+      if (argument == name || argument.starts_with(name + "=")) return true;
+    for (const std::string& name : option.short_names())
+      if (argument.starts_with(name) && !argument.starts_with("--")) return true;
     return false;
   });
 }
 
-ConfigFile::ConfigFile(const std::string& path, CLI::App& program, CLI::App& command,
+ConfigFile::ConfigFile(const std::string& path, const Command& program, const Command& command,
                        const std::vector<std::string>& given, Content content)
     : path_(path), command_(command), given_(given), content_(content) {
   toml::table table = parse(path, content);
@@ -180,29 +163,26 @@ void ConfigFile::take_camera_option(const std::string& value, const Node& node) 
 
 // Tables come after the keys above them, which they override.
 template <class Table>
-void ConfigFile::take(const Table& table, CLI::App& scope) {
+void ConfigFile::take(const Table& table, const Command& scope) {
   for (const auto& [key, value] : table)
     if (!value.is_table()) take_key(std::string(key.str()), value, scope);
   for (const auto& [key, value] : table) {
     if (!value.is_table()) continue;
-    const std::vector<CLI::App*> children = children_of(scope);
-    const auto child =
-        std::ranges::find(children, key.str(), [](const CLI::App* one) { return std::string_view(one->get_name()); });
-    if (child == children.end()) {
+    const std::optional<Command> child = scope.find_command(std::string(key.str()));
+    if (!child) {
       std::vector<std::string> names;
-      for (const CLI::App* one : children)
-        if (!one->get_group().empty()) names.push_back(one->get_name());
+      for (const Command& one : scope.commands()) names.push_back(one.name());
       if (content_ == Content::scene)
         throw InputError(where(value), fmt::format("[{}] is not a table of a scene; it has [camera]", key.str()));
-      throw InputError(where(value), fmt::format("[{}] is not a command of {}{}", key.str(), full_name(scope),
+      throw InputError(where(value), fmt::format("[{}] is not a command of {}{}", key.str(), scope.full_name(),
                                                  suggestion(std::string(key.str()), names)));
     }
-    take(*value.as_table(), **child);
+    take(*value.as_table(), *child);
   }
 }
 
 template <class Node>
-void ConfigFile::take_key(const std::string& key, const Node& value, CLI::App& scope) {
+void ConfigFile::take_key(const std::string& key, const Node& value, const Command& scope) {
   std::vector<std::string> known;
   collect_keys(scope, known);
   if (content_ == Content::scene) known.insert(known.end(), {"format", "version", "robots", "camera"});
@@ -211,10 +191,10 @@ void ConfigFile::take_key(const std::string& key, const Node& value, CLI::App& s
                      fmt::format("\"{}\" is not a key of a scene{}; see docs/formats.md", key, suggestion(key, known)));
   if (std::ranges::find(known, key) == known.end())
     throw InputError(where(value),
-                     fmt::format("\"{}\" is not an option of {}{}; see {} --help", key, full_name(scope),
-                                 suggestion(key, known), full_name(is_within(&command_, scope) ? command_ : scope)));
-  if (!is_within(&command_, scope)) return;
-  const CLI::Option* option = find_option(command_, key);
+                     fmt::format("\"{}\" is not an option of {}{}; see {} --help", key, scope.full_name(),
+                                 suggestion(key, known), (command_.is_within(scope) ? command_ : scope).full_name()));
+  if (!command_.is_within(scope)) return;
+  const std::optional<Option> option = command_.find_option("--" + key);
   if (!option || is_given(*option, given_)) return;
   const std::string name = "--" + key;
   try {

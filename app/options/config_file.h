@@ -2,11 +2,11 @@
 // Options from a TOML file: --config FILE.toml, and scenes.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <map>
 #include <string>
 #include <vector>
+
+#include "app/options/command.h"
 
 namespace mercury {
 
@@ -23,8 +23,8 @@ class ConfigFile {
   // Takes the options that `command` has and that are not on the command line `given`. Throws InputError
   // ("sim.toml:3: ...") if the file cannot be read, or if a table or key is not a command or an option of it; also in
   // tables of other commands. Does not wait for pipes: it takes regular files only.
-  ConfigFile(const std::string& path, CLI::App& program, CLI::App& command, const std::vector<std::string>& given,
-             Content content = Content::options);
+  ConfigFile(const std::string& path, const Command& program, const Command& command,
+             const std::vector<std::string>& given, Content content = Content::options);
 
   const std::vector<std::string>& arguments() const { return arguments_; }
   // Of a scene: the robot files, as paths from the working folder.
@@ -35,7 +35,7 @@ class ConfigFile {
  private:
   // `Table` and `Node` are those of toml++, which no header of ours includes.
   template <class Table>
-  void take(const Table& table, CLI::App& scope);
+  void take(const Table& table, const Command& scope);
   template <class Table>
   void take_scene(Table& table);
   template <class Table>
@@ -43,12 +43,12 @@ class ConfigFile {
   template <class Node>
   void take_camera_option(const std::string& value, const Node& node);
   template <class Node>
-  void take_key(const std::string& key, const Node& value, CLI::App& scope);
+  void take_key(const std::string& key, const Node& value, const Command& scope);
   template <class Node>
   std::string where(const Node& node) const;  // "sim.toml:3"
 
   std::string path_;
-  CLI::App& command_;
+  const Command& command_;
   std::vector<std::string> given_;
   Content content_;
   std::vector<std::string> arguments_, robots_;
@@ -56,7 +56,7 @@ class ConfigFile {
 };
 
 // Whether the option is among the arguments of a command line.
-bool is_given(const CLI::Option& option, const std::vector<std::string>& given);
+bool is_given(const Option& option, const std::vector<std::string>& given);
 
 // The last value of --config on a command line; empty = not given, or given empty.
 std::string config_path_in(const std::vector<std::string>& arguments);

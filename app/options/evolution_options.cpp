@@ -52,43 +52,38 @@ MapAxis axis_from(const std::string& text) {
   return axis;
 }
 
-bool is_given(const CLI::App& command, const std::string& option) {
-  const CLI::Option* found = command.get_option_no_throw(option);
-  return found && found->count() > 0;
-}
-
 }  // namespace
 
-void EvolutionOptions::add_to(CLI::App& command) {
+void EvolutionOptions::add_to(const Command& command) {
   const auto repeated = [&](const char* name, std::vector<std::string>& values, const std::string& help,
                             const char* form) {
-    return command.add_option(name, values, help)->allow_extra_args(false)->type_name(form)->group(search_group);
+    return command.add_list(name, values, help).one_value_each().with_form(form).in_group(search_group);
   };
-  offer(command.add_option("--from", from_,
-                           fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders "
-                                       "to start from (default voxel)",
-                                       generator_kinds())),
-        names_of_kinds())
-      ->type_name("KIND[:SIZE]|PATH...")
-      ->group(search_group);
+  command
+      .add_list("--from", from_,
+                fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders "
+                            "to start from (default voxel)",
+                            generator_kinds()))
+      .offering(names_of_kinds())
+      .with_form("KIND[:SIZE]|PATH...")
+      .in_group(search_group);
   founder_files_.add_options_to(command);
   add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
-      ->group(search_group);
+      .in_group(search_group);
   add_value(command, "--algorithm", algorithm_,
             "Algorithm (default afpo; nsga2 with several objectives, map-elites with --axis)",
             fmt::format("{}", fmt::join(names_of_algorithms(), "|")),
             [](const std::string&, const std::string& text) { return text; })
-      ->group(search_group);
-  offer(repeated("--objective", objectives_,
-                 fmt::format("Formula to maximize (default distance); several give a front. Quantities: {}",
-                             fmt::join(names_of_quantities(), ", ")),
-                 "FORMULA"),
-        names_of_quantities());
-  offer(
-      repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]"),
-      names_of_quantities());
+      .in_group(search_group);
+  repeated("--objective", objectives_,
+           fmt::format("Formula to maximize (default distance); several give a front. Quantities: {}",
+                       fmt::join(names_of_quantities(), ", ")),
+           "FORMULA")
+      .offering(names_of_quantities());
+  repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]")
+      .offering(names_of_quantities());
   const auto search = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
-    add_number(command, name, value, help, form)->group(search_group);
+    add_number(command, name, value, help, form).in_group(search_group);
   };
   AlgorithmSettings& algorithm = given_.algorithm;
   search("--population", algorithm.population, "Robots that live on after each generation (default 128)", "N");
@@ -105,13 +100,14 @@ void EvolutionOptions::add_to(CLI::App& command) {
 
   TrialSettings& trials = given_.trials;
   const auto trial = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
-    add_number(command, name, value, help, form)->group(trial_options_group);
+    add_number(command, name, value, help, form).in_group(trial_options_group);
   };
   add_trial_options(command, trials);
   trial("--trials", trials.trials, "Trials per robot, started at different moments of its movement (default 1)", "N");
   trial("--noise", trials.noise, "Standard deviation of stiffness and amplitude between trials (default 0)", "0..1");
   trial("--damage", trials.damage, "Share of the voxels that are missing in a trial (default 0)", "0..1");
-  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")->group(trial_options_group);
+  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")
+      .in_group(trial_options_group);
   simulation_.add_to(command);
   generators_.add_to(command);
 }
@@ -188,24 +184,24 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   return settings;
 }
 
-void EvolutionOptions::require_only_what_may_change(const CLI::App& command) const {
+void EvolutionOptions::require_only_what_may_change(const Command& command) const {
   const std::set<std::string> allowed{"RUN",       "--resume", "--generations", "--device", "--threads", "--quiet",
                                       "--verbose", "--config", "--shard",       "--merge",  "--dry-run"};
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_single_name();
-    if (option->count() == 0 || allowed.contains(name) || allowed.contains("--" + name)) continue;
+  for (const Option& option : command.options()) {
+    const std::string name = option.name();
+    if (!option.is_given() || allowed.contains(name) || allowed.contains("--" + name)) continue;
     throw InputError("--" + name,
                      "a run that goes on keeps its settings; only --generations, --device and --threads may change");
   }
 }
 
-void EvolutionOptions::choose_device(const CLI::App& command, Configuration& configuration) const {
+void EvolutionOptions::choose_device(const Command& command, Configuration& configuration) const {
   const Device& given = simulation_.configuration().device;
-  if (is_given(command, "--device")) {
+  if (command.is_given("--device")) {
     configuration.device.kind = given.kind;
     configuration.device.index = given.index;
   }
-  if (is_given(command, "--threads")) configuration.device.threads = given.threads;
+  if (command.is_given("--threads")) configuration.device.threads = given.threads;
 }
 
 }  // namespace mercury

@@ -2,13 +2,12 @@
 // The options of `mercury evolve` that describe a run: what evolves, how, in which trials.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/options/command.h"
 #include "app/options/generator_options.h"
 #include "app/options/robot_inputs.h"
 #include "app/options/simulation_options.h"
@@ -19,7 +18,7 @@ namespace mercury {
 class EvolutionOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // The settings of a new run. Reads the robots to start from. Appends to `notes` what the user should know. Throws
   // InputError or ParameterError for options that cannot be used.
@@ -29,10 +28,10 @@ class EvolutionOptions {
   int status(int status) const { return founder_files_.status(status); }
 
   // What may change when a run goes on: throws InputError for any other option that was given.
-  void require_only_what_may_change(const CLI::App& command) const;
+  void require_only_what_may_change(const Command& command) const;
   std::optional<int> generations() const { return generations_; }
   // Puts the device and threads that were given into the settings of a run that goes on.
-  void choose_device(const CLI::App& command, Configuration& configuration) const;
+  void choose_device(const Command& command, Configuration& configuration) const;
 
  private:
   GenomeSpaceRequest space(std::vector<std::string>& paths) const;

@@ -77,27 +77,25 @@ struct Writer {
 
 }  // namespace
 
-void GeneratorOptions::add_to(CLI::App& command, const Generator& generator) {
+void GeneratorOptions::add_to(const Command& command, const Generator& generator) {
   for (const GeneratorParameter& parameter : generator.parameters) {
     const std::string option = option_of(parameter.name);
-    CLI::Option* added = command
-                             .add_option_function<std::string>(
+    const Option added = command
+                             .add_option(
                                  option,
                                  [this, &parameter, option](const std::string& text) {
                                    values_[parameter.name] = parameter_value_from(parameter, option, text);
                                  },
-                                 description_of(parameter))
-                             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-                             ->type_name(std::visit(Form{parameter}, parameter.initial))
-                             ->group(generator.title);
+                                 description_of(parameter), std::visit(Form{parameter}, parameter.initial))
+                             .in_group(generator.title);
     const bool whole = std::holds_alternative<std::int64_t>(parameter.initial);
     const bool number =
         std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);
-    if (whole || number) note_number(added, whole);
+    if (whole || number) added.as_number(whole);
   }
 }
 
-void GeneratorOptions::add_to(CLI::App& command) {
+void GeneratorOptions::add_to(const Command& command) {
   for (const Generator& generator : generators()) add_to(command, generator);
 }
 

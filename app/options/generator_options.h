@@ -3,12 +3,11 @@
 // (mercury/generator.h). The parameter `air` becomes the option --air.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/options/command.h"
 #include "mercury/generator.h"
 
 namespace mercury {
@@ -16,8 +15,8 @@ namespace mercury {
 class GeneratorOptions {
  public:
   // Adds an option for each parameter of a generator, or of all generators. The object must outlive the command.
-  void add_to(CLI::App& command, const Generator& generator);
-  void add_to(CLI::App& command);
+  void add_to(const Command& command, const Generator& generator);
+  void add_to(const Command& command);
 
   // The values given. The generator that uses them checks their ranges.
   const ParameterValues& values() const { return values_; }

@@ -80,29 +80,8 @@ std::vector<int> sizes_from(const std::string& option, std::string_view text, st
   return sizes;
 }
 
-// CLI11 has no place for notes of ours. Its "option text" is for its own help pages, which we do not use.
-CLI::Option* note_number(CLI::Option* option, bool whole) {
-  return option->option_text(whole ? "whole number" : "number");
-}
-
-CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values) {
-  return option->option_text(fmt::format("offers {}", fmt::join(values, " ")));
-}
-
-std::string number_kind(const CLI::Option& option) {
-  return option.get_option_text().ends_with("number") ? option.get_option_text() : "";
-}
-
-std::vector<std::string> offered_values(const CLI::Option& option) {
-  std::vector<std::string> values;
-  if (option.get_option_text().starts_with("offers "))
-    for (const std::string_view value : split(std::string_view(option.get_option_text()).substr(7), ' '))
-      values.emplace_back(value);
-  return values;
-}
-
-CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value, std::vector<std::string> choices,
-                        const std::string& description) {
+Option add_choice(const Command& app, const std::string& name, std::string& value, std::vector<std::string> choices,
+                  const std::string& description) {
   const std::string form = fmt::format("{}", fmt::join(choices, "|"));
   return add_value(app, name, value, description, form,
                    [choices = std::move(choices)](const std::string& option, const std::string& text) {

@@ -2,8 +2,6 @@
 // Options that check their values while they are parsed. Every error names the option and says what is accepted.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -12,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "app/options/command.h"
 #include "mercury/error.h"
 #include "mercury/vec3.h"
 
@@ -41,46 +40,36 @@ std::vector<int> sizes_from(const std::string& option, std::string_view text, st
 
 // An option with one value. If it is given twice, the last value counts. `name` may list several names: "-o,--output".
 template <class Value, class Parse>
-CLI::Option* add_value(CLI::App& app, const std::string& name, Value& value, const std::string& description,
-                       const std::string& form, Parse parse) {
-  return app
-      .add_option_function<std::string>(
-          name, [&value, name, parse](const std::string& text) { value = parse(name, text); }, description)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-      ->type_name(form);
+Option add_value(const Command& app, const std::string& name, Value& value, const std::string& description,
+                 const std::string& form, Parse parse) {
+  return app.add_option(
+      name, [&value, name, parse](const std::string& text) { value = parse(name, text); }, description, form);
 }
-
-// Notes on an option, for completion and for the list of options (app/commands/command_list.h): what kind of number it
-// takes, if any ("number", "whole number"), and words that its value may begin with beside those that its form names.
-CLI::Option* note_number(CLI::Option* option, bool whole);
-CLI::Option* offer(CLI::Option* option, const std::vector<std::string>& values);
-std::string number_kind(const CLI::Option& option);
-std::vector<std::string> offered_values(const CLI::Option& option);
 
 // An option with a number as value.
 template <class Number>
-CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value, const std::string& description,
-                        const std::string& form) {
-  return note_number(add_value(app, name, value, description, form, number_from<Number>),
-                     !std::is_floating_point_v<Number>);
+Option add_number(const Command& app, const std::string& name, Number& value, const std::string& description,
+                  const std::string& form) {
+  return add_value(app, name, value, description, form, number_from<Number>)
+      .as_number(!std::is_floating_point_v<Number>);
 }
 template <class Number>
-CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<Number>& value,
-                        const std::string& description, const std::string& form) {
-  return note_number(add_value(app, name, value, description, form, number_from<Number>),
-                     !std::is_floating_point_v<Number>);
+Option add_number(const Command& app, const std::string& name, std::optional<Number>& value,
+                  const std::string& description, const std::string& form) {
+  return add_value(app, name, value, description, form, number_from<Number>)
+      .as_number(!std::is_floating_point_v<Number>);
 }
 
 // An option with text as value.
-inline CLI::Option* add_text(CLI::App& app, const std::string& name, std::string& value, const std::string& description,
-                             const std::string& form) {
+inline Option add_text(const Command& app, const std::string& name, std::string& value, const std::string& description,
+                       const std::string& form) {
   return add_value(app, name, value, description, form,
                    [](const std::string&, const std::string& text) { return text; });
 }
 
 // An option with one of several words as value.
-CLI::Option* add_choice(CLI::App& app, const std::string& name, std::string& value, std::vector<std::string> choices,
-                        const std::string& description);
+Option add_choice(const Command& app, const std::string& name, std::string& value, std::vector<std::string> choices,
+                  const std::string& description);
 
 // Throws InputError("--fps: 0 is not accepted; give a number > 0 <unit>") unless it is finite and above 0.
 void require_positive(const std::string& option, double value, const std::string& unit);

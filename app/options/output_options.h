@@ -2,18 +2,17 @@
 // --force and --dry-run, the same in every command that writes files.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "app/base/output_files.h"
+#include "app/options/command.h"
 
 namespace mercury {
 
 class OutputOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
   // For a command that cannot say what it would do.
-  void add_force_to(CLI::App& command);
+  void add_force_to(const Command& command);
 
   bool force() const { return force_; }
   // Everything is checked, nothing is written: the command prints what it would do, and ends.
@@ -22,7 +21,7 @@ class OutputOptions {
   OutputFiles files() const;
 
  private:
-  const CLI::App* command_ = nullptr;
+  std::optional<Command> command_;
   bool force_ = false, dry_run_ = false;
 };
 

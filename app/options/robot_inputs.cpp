@@ -55,15 +55,15 @@ std::vector<Robot> robots_in(const fs::path& file) {
 
 }  // namespace
 
-void RobotInputs::add_to(CLI::App& command, const std::string& description) {
-  command.add_option("ROBOTS", paths_, description + "; - reads robots from standard input")->type_name("PATH");
+void RobotInputs::add_to(const Command& command, const std::string& description) {
+  command.add_list("ROBOTS", paths_, description + "; - reads robots from standard input").with_form("PATH");
   add_options_to(command);
 }
 
-void RobotInputs::add_options_to(CLI::App& command) {
-  command.add_flag("--recursive", recursive_, "Also read the folders inside folders")->group("Robots");
+void RobotInputs::add_options_to(const Command& command) {
+  command.add_flag("--recursive", recursive_, "Also read the folders inside folders").in_group("Robots");
   command.add_flag("--keep-going", keep_going_, "Report files that cannot be used, and go on (exit status 1)")
-      ->group("Robots");
+      .in_group("Robots");
 }
 
 void RobotInputs::leave_out(const std::string& reason) const {

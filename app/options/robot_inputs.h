@@ -2,14 +2,13 @@
 // Robot files on a command line: the one way in which commands read them.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "app/options/command.h"
 #include "mercury/robot.h"
 
 namespace mercury {
@@ -25,9 +24,10 @@ struct RobotFromFile {
 class RobotInputs {
  public:
   // Adds the argument ROBOTS and the options below to a command. The object must outlive it.
-  void add_to(CLI::App& command, const std::string& description = "Robot files (.json, .cbor) and folders of them");
+  void add_to(const Command& command,
+              const std::string& description = "Robot files (.json, .cbor) and folders of them");
   // Adds --recursive and --keep-going alone.
-  void add_options_to(CLI::App& command);
+  void add_options_to(const Command& command);
 
   // As the user gave them.
   std::vector<std::filesystem::path> paths() const { return {paths_.begin(), paths_.end()}; }

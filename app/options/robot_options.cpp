@@ -22,15 +22,18 @@ constexpr std::size_t most_robots = 1'000'000;
 
 }  // namespace
 
-void RobotOptions::add_to(CLI::App& command) {
+void RobotOptions::add_to(const Command& command) {
   files_.add_to(command);
-  CLI::Option* random = command.add_option(
-      "--random", random_,
-      fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
-                  "given several times",
-                  generator_kinds()));
-  offer(random, names_of_kinds())->allow_extra_args(false)->type_name("KIND:N[:SEED[:FIRST]]")->group("Robots");
-  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")->group("Robots");
+  command
+      .add_list("--random", random_,
+                fmt::format("N random robots of a kind ({}), of --seed or of SEED, from robot 0 or FIRST on; may be "
+                            "given several times",
+                            generator_kinds()))
+      .offering(names_of_kinds())
+      .one_value_each()
+      .with_form("KIND:N[:SEED[:FIRST]]")
+      .in_group("Robots");
+  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N").in_group("Robots");
   generators_.add_to(command);
 }
 

@@ -2,8 +2,6 @@
 // The robots that a command works on: files, folders, and random robots.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/options/command.h"
 #include "app/options/generator_options.h"
 #include "app/options/robot_inputs.h"
 #include "app/options/robot_memory.h"
@@ -39,7 +38,7 @@ struct LoadedRobots {
 class RobotOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // Reads the files and makes the random robots, files first. Shows the progress. Throws InputError when there are
   // none, one cannot be used, or they would not fit into memory with what the command does; Interrupted after Ctrl-C.

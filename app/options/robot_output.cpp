@@ -36,16 +36,16 @@ std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, st
   return made;
 }
 
-void RobotOutput::add_to(CLI::App& command, const std::string& count_help) {
+void RobotOutput::add_to(const Command& command, const std::string& count_help) {
   add_files_to(command);
   add_number(command, "--count", count_, count_help, "N");
   add_number(command, "--seed", seed_, "Seed (default 1)", "N");
 }
 
-void RobotOutput::add_files_to(CLI::App& command) {
+void RobotOutput::add_files_to(const Command& command) {
   add_text(command, "-o,--output", path_, "Robot file (.json, .cbor), a folder, or - for standard output",
            "FILE|FOLDER")
-      ->required();
+      .required();
   add_choice(command, "--format", format_, {"json", "cbor"}, "Of the files in a folder (default json)");
   output_.add_to(command);
 }

@@ -2,8 +2,6 @@
 // Writes new robots into files, for all kinds of `mercury new`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -13,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/options/command.h"
 #include "app/options/output_options.h"
 #include "mercury/robot.h"
 #include "mercury/robot_file.h"
@@ -62,8 +61,8 @@ class RobotFiles {
 class RobotOutput {
  public:
   // Adds the options to a command, with --count and --seed, or without. The object must outlive it.
-  void add_to(CLI::App& command, const std::string& count_help = "How many robots (default 1)");
-  void add_files_to(CLI::App& command);
+  void add_to(const Command& command, const std::string& count_help = "How many robots (default 1)");
+  void add_files_to(const Command& command);
 
   std::uint64_t count() const { return count_; }
   std::uint64_t seed() const { return seed_; }

@@ -19,17 +19,18 @@ namespace mercury {
 // Reads the file with the parser of the command line, so that both accept the same options.
 struct SceneFile::Parts {
   explicit Parts(const std::filesystem::path& file_path) : path(file_path) {
-    robots.add_to(app);
-    simulation.add_to(app);
-    view.add_to(app);
-    attachments.add_to(app);
+    const Command command = tree.root();
+    robots.add_to(command);
+    simulation.add_to(command);
+    view.add_to(command);
+    attachments.add_to(command);
     // Where a scene is computed, and how a list of files is read, is not part of it.
     for (const char* name : {"--device", "--threads", "--recursive", "--keep-going", "--follow"})
-      app.remove_option(app.get_option_no_throw(name));
+      command.remove_option(name);
   }
 
   std::filesystem::path path;
-  CLI::App app{"", "scene"};
+  CommandTree tree{"scene"};
   RobotOptions robots;
   SimulationOptions simulation;
   ViewOptions view;
@@ -53,8 +54,8 @@ auto located_in(const SceneFile& scene, const Work& work) {
     refuse(option_of(error.parameter()) + ": " + error.problem());
   } catch (const InputError& error) {
     refuse(error.what());
-  } catch (const CLI::ParseError& error) {
-    refuse(error.what());
+  } catch (const ParseFailure& error) {
+    refuse(error.text);
   }
   throw;  // refuse() has thrown
 }
@@ -80,9 +81,9 @@ bool is_scene_name(const std::filesystem::path& path) {
 SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_unique<Parts>(path)) {
   Parts& parts = *parts_;
   located_in(*this, [&] {
-    parts.file.emplace(path.string(), parts.app, parts.app, std::vector<std::string>{}, ConfigFile::Content::scene);
-    std::vector<std::string> arguments = parts.file->arguments();
-    parts.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    parts.file.emplace(path.string(), parts.tree.root(), parts.tree.root(), std::vector<std::string>{},
+                       ConfigFile::Content::scene);
+    parts.tree.parse(parts.file->arguments());
     (void)random();
     (void)view();
     (void)attached();
@@ -107,17 +108,17 @@ Configuration SceneFile::configuration(std::span<const std::string> environments
   return located_in(*this, [&] { return parts_->simulation.configuration(environments, notes); });
 }
 
-std::vector<std::string> SceneFile::arguments(const CLI::App& command, const std::vector<std::string>& given) const {
-  const CLI::Option* const environment = command.get_option_no_throw("--environment");
+std::vector<std::string> SceneFile::arguments(const Command& command, const std::vector<std::string>& given) const {
+  const std::optional<Option> environment = command.find_option("--environment");
   const bool elsewhere = environment && is_given(*environment, given) &&
                          value_in(given, "--environment") != parts_->simulation.chosen_environment();
   const bool follows = std::ranges::find(given, "--follow") != given.end();
   std::vector<std::string> taken;
   for (const std::string& argument : parts_->file->arguments()) {
     const std::string name = argument.substr(0, argument.find('='));
-    const CLI::Option* const option = command.get_option_no_throw(name);
+    const std::optional<Option> option = command.find_option(name);
     if (!option || is_given(*option, given) || (follows && name == "--camera")) continue;
-    if (elsewhere && option->get_group() == "Environment") continue;
+    if (elsewhere && option->group() == "Environment") continue;
     taken.push_back(argument);
   }
   return taken;

@@ -2,8 +2,6 @@
 // A scene as a file (docs/formats.md): robots, environment, solver, camera and looks.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "app/options/attachment_options.h"
+#include "app/options/command.h"
 #include "app/scene/view_settings.h"
 #include "mercury/configuration.h"
 #include "mercury/generator.h"
@@ -43,7 +42,7 @@ class SceneFile {
 
   // What the file says as options of a command ("--dt=0.002"): those that the command has, and that are not on its
   // command line `given`. If that names another environment, the file's parameters of its own are left out.
-  std::vector<std::string> arguments(const CLI::App& command, const std::vector<std::string>& given) const;
+  std::vector<std::string> arguments(const Command& command, const std::vector<std::string>& given) const;
   // The error's text, preceded by file and line if it begins with the name of an option that came from the file.
   std::string located(const std::string& error) const;
 

@@ -84,30 +84,28 @@ Vec3 gravity_from(const std::string& option, const std::string& text) {
 
 // Adds an option for each parameter of a struct, read into its member.
 template <class Struct>
-void add_parameters(CLI::App& command, Struct& values) {
+void add_parameters(const Command& command, Struct& values) {
   for_each_parameter(values, [&](const auto& parameter, auto& value) {
     const std::string help = fmt::format("{} (default {})", parameter.help, text_of(parameter.default_value()));
     const std::string form = form_of(parameter.unit, std::is_integral_v<std::remove_reference_t<decltype(value)>>);
-    add_number(command, option_of(parameter.name), value, help, form)->group(simulation_group);
+    add_number(command, option_of(parameter.name), value, help, form).in_group(simulation_group);
   });
 }
 
 }  // namespace
 
-void SimulationOptions::add_to(CLI::App& command) {
-  command_ = &command;
-  const auto add = [](CLI::Option* option) { option->group(simulation_group); };
-  add(command
-          .add_option_function<std::string>(
-              "--device",
-              [this](const std::string& text) {
-                const Device device = device_named(text);
-                given_.device.kind = device.kind;
-                given_.device.index = device.index;
-              },
-              "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)")
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-          ->type_name("auto|cpu|cuda[:N]"));
+void SimulationOptions::add_to(const Command& command) {
+  command_ = command;
+  const auto add = [](const Option& option) { option.in_group(simulation_group); };
+  add(command.add_option(
+      "--device",
+      [this](const std::string& text) {
+        const Device device = device_named(text);
+        given_.device.kind = device.kind;
+        given_.device.index = device.index;
+      },
+      "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
+      "auto|cpu|cuda[:N]"));
   add_parameters(command, given_.device);
   add(add_value(
       command, "--environment", environment_, "Where the robots live (default: what they are made for, else ocean)",
@@ -121,15 +119,15 @@ void SimulationOptions::add_to(CLI::App& command) {
 }
 
 // One option for all environments that have a parameter of that name.
-void SimulationOptions::add_environment_parameters(CLI::App& command) {
+void SimulationOptions::add_environment_parameters(const Command& command) {
   const auto add = [&]<class Value>(const auto& parameter, const Value& usual) {
     const std::string name(parameter.name);
     if (parameter_options_.contains(name)) return;  // of an earlier environment
     ParameterOption& target = parameter_options_[name];
-    CLI::Option* option = nullptr;
+    std::optional<Option> option;
     if constexpr (std::is_same_v<Value, bool>) {
       target.option = switch_of(name, usual);
-      option = command.add_flag_callback(
+      option = command.add_flag(
           target.option, [&target, usual] { target.value = !usual; },
           fmt::format("{}{} ({})", usual ? "Switch off: " : "", parameter.help, environments_with(name)));
     } else {
@@ -138,14 +136,14 @@ void SimulationOptions::add_environment_parameters(CLI::App& command) {
           fmt::format("{}{} {}", parameter.help, parameter.takes_downward_magnitude ? ", downwards or as a vector" : "",
                       where_and_default(name));
       if constexpr (!std::is_same_v<Value, Vec3>)
-        option = note_number(
-            add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>), false);
+        option = add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>)
+                     .as_number(false);
       else if (parameter.takes_downward_magnitude)
         option = add_value(command, target.option, target.value, help, "G|X,Y,Z", gravity_from);
       else
         option = add_value(command, target.option, target.value, help, "X,Y,Z", vector_from);
     }
-    option->group(environment_group);
+    option->in_group(environment_group);
   };
   for_each_environment([&](const auto& kind) { for_each_parameter(kind, add); });
 }
@@ -176,9 +174,9 @@ Configuration SimulationOptions::configuration_in(std::string_view environment) 
 Configuration SimulationOptions::configuration_over(const Configuration& base) const {
   Configuration configuration = base;
   configuration.device = given_.device;
-  if (command_->count("--solver") > 0) configuration.solver = given_.solver;
+  if (command_->is_given("--solver")) configuration.solver = given_.solver;
   const auto take_given = [&](const auto& parameter, auto& value) {
-    if (command_->count(option_of(parameter.name)) > 0) value = given_.*parameter.member;
+    if (command_->is_given(option_of(parameter.name))) value = given_.*parameter.member;
   };
   for_each_parameter(configuration, take_given);
   if (environment_ && *environment_ != name_of(base.environment))

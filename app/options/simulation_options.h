@@ -3,8 +3,6 @@
 // parameters are derived from the tables in mercury/configuration.h.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -14,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/options/command.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
 
@@ -22,7 +21,7 @@ namespace mercury {
 class SimulationOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // The configuration that the options describe. Throws InputError for an option that cannot be used or does not apply
   // to the environment.
@@ -50,12 +49,12 @@ class SimulationOptions {
     std::optional<std::variant<float, bool, Vec3>> value;  // if given
   };
 
-  void add_environment_parameters(CLI::App& command);
+  void add_environment_parameters(const Command& command);
   Configuration configuration_in(std::string_view environment) const;
   // Writes the options of its parameters into an environment. Throws InputError for options that do not apply to it.
   void set_parameters(Environment& environment) const;
 
-  const CLI::App* command_ = nullptr;
+  std::optional<Command> command_;
   Configuration given_;  // all but the environment
   std::optional<std::string> environment_;
   std::map<std::string, ParameterOption> parameter_options_;  // by the parameter's name

@@ -7,15 +7,15 @@
 
 namespace mercury {
 
-void add_trial_options(CLI::App& command, TrialSettings& trials) {
+void add_trial_options(const Command& command, TrialSettings& trials) {
   add_number(command, "--settle", trials.settle, "Measure from this time on, after robots have fallen (default 0)", "S")
-      ->group(trial_options_group);
+      .in_group(trial_options_group);
   add_number(command, "--strain-limit", trials.strain_limit,
              fmt::format("Robots with a spring strained more are overstretched: they rank behind all sound ones "
                          "(default {}; inf = no limit)",
                          trials.strain_limit),
              "X")
-      ->group(trial_options_group);
+      .in_group(trial_options_group);
 }
 
 }  // namespace mercury

@@ -35,11 +35,11 @@ Grid grid_from(const std::string& option, const std::string& text) {
 
 }  // namespace
 
-void VideoOptions::add_to(CLI::App& command) {
-  const auto add = [](CLI::Option* option) { option->group("Picture"); };
+void VideoOptions::add_to(const Command& command) {
+  const auto add = [](const Option& option) { option.in_group("Picture"); };
   add_text(command, "-o,--output", output_,
            "Video (.mp4, .webm, .gif), picture (.png), or a folder for one PNG per frame", "FILE|FOLDER")
-      ->required();
+      .required();
   add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from));
   add(add_number(command, "--fps", frames_per_second_, "Frames per second of video (default 30; 25 for .gif)", "N"));
   add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X"));

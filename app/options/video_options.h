@@ -2,12 +2,11 @@
 // The options for pictures and videos: size, timing, quality, encoding.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <optional>
 #include <string>
 
 #include "app/base/output_files.h"
+#include "app/options/command.h"
 #include "app/scene/group_layout.h"
 #include "app/video/frame_writer.h"
 #include "app/video/video_stages.h"
@@ -19,7 +18,7 @@ namespace mercury {
 class VideoOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // All of the following throw InputError that names the option that cannot be used.
 

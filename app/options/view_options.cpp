@@ -22,8 +22,8 @@ std::string text_from(const std::string&, const std::string& text) { return text
 
 }  // namespace
 
-void ViewOptions::add_to(CLI::App& command) {
-  const auto add = [](CLI::Option* option) { option->group("View"); };
+void ViewOptions::add_to(const Command& command) {
+  const auto add = [](const Option& option) { option.in_group("View"); };
   std::vector<std::string> colors;
   for (const ColorQuantity& quantity : color_quantities()) colors.emplace_back(quantity.key);
   add(add_choice(command, "--color", words_.color, std::move(colors),
@@ -33,12 +33,12 @@ void ViewOptions::add_to(CLI::App& command) {
   for (int i = 0; i < render::colormap_count; ++i) maps.emplace_back(render::name_of(static_cast<render::Colormap>(i)));
   add(add_choice(command, "--colormap", words_.colormap, std::move(maps), "Colors of values (default: by quantity)"));
   add(command.add_flag("--log-scale", words_.log_scale, "Spread the colors by ratios of values"));
-  add(offer(add_value(command, "--show", words_.show,
-                      "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
-                      "path,labels,captions,legend,clock,scale (default skin,clock)",
-                      "LIST", text_from),
-            {"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "path", "labels",
-             "captions", "legend", "clock", "scale"}));
+  add(add_value(command, "--show", words_.show,
+                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
+                "path,labels,captions,legend,clock,scale (default skin,clock)",
+                "LIST", text_from)
+          .offering({"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "path", "labels",
+                     "captions", "legend", "clock", "scale"}));
   add(add_number(command, "--arrow-length", words_.arrow_length, "Above 1: longer arrows (default 1)", "X"));
   add(add_number(command, "--arrow-density", words_.arrow_density, "Share of the arrows that is drawn (default 1)",
                  "X"));
@@ -51,11 +51,11 @@ void ViewOptions::add_to(CLI::App& command) {
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
                 text_from));
-  add(offer(add_value(command, "--layout", words_.layout,
-                      "Robots in a grid; in a grid in which each stays in its cell; or in lanes side by side (default "
-                      "grid, in the window cells)",
-                      "grid|cells|race", text_from),
-            {"grid", "cells", "race"}));
+  add(add_value(command, "--layout", words_.layout,
+                "Robots in a grid; in a grid in which each stays in its cell; or in lanes side by side (default "
+                "grid, in the window cells)",
+                "grid|cells|race", text_from)
+          .offering({"grid", "cells", "race"}));
   add(add_value(command, "--grid", words_.grid, "Columns and rows (default: what fills the picture)", "CxR",
                 grid_from));
   add(add_text(command, "--camera", words_.camera,

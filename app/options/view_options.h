@@ -2,8 +2,7 @@
 // The options for what pictures show, and how.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "app/options/command.h"
 #include "app/scene/view_words.h"
 
 namespace mercury {
@@ -11,7 +10,7 @@ namespace mercury {
 class ViewOptions {
  public:
   // Adds the options to a command. The object must outlive it.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
 
   // The settings that the options describe. Throws InputError or ParameterError for an option that cannot be used.
   // `usual`: the layout without --layout.

@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "app/scene/color_scale.h"
-#include "app/scene/eigen_vec3.h"
 #include "app/scene/group_layout.h"
 #include "mercury/error.h"
 #include "mercury/observables.h"
@@ -38,7 +37,7 @@ bool is_drawn(std::size_t index, float density) {
 float largest_of(std::span<const render::Arrow> arrows, std::size_t robots) {
   std::vector<float> largest(robots);
   for (const render::Arrow& arrow : arrows)
-    if (arrow.vector.allFinite()) largest[arrow.body] = std::max(largest[arrow.body], arrow.vector.norm());
+    if (arrow.vector.is_finite()) largest[arrow.body] = std::max(largest[arrow.body], arrow.vector.norm());
   std::erase(largest, 0.0f);
   if (largest.empty()) return 0;
   const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
@@ -90,8 +89,8 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
     const Face& face = body.faces[i];
     const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
     const auto index = static_cast<std::uint32_t>(robot);
-    if (kinds_.drag) drag.push_back({index, eigen(force.center), eigen(force.drag), drag_color});
-    if (kinds_.lift) lift.push_back({index, eigen(force.center), eigen(force.lift), lift_color});
+    if (kinds_.drag) drag.push_back({index, render::Vector3(force.center), render::Vector3(force.drag), drag_color});
+    if (kinds_.lift) lift.push_back({index, render::Vector3(force.center), render::Vector3(force.lift), lift_color});
   }
 }
 
@@ -99,21 +98,21 @@ void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vecto
   const std::size_t first = simulation_.mass_offsets()[robot];
   for (const FloorForce& contact : floor_forces(simulation_, robot, state))
     if (is_drawn(contact.mass, kinds_.density))
-      contacts.push_back({static_cast<std::uint32_t>(robot), eigen(state.positions[first + contact.mass]),
-                          eigen(contact.force), contact_color});
+      contacts.push_back({static_cast<std::uint32_t>(robot), render::Vector3(state.positions[first + contact.mass]),
+                          render::Vector3(contact.force), contact_color});
 }
 
 std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
   std::vector<render::Arrow> forces, lifts, velocities;
   std::vector<render::Arrow> gravities, contacts;
-  const Eigen::Vector3f gravity = eigen(gravity_of(simulation_.configuration().environment));
+  const render::Vector3 gravity = render::Vector3(gravity_of(simulation_.configuration().environment));
   for (std::size_t i = 0; i < simulation_.size(); ++i) {
     if (telemetry[i].exploded) continue;
     if (kinds_.drag || kinds_.lift) add_faces(i, state, forces, lifts);
     if (kinds_.contact) add_contacts(i, state, contacts);
-    const Eigen::Vector3f middle = eigen(telemetry[i].center_of_mass);
+    const render::Vector3 middle = render::Vector3(telemetry[i].center_of_mass);
     const auto index = static_cast<std::uint32_t>(i);
-    if (kinds_.velocity) velocities.push_back({index, middle, eigen(telemetry[i].velocity), velocity_color});
+    if (kinds_.velocity) velocities.push_back({index, middle, render::Vector3(telemetry[i].velocity), velocity_color});
     if (kinds_.gravity && gravity.norm() > 0)
       gravities.push_back({index, middle, longest_ * gravity.normalized(), gravity_color});
   }
@@ -126,7 +125,7 @@ std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const T
   fit(velocities, velocity_);
   fit(contacts, contact_);
   for (const auto* more : {&velocities, &gravities, &contacts}) forces.insert(forces.end(), more->begin(), more->end());
-  std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.allFinite(); });
+  std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.is_finite(); });
   return forces;
 }
 

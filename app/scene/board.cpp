@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/board.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "app/scene/camera_controller.h"
+#include "render/vector.h"
 
 namespace mercury {
 namespace {
 
-using Eigen::Vector3f;
+using render::Vector3;
 
 constexpr float spacing = 1.25f;          // side of a cell / that of the largest robot
 constexpr float most_stretch = 1.5f;      // of cells, to fill the picture
@@ -27,8 +27,8 @@ struct Plane {
   PictureAxes axes;
   float cell_width = 0, cell_height = 0;  // [m]
   float width = 0, height = 0;
-  Vector3f at(float x, float y) const { return x * axes.right + y * axes.up; }
-  Vector3f toward_eye() const { return axes.right.cross(axes.up); }
+  Vector3 at(float x, float y) const { return x * axes.right + y * axes.up; }
+  Vector3 toward_eye() const { return axes.right.cross(axes.up); }
 };
 
 Plane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const render::Orbit& view, float aspect) {
@@ -46,7 +46,7 @@ Plane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const 
   return plane;
 }
 
-render::Tile tile_at(const Plane& plane, const Vector3f& center, std::optional<render::Color> color,
+render::Tile tile_at(const Plane& plane, const Vector3& center, std::optional<render::Color> color,
                      render::Theme theme) {
   constexpr float gap = 0.03f;  // between tiles, of the shorter side
   const bool dark = theme == render::Theme::dark;
@@ -110,8 +110,8 @@ GroupPlacement place_on_board(const Board& board, std::span<const render::Bounds
     placement.tiles.push_back(tile_at(plane, center_of(cell), color, theme));
   }
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    const Vector3f middle = robots[i].empty() ? Vector3f::Zero() : robots[i].center();
-    const Vector3f forward = 0.5f * extent_along(robots[i], plane.toward_eye()) * plane.toward_eye();
+    const Vector3 middle = robots[i].empty() ? Vector3::all(0) : robots[i].center();
+    const Vector3 forward = 0.5f * extent_along(robots[i], plane.toward_eye()) * plane.toward_eye();
     placement.offsets.push_back(center_of(board.cell_of.at(i)) + forward - middle);
   }
   write_axes(board, plane, 2 * seen * text_height, placement.texts);

@@ -29,7 +29,7 @@ struct Board {
 
 // Where a group is in the picture, and what is drawn behind it.
 struct GroupPlacement {
-  std::vector<Eigen::Vector3f> offsets;  // one per robot, added to its coordinates
+  std::vector<render::Vector3> offsets;  // one per robot, added to its coordinates
   CameraPlan camera;
   std::vector<render::Tile> tiles;
   std::vector<render::Text> texts;

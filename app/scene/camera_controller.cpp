@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "render/vector.h"
 
 namespace mercury {
 namespace {
@@ -19,29 +19,32 @@ constexpr double lag = 0.8;     // time constant with which the camera follows [
 constexpr float margin = 1.1f;  // of the distance, around what is in view
 constexpr float follow_margin = 1.8f;
 
-// The camera's axes in the world, as rows: right, up and forward.
-Eigen::Matrix3f axes_of(const render::Orbit& orbit) {
+// The camera's axes in the world.
+struct Axes {
+  render::Vector3 right, up, forward;
+};
+
+Axes axes_of(const render::Orbit& orbit) {
   const render::Camera camera = orbit.camera();
-  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
-  const Eigen::Vector3f right = forward.cross(camera.up).normalized();
-  Eigen::Matrix3f axes;
-  axes << right.transpose(), right.cross(forward).transpose(), forward.transpose();
-  return axes;
+  const render::Vector3 forward = (camera.target - camera.eye).normalized();
+  const render::Vector3 right = forward.cross(camera.up).normalized();
+  return {right, right.cross(forward), forward};
 }
 
 // The smallest distance at which all boxes are in view of an orbit with this target: |x| <= tan_x depth for each
 // corner.
 float least_distance(std::span<const render::Bounds> boxes, const render::Orbit& orbit, float aspect) {
-  const Eigen::Matrix3f axes = axes_of(orbit);
-  const Eigen::Array2f tangents = std::tan(orbit.field_of_view / 2) * Eigen::Array2f(aspect, 1);
+  const Axes axes = axes_of(orbit);
+  const float upward = std::tan(orbit.field_of_view / 2), across = upward * aspect;
   float least = 0;
   for (const render::Bounds& box : boxes) {
     if (box.empty()) continue;
     for (int i = 0; i < 8; ++i) {
-      const Eigen::Vector3f corner(i & 1 ? box.high.x() : box.low.x(), i & 2 ? box.high.y() : box.low.y(),
-                                   i & 4 ? box.high.z() : box.low.z());
-      const Eigen::Vector3f p = axes * (corner - orbit.target);
-      least = std::max(least, (p.head<2>().array().abs() / tangents).maxCoeff() - p.z());
+      const render::Vector3 corner(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+                                   i & 4 ? box.high.z : box.low.z);
+      const render::Vector3 p = corner - orbit.target;
+      const float wide = std::abs(p.dot(axes.right)) / across, high = std::abs(p.dot(axes.up)) / upward;
+      least = std::max(least, std::max(wide, high) - p.dot(axes.forward));
     }
   }
   return least;
@@ -123,15 +126,14 @@ void CameraController::follow(std::span<const render::Bounds> robots, double dt)
   const render::Bounds box = all_of(followed);
   if (box.empty()) return;  // it has exploded: the camera stays where it is
   if (!started_) orbit_.frame(followed, picture_.aspect, (robot_ ? follow_margin : margin) / plan_.zoom, picture_.free);
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  render::Vector3 middle = render::Vector3::all(0);
   int count = 0;
   for (const render::Bounds& robot : followed) {
     if (robot.empty()) continue;
     middle += robot.center();
     ++count;
   }
-  middle /= static_cast<float>(count);
-  render::follow(orbit_, middle, started_ ? dt : INFINITY, lag);
+  render::follow(orbit_, middle / static_cast<float>(count), started_ ? dt : INFINITY, lag);
 }
 
 void CameraController::circle(std::span<const render::Bounds> robots, double dt) {

@@ -2,8 +2,6 @@
 // Moves the camera of a video, frame by frame, as a CameraPlan says.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <span>
 #include <string>

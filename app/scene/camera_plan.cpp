@@ -64,11 +64,11 @@ class Reader {
     if (!value->is_string()) fail(key, "is not text");
     return value->get<std::string>();
   }
-  std::optional<Eigen::Vector3f> vector(const char* key) const {
+  std::optional<render::Vector3> vector(const char* key) const {
     const Json* value = find(key);
     if (!value) return std::nullopt;
     if (!value->is_array() || value->size() != 3) fail(key, "is not a list of three numbers");
-    return Eigen::Vector3f(number((*value)[0], key), number((*value)[1], key), number((*value)[2], key));
+    return render::Vector3(number((*value)[0], key), number((*value)[1], key), number((*value)[2], key));
   }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     if (path_.empty()) throw ParameterError("camera", fmt::format("/{} {}", key, what));
@@ -146,7 +146,7 @@ void add_members(const CameraPlan& plan, Json& json) {
   json["zoom"] = plan.zoom;
   json["field_of_view"] = plan.field_of_view;
   json["period"] = plan.period;
-  if (plan.target) json["target"] = {plan.target->x(), plan.target->y(), plan.target->z()};
+  if (plan.target) json["target"] = {plan.target->x, plan.target->y, plan.target->z};
   if (plan.distance) json["distance"] = *plan.distance;
 }
 

@@ -2,8 +2,6 @@
 // How the camera moves: an option of the command line, or a camera file.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -12,6 +10,7 @@
 #include <string_view>
 
 #include "render/camera.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -31,7 +30,7 @@ struct CameraPlan {
   float zoom = 1;                         // above 1 = closer
   float field_of_view = 0.6f;             // of the picture's height [rad]
   double period = 20;                     // turntable: of a turn [s of video]
-  std::optional<Eigen::Vector3f> target;  // still: what it looks at, in the picture's coordinates [m]; else all robots
+  std::optional<render::Vector3> target;  // still: what it looks at, in the picture's coordinates [m]; else all robots
   std::optional<float> distance;          // still: from the target [m]
 };
 

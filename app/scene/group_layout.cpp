@@ -7,14 +7,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "app/scene/eigen_vec3.h"
 #include "mercury/error.h"
 
 namespace mercury {
 
 render::Bounds rest_bounds(const Robot& robot) {
   render::Bounds bounds;
-  for (const Vec3 mass : robot.masses) bounds.extend(eigen(mass));
+  for (const Vec3 mass : robot.masses) bounds.extend(render::Vector3(mass));
   return bounds;
 }
 
@@ -22,10 +21,16 @@ Room room_of(const Robot& robot) {
   // Muscles change lengths by up to 14 %, and bodies bend.
   constexpr float room_to_deform = 1.15f;
   Room room;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Vec3 mass : robot.masses) sum += eigen(mass).cast<double>();
-  if (!robot.masses.empty()) room.center = (sum / static_cast<double>(robot.masses.size())).cast<float>();
-  for (const Vec3 mass : robot.masses) room.radius = std::max(room.radius, (eigen(mass) - room.center).norm());
+  double x = 0, y = 0, z = 0;
+  for (const Vec3 mass : robot.masses) {
+    x += mass.x;
+    y += mass.y;
+    z += mass.z;
+  }
+  const double count = static_cast<double>(std::max<std::size_t>(1, robot.masses.size()));
+  room.center = {static_cast<float>(x / count), static_cast<float>(y / count), static_cast<float>(z / count)};
+  for (const Vec3 mass : robot.masses)
+    room.radius = std::max(room.radius, (render::Vector3(mass) - room.center).norm());
   room.radius *= room_to_deform;
   return room;
 }
@@ -58,8 +63,8 @@ PictureAxes picture_axes(const render::Orbit& view) {
   return {{-sin_a, cos_a, 0}, {-cos_a * sin_e, -sin_a * sin_e, cos_e}};
 }
 
-float extent_along(const render::Bounds& box, const Eigen::Vector3f& direction) {
-  return box.empty() ? 0 : (box.high - box.low).dot(direction.cwiseAbs());
+float extent_along(const render::Bounds& box, const render::Vector3& direction) {
+  return box.empty() ? 0 : (box.high - box.low).dot(direction.absolute());
 }
 
 namespace {
@@ -77,21 +82,21 @@ std::vector<float> middles_of(const std::vector<float>& widths) {
 
 // The size of a robot's cell along a direction.
 float cell_along(std::span<const render::Bounds> robots, std::size_t robot, const LayoutOptions& options,
-                 const Eigen::Vector3f& direction) {
+                 const render::Vector3& direction) {
   constexpr float spacing = 1.08f;  // of rooms
   if (!options.rooms.empty()) return 2 * spacing * options.rooms[robot].radius;
   return options.spacing * extent_along(robots[robot], direction);
 }
 
 // What the layout puts into the middle of a cell.
-Eigen::Vector3f middle_of(std::span<const render::Bounds> robots, std::size_t robot, const LayoutOptions& options) {
+render::Vector3 middle_of(std::span<const render::Bounds> robots, std::size_t robot, const LayoutOptions& options) {
   if (!options.rooms.empty()) return options.rooms[robot].center;
-  return robots[robot].empty() ? Eigen::Vector3f::Zero() : robots[robot].center();
+  return robots[robot].empty() ? render::Vector3::all(0) : robots[robot].center();
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options) {
+std::vector<render::Vector3> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options) {
   const PictureAxes axes = picture_axes(options.view);
   float width = 1e-3f, height = 1e-3f;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -111,16 +116,16 @@ std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots,
     heights[i / columns] = std::max(heights[i / columns], cell_along(robots, i, options, axes.up));
   }
   const std::vector<float> across = middles_of(widths), down = middles_of(heights);
-  Eigen::Vector3f up = axes.up;
+  render::Vector3 up = axes.up;
   if (options.on_ground) {
     // On the ground, a row lies behind the previous one, at the distance at which it appears one row higher.
-    const Eigen::Vector3f away(-std::cos(options.view.azimuth), -std::sin(options.view.azimuth), 0);
+    const render::Vector3 away(-std::cos(options.view.azimuth), -std::sin(options.view.azimuth), 0);
     up = away / std::max(0.1f, std::sin(options.view.elevation));
   }
-  std::vector<Eigen::Vector3f> offsets;
+  std::vector<render::Vector3> offsets;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    Eigen::Vector3f middle = middle_of(robots, i, options);
-    if (options.on_ground) middle.z() = 0;
+    render::Vector3 middle = middle_of(robots, i, options);
+    if (options.on_ground) middle.z = 0;
     offsets.push_back(across[i % columns] * axes.right - down[i / columns] * up - middle);
   }
   return offsets;

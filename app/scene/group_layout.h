@@ -2,8 +2,6 @@
 // Where the robots of a group are in the picture.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <span>
 #include <string_view>
@@ -11,6 +9,7 @@
 
 #include "mercury/robot.h"
 #include "render/camera.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -19,19 +18,19 @@ render::Bounds rest_bounds(const Robot& robot);
 
 // The ball that a robot does not leave while it turns and bends about its center of mass, at rest.
 struct Room {
-  Eigen::Vector3f center{0, 0, 0};  // [m]
+  render::Vector3 center{0, 0, 0};  // [m]
   float radius = 0;                 // [m]
 };
 Room room_of(const Robot& robot);
 
 // The directions to the right and up in the picture.
 struct PictureAxes {
-  Eigen::Vector3f right, up;
+  render::Vector3 right, up;
 };
 PictureAxes picture_axes(const render::Orbit& view);
 
 // The extent of a box along a direction; 0 if it is empty.
-float extent_along(const render::Bounds& box, const Eigen::Vector3f& direction);
+float extent_along(const render::Bounds& box, const render::Vector3& direction);
 
 struct Grid {
   int columns = 1, rows = 1;
@@ -62,6 +61,6 @@ struct LayoutOptions {
 // The offset of each robot. Seen from the view's direction, the robots then form a grid, the first one at the upper
 // left, and none hides another while it stays in its cell. With rooms, no two of them overlap. The middle of the grid
 // is at the origin. Throws ParameterError("grid", ...) if the robots do not fit into the grid.
-std::vector<Eigen::Vector3f> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
+std::vector<render::Vector3> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
 
 }  // namespace mercury

@@ -6,17 +6,16 @@
 #include <variant>
 
 #include "app/scene/camera_controller.h"
-#include "app/scene/eigen_vec3.h"
 #include "mercury/distance.h"
 
 namespace mercury {
 
-using Eigen::Vector3f;
+using render::Vector3;
 
 Layout motion_of(const ViewSettings& settings) { return settings.board ? Layout::grid : settings.layout; }
 
-std::vector<Vector3f> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
-                                    const ViewSettings& settings, const Environment& environment, float aspect) {
+std::vector<Vector3> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
+                                   const ViewSettings& settings, const Environment& environment, float aspect) {
   if (boxes.empty()) return {};
   const bool land = std::holds_alternative<Land>(environment);
   const bool race = settings.layout == Layout::race;
@@ -30,30 +29,30 @@ std::vector<Vector3f> group_offsets(std::span<const render::Bounds> boxes, std::
                                      .on_ground = flat});
   // Swimmers of a flat layout are level with each other.
   for (std::size_t i = 0; i < offsets.size() && !land && flat && settings.layout != Layout::grid; ++i)
-    offsets[i].z() = -rooms[i].center.z();
+    offsets[i].z = -rooms[i].center.z;
   return offsets;
 }
 
-void GroupMotion::set(Layout layout, const Environment& environment, const Vector3f& along) {
+void GroupMotion::set(Layout layout, const Environment& environment, const Vector3& along) {
   layout_ = layout;
   environment_ = environment;
   on_land_ = std::holds_alternative<Land>(environment);
   along_ = along;
 }
 
-Vector3f GroupMotion::offset_of(const Vector3f& offset, const Room& room, const Trail& trail) const {
+Vector3 GroupMotion::offset_of(const Vector3& offset, const Room& room, const Trail& trail) const {
   if (layout_ == Layout::grid) return offset;
-  Vector3f drift = eigen(trail.last()) - room.center;
-  if (on_land_) drift.z() = 0;
-  Vector3f shown = offset - drift;
+  Vector3 drift = Vector3(trail.last()) - room.center;
+  if (on_land_) drift.z = 0;
+  Vector3 shown = offset - drift;
   if (layout_ == Layout::race) shown += progress_of(trail) * along_;
   return shown;
 }
 
-Vector3f GroupMotion::ghost_offset(const Vector3f& shown, const Room& room, const Trail& trail, Vec3 ghost) const {
-  Vector3f apart = eigen(ghost) - eigen(trail.last());
-  if (on_land_) apart.z() = 0;
-  if (layout_ == Layout::grid || !apart.allFinite()) return shown;
+Vector3 GroupMotion::ghost_offset(const Vector3& shown, const Room& room, const Trail& trail, Vec3 ghost) const {
+  Vector3 apart = Vector3(ghost) - Vector3(trail.last());
+  if (on_land_) apart.z = 0;
+  if (layout_ == Layout::grid || !apart.is_finite()) return shown;
   if (layout_ == Layout::cells) return shown - std::max(0.0f, 1 - room.radius / std::max(1e-9f, apart.norm())) * apart;
   const auto way = static_cast<float>(distance_between(trail.start(), ghost, environment_));
   return shown - apart + (way - progress_of(trail)) * along_;
@@ -63,17 +62,17 @@ float GroupMotion::progress_of(const Trail& trail) const {
   return static_cast<float>(distance_between(trail.start(), trail.last(), environment_));
 }
 
-render::Bounds GroupMotion::camera_box(const render::Bounds& box, const Vector3f& offset, const Room& room) const {
+render::Bounds GroupMotion::camera_box(const render::Bounds& box, const Vector3& offset, const Room& room) const {
   if (layout_ == Layout::grid || box.empty()) return box;
   // A ball's box would leave much room at its corners, where the robot comes only if it lies along a diagonal.
   constexpr float share = 0.75f;
   render::Bounds all = box, cell;
-  const Vector3f middle = offset + room.center;
-  cell.extend(middle - Vector3f::Constant(share * room.radius));
-  cell.extend(middle + Vector3f::Constant(share * room.radius));
+  const Vector3 middle = offset + room.center;
+  cell.extend(middle - Vector3::all(share * room.radius));
+  cell.extend(middle + Vector3::all(share * room.radius));
   if (on_land_) {
-    cell.low.z() = std::min(box.low.z(), 0.0f);
-    cell.high.z() = box.high.z();
+    cell.low.z = std::min(box.low.z, 0.0f);
+    cell.high.z = box.high.z;
   }
   all.extend(cell);
   return all;
@@ -93,9 +92,9 @@ void HeldRobot::hold(std::optional<std::size_t> robot, double elapsed) {
   if (robot && std::ranges::none_of(offsets_, same)) offsets_.push_back({.robot = *robot});
 }
 
-Vector3f HeldRobot::correction(std::size_t robot, const Vector3f& wanted) {
+Vector3 HeldRobot::correction(std::size_t robot, const Vector3& wanted) {
   const auto found = std::ranges::find(offsets_, robot, &Offset::robot);
-  if (found == offsets_.end()) return Vector3f::Zero();
+  if (found == offsets_.end()) return Vector3::all(0);
   if (!found->held) return found->correction;
   if (!found->kept) found->kept = wanted + found->correction;
   return found->correction = *found->kept - wanted;

@@ -8,8 +8,6 @@
 // A robot that has exploded counts at the place where it was last.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -20,11 +18,12 @@
 #include "app/scene/view_settings.h"
 #include "mercury/configuration.h"
 #include "render/camera.h"
+#include "render/vector.h"
 
 namespace mercury {
 
 // The offsets at which a group starts, by its settings. `boxes` and `rooms`: one per robot.
-std::vector<Eigen::Vector3f> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
+std::vector<render::Vector3> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
                                            const ViewSettings& settings, const Environment& environment, float aspect);
 
 // The layout that the motion of a group follows. A board has cells of its own, through which robots travel.
@@ -33,27 +32,27 @@ Layout motion_of(const ViewSettings& settings);
 class GroupMotion {
  public:
   // Lanes run along this direction.
-  void set(Layout layout, const Environment& environment, const Eigen::Vector3f& along);
+  void set(Layout layout, const Environment& environment, const render::Vector3& along);
 
   // The offset of a robot that starts with `offset` and has come along `trail`.
-  Eigen::Vector3f offset_of(const Eigen::Vector3f& offset, const Room& room, const Trail& trail) const;
+  render::Vector3 offset_of(const render::Vector3& offset, const Room& room, const Trail& trail) const;
   // The offset of the ghost of a robot that is shown with `shown`; the ghost's center of mass is at `ghost`. The two
   // are as far apart as they are, in cells at most by the room's radius; in a race the ghost is in the same lane.
-  Eigen::Vector3f ghost_offset(const Eigen::Vector3f& shown, const Room& room, const Trail& trail, Vec3 ghost) const;
+  render::Vector3 ghost_offset(const render::Vector3& shown, const Room& room, const Trail& trail, Vec3 ghost) const;
   // How far the robot is from its start [m]; in a race, its place along its lane.
   float progress_of(const Trail& trail) const;
   // The box that a camera shows: `box` is around the robot, `offset` its own at the start.
-  render::Bounds camera_box(const render::Bounds& box, const Eigen::Vector3f& offset, const Room& room) const;
+  render::Bounds camera_box(const render::Bounds& box, const render::Vector3& offset, const Room& room) const;
 
   Layout layout() const { return layout_; }
   bool on_land() const { return on_land_; }
-  const Eigen::Vector3f& along() const { return along_; }
+  const render::Vector3& along() const { return along_; }
 
  private:
   Layout layout_ = Layout::grid;
   bool on_land_ = false;
   Environment environment_;
-  Eigen::Vector3f along_{1, 0, 0};
+  render::Vector3 along_{1, 0, 0};
 };
 
 // While the mouse pulls at a robot, the robot follows it: what is subtracted of its way stays as it was. Afterwards it
@@ -63,14 +62,14 @@ class HeldRobot {
   // The robot that is held now, and the time since the last call [s].
   void hold(std::optional<std::size_t> robot, double elapsed);
   // What is added to the offset `wanted` of this robot in the picture; call it once per robot and picture.
-  Eigen::Vector3f correction(std::size_t robot, const Eigen::Vector3f& wanted);
+  render::Vector3 correction(std::size_t robot, const render::Vector3& wanted);
 
  private:
   struct Offset {
     std::size_t robot = 0;
     bool held = true;
-    std::optional<Eigen::Vector3f> kept;  // the offset at which it was taken hold of
-    Eigen::Vector3f correction{0, 0, 0};
+    std::optional<render::Vector3> kept;  // the offset at which it was taken hold of
+    render::Vector3 correction{0, 0, 0};
   };
   std::vector<Offset> offsets_;
 };

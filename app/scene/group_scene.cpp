@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "app/scene/camera_controller.h"
-#include "app/scene/eigen_vec3.h"
 #include "mercury/origin.h"
 #include "render/overlay.h"
 
@@ -39,9 +38,9 @@ float sand_below(std::span<const render::Bounds> robots) {
   for (const render::Bounds& robot : robots) {
     if (robot.empty()) continue;
     group.extend(robot);
-    tallest = std::max(tallest, robot.high.z() - robot.low.z());
+    tallest = std::max(tallest, robot.high.z - robot.low.z);
   }
-  return group.empty() ? 0 : group.low.z() - 0.5f * (group.high.z() - group.low.z()) - 2 * tallest;
+  return group.empty() ? 0 : group.low.z - 0.5f * (group.high.z - group.low.z) - 2 * tallest;
 }
 
 // The legend of materials: the base materials of the group's springs, alone or in pairs, for robots with the default
@@ -85,7 +84,7 @@ Group group_of(const Simulation& simulation) {
   return group;
 }
 
-GroupScene::GroupScene(const Group& given, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+GroupScene::GroupScene(const Group& given, std::vector<render::Vector3> offsets, const ViewSettings& settings)
     : settings_(settings), scale_(settings), names_(given.names), environment_(given.environment) {
   Group group = given;
   if (group.shapes.empty())
@@ -112,7 +111,7 @@ void GroupScene::show_surroundings() {
   const bool land = std::holds_alternative<Land>(environment_);
   motion_.set(motion_of(settings_), environment_, picture_axes(direction_of(settings_.camera, land)).right);
   scene_.surroundings = plain ? render::Surroundings::none : surroundings_of(environment_);
-  scene_.flow = eigen(flow_of(environment_));
+  scene_.flow = render::Vector3(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;
   scene_.cut = settings_.cut;
@@ -140,7 +139,7 @@ void GroupScene::set_environment(const Environment& environment) {
   if (moved) place_floor();
 }
 
-void GroupScene::set_offsets(std::span<const Eigen::Vector3f> offsets) {
+void GroupScene::set_offsets(std::span<const render::Vector3> offsets) {
   for (std::size_t i = 0; i < placements_.size(); ++i) offsets_[i] = offsets[i];
   place_boxes();
   place_floor();
@@ -199,14 +198,14 @@ void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
 void GroupScene::restart(std::span<const Telemetry> telemetry) {
   trails_.clear();
   for (std::size_t i = 0; i < telemetry.size(); ++i) {
-    const bool known = !telemetry[i].exploded && eigen(telemetry[i].center_of_mass).allFinite();
-    const Eigen::Vector3f& rest = rooms_[i].center;
-    trails_.emplace_back(known ? telemetry[i].center_of_mass : Vec3{rest.x(), rest.y(), rest.z()});
+    const bool known = !telemetry[i].exploded && render::Vector3(telemetry[i].center_of_mass).is_finite();
+    const render::Vector3& rest = rooms_[i].center;
+    trails_.emplace_back(known ? telemetry[i].center_of_mass : Vec3{rest.x, rest.y, rest.z});
   }
 }
 
 void GroupScene::add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
-                     const Eigen::Vector3f& offset) {
+                     const render::Vector3& offset) {
   smooth_.push_back(shape.smooth);
   offsets_.push_back(offset);
   hidden_.push_back(false);

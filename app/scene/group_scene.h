@@ -2,8 +2,6 @@
 // A group of simulated robots as a scene to draw.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +17,7 @@
 #include "app/scene/view_settings.h"
 #include "mercury/simulation.h"
 #include "render/renderer.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -38,14 +37,14 @@ Group group_of(const Simulation& simulation);
 class GroupScene {
  public:
   // `offsets`: one per robot, added to its coordinates at the start (group_offsets()).
-  GroupScene(const Group& group, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings);
-  GroupScene(const Simulation& simulation, std::vector<Eigen::Vector3f> offsets, const ViewSettings& settings)
+  GroupScene(const Group& group, std::vector<render::Vector3> offsets, const ViewSettings& settings);
+  GroupScene(const Simulation& simulation, std::vector<render::Vector3> offsets, const ViewSettings& settings)
       : GroupScene(group_of(simulation), std::move(offsets), settings) {}
 
   // Changes that need no new bodies; they take effect at the next update().
   void set_settings(const ViewSettings& settings);
   void set_environment(const Environment& environment);
-  void set_offsets(std::span<const Eigen::Vector3f> offsets);
+  void set_offsets(std::span<const render::Vector3> offsets);
   void set_materials(std::size_t robot, std::span<const Material> materials);
   void set_name(std::size_t robot, const std::string& name) { names_[robot] = name; }
   // What is drawn behind the robots, in plain surroundings.
@@ -77,9 +76,9 @@ class GroupScene {
   // The same for each robot, at the place where it was last if it has exploded.
   std::span<const render::Bounds> last_boxes() const { return last_boxes_; }
   // What is added to each robot's own coordinates in the picture at the last update() [m].
-  std::span<const Eigen::Vector3f> offsets() const { return shown_offsets_; }
+  std::span<const render::Vector3> offsets() const { return shown_offsets_; }
   // What is added to the coordinates of a robot's ghost, whose center of mass is there.
-  Eigen::Vector3f ghost_offset(std::size_t robot, Vec3 center_of_mass) const {
+  render::Vector3 ghost_offset(std::size_t robot, Vec3 center_of_mass) const {
     return motion_.ghost_offset(shown_offsets_[robot], rooms_[robot], trails_[robot], center_of_mass);
   }
 
@@ -93,7 +92,7 @@ class GroupScene {
     std::size_t robots = 0;  // that use it; 0 = free
   };
   void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
-           const Eigen::Vector3f& offset);
+           const render::Vector3& offset);
   std::size_t table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults);
   void use_table(std::size_t robot, std::size_t table);
   void show_surroundings();
@@ -121,7 +120,7 @@ class GroupScene {
   std::vector<render::Placement> placements_;
   std::vector<render::Bounds> rest_;  // around the center of mass, at rest
   std::vector<Room> rooms_;
-  std::vector<Eigen::Vector3f> offsets_, shown_offsets_;  // at the start, and now
+  std::vector<render::Vector3> offsets_, shown_offsets_;  // at the start, and now
   GroupMotion motion_;
   float mark_distance_ = 1;  // [m]
   HeldRobot held_;

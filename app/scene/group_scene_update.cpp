@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 
-#include "app/scene/eigen_vec3.h"
 #include "app/scene/group_scene.h"
 #include "mercury/distance.h"
 
@@ -63,9 +62,9 @@ void GroupScene::place_boxes() {
   shown_offsets_.resize(placements_.size());
   const bool all_exploded = std::ranges::all_of(exploded_, std::identity());
   for (std::size_t i = 0; i < placements_.size(); ++i) {
-    const Eigen::Vector3f wanted = motion_.offset_of(offsets_[i], rooms_[i], trails_[i]);
+    const render::Vector3 wanted = motion_.offset_of(offsets_[i], rooms_[i], trails_[i]);
     shown_offsets_[i] = placements_[i].offset = wanted + held_.correction(i, wanted);
-    last_boxes_[i] = rest_[i].moved(eigen(trails_[i].last()) + shown_offsets_[i]);
+    last_boxes_[i] = rest_[i].moved(render::Vector3(trails_[i].last()) + shown_offsets_[i]);
     if (exploded_[i] && !all_exploded) continue;
     bounds_[i] = last_boxes_[i];
     camera_boxes_[i] = motion_.camera_box(bounds_[i], offsets_[i], rooms_[i]);
@@ -78,8 +77,8 @@ void GroupScene::place_patches() {
   if (motion_.layout() == Layout::cells && motion_.on_land() && scene_.surroundings == render::Surroundings::land)
     for (std::size_t i = 0; i < placements_.size(); ++i) {
       if (placements_[i].hidden) continue;
-      const Eigen::Vector2f middle = (offsets_[i] + rooms_[i].center).head<2>();
-      patches_.push_back({middle, 1.04f * rooms_[i].radius, -shown_offsets_[i].head<2>()});
+      const render::Vector2 middle = (offsets_[i] + rooms_[i].center).xy();
+      patches_.push_back({middle, 1.04f * rooms_[i].radius, -shown_offsets_[i].xy()});
     }
   scene_.patches = patches_;
 }
@@ -94,7 +93,7 @@ void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
     torn_[i] = exploded_[i] && !(telemetry[i].largest_strain <= most_strain);
     placements_[i].hidden = hidden_[i] || (torn_[i] && !placements_[i].selected);
     if (torn_[i] && placements_[i].hidden && !hidden_[i])
-      shown_texts_.push_back({.at = eigen(trails_[i].last()) + shown_offsets_[i],
+      shown_texts_.push_back({.at = render::Vector3(trails_[i].last()) + shown_offsets_[i],
                               .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at)});
   }
   scene_.texts = shown_texts_;
@@ -128,10 +127,10 @@ void GroupScene::race(double time) {
   float lowest = 1e30f, farthest = 0;
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     const float way = motion_.progress_of(trails_[i]);
-    const Eigen::Vector3f start = offsets_[i] + rooms_[i].center;
+    const render::Vector3 start = offsets_[i] + rooms_[i].center;
     progress.push_back(exploded_[i] ? -1 : way);
     lanes.push_back({start, rooms_[i].radius, way, render::category_color(static_cast<int>(i))});
-    lowest = std::min(lowest, start.z() - 0.8f * rooms_[i].radius);
+    lowest = std::min(lowest, start.z - 0.8f * rooms_[i].radius);
     farthest = std::max(farthest, way);
   }
   mark_times_.update(time, progress);

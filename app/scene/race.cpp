@@ -8,7 +8,7 @@
 
 namespace mercury {
 
-using Eigen::Vector3f;
+using render::Vector3;
 
 void MarkTimes::update(double time, std::span<const float> progress) {
   constexpr float most_marks = 100'000;
@@ -58,12 +58,12 @@ std::size_t marks_per_line(float distance, float length) {
   return 1;
 }
 
-void Course::add(const Vector3f& from, const Vector3f& to, render::Color color) {
-  points_.push_back({from.x(), from.y(), from.z(), to.x(), to.y(), to.z()});
+void Course::add(const Vector3& from, const Vector3& to, render::Color color) {
+  points_.push_back({from.x, from.y, from.z, to.x, to.y, to.z});
   lines_.push_back({.body = render::Path::no_body, .points = {}, .color = color, .fades = false});
 }
 
-void Course::draw(std::span<const Lane> lanes, const Vector3f& along, float height, const MarkTimes& passings,
+void Course::draw(std::span<const Lane> lanes, const Vector3& along, float height, const MarkTimes& passings,
                   std::size_t step, render::Theme theme) {
   points_.clear();
   lines_.clear();
@@ -71,11 +71,11 @@ void Course::draw(std::span<const Lane> lanes, const Vector3f& along, float heig
   if (lanes.empty()) return;
   const render::Color faint = theme == render::Theme::dark ? render::rgb(0x8fa3ad) : render::rgb(0x51626c);
   const render::Color bright = theme == render::Theme::dark ? render::rgb(0xf2f6f8) : render::rgb(0x16232c);
-  const Vector3f across(-along.y(), along.x(), 0);
+  const Vector3 across(-along.y, along.x, 0);
   // Places along and across the lanes.
   const auto at = [&](float forward, float sideways) {
-    const Vector3f level = forward * along + sideways * across;
-    return Vector3f(level.x(), level.y(), height);
+    const Vector3 level = forward * along + sideways * across;
+    return Vector3(level.x, level.y, height);
   };
   const float line = passings.distance() * static_cast<float>(step);
   float farthest = 0, low = 1e30f, high = -1e30f;

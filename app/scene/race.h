@@ -2,8 +2,6 @@
 // A race: lanes with a start line and marks, and the order in which robots arrive at the marks.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "render/scene.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -50,7 +49,7 @@ std::size_t marks_per_line(float distance, float length);
 
 // A lane, from its start line on.
 struct Lane {
-  Eigen::Vector3f start{0, 0, 0};  // in the picture [m]
+  render::Vector3 start{0, 0, 0};  // in the picture [m]
   float half_width = 0;            // [m]
   float progress = 0;              // of its robot [m]
   render::Color color;
@@ -60,13 +59,13 @@ struct Lane {
 class Course {
  public:
   // `along`: the direction of the lanes, level, of length 1; `height` of the lines [m]; `step`: marks per line.
-  void draw(std::span<const Lane> lanes, const Eigen::Vector3f& along, float height, const MarkTimes& passings,
+  void draw(std::span<const Lane> lanes, const render::Vector3& along, float height, const MarkTimes& passings,
             std::size_t step, render::Theme theme);
   std::span<const render::Path> lines() const { return lines_; }
   std::span<const render::Text> numbers() const { return numbers_; }
 
  private:
-  void add(const Eigen::Vector3f& from, const Eigen::Vector3f& to, render::Color color);
+  void add(const render::Vector3& from, const render::Vector3& to, render::Color color);
 
   std::vector<std::vector<float>> points_;
   std::vector<render::Path> lines_;

@@ -3,8 +3,6 @@
 // that show the robot.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <memory>
 #include <span>

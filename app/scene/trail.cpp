@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/trail.h"
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
-#include "app/scene/eigen_vec3.h"
+#include "render/vector.h"
 
 namespace mercury {
 namespace {
 
-Eigen::Vector3f point_at(std::span<const float> points, std::size_t i) {
+render::Vector3 point_at(std::span<const float> points, std::size_t i) {
   return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
 }  // namespace
 
 void Trail::pass(Vec3 place) {
-  if (eigen(place).allFinite()) last_ = place;
+  if (render::Vector3(place).is_finite()) last_ = place;
 }
 
 void Trail::lengthen(float step, double time, Later later) {
@@ -33,7 +30,7 @@ void Trail::lengthen(float step, double time, Later later) {
   shown_ = until(time);
   if (shown_ < times_.size()) return;
   known_until_ = later == Later::forget || shown_ == 0 ? time : std::max(known_until_, time);
-  const float moved = shown_ == 0 ? 0 : (eigen(last_) - point_at(points_, shown_ - 1)).norm();
+  const float moved = shown_ == 0 ? 0 : (render::Vector3(last_) - point_at(points_, shown_ - 1)).norm();
   if (shown_ > 0 && (moved == 0 || moved < step)) return;
   points_.insert(points_.end(), {last_.x, last_.y, last_.z});
   lengths_.push_back(shown_ == 0 ? 0 : lengths_.back() + moved);
@@ -61,7 +58,7 @@ void Trail::thin_out() {
 
 std::span<const float> Trail::wake(float reach) const {
   std::size_t first = shown_;
-  while (first > 0 && (point_at(points_, first - 1) - eigen(last_)).norm() <= reach) --first;
+  while (first > 0 && (point_at(points_, first - 1) - render::Vector3(last_)).norm() <= reach) --first;
   return points().subspan(3 * first);
 }
 
@@ -72,15 +69,15 @@ std::vector<float> marks_of(const Trail& trail, std::span<const float> wake, flo
     const float before = trail.lengths()[i - 1], after = trail.lengths()[i];
     const float mark = distance * std::floor(after / distance);
     if (mark <= before) continue;
-    const Eigen::Vector3f a = point_at(trail.points(), i - 1), b = point_at(trail.points(), i);
-    const Eigen::Vector3f at = a + (mark - before) / (after - before) * (b - a), along = (b - a).normalized();
+    const render::Vector3 a = point_at(trail.points(), i - 1), b = point_at(trail.points(), i);
+    const render::Vector3 at = a + (mark - before) / (after - before) * (b - a), along = (b - a).normalized();
     // Two bars across the path, so that one is seen from every side.
-    const Eigen::Vector3f level =
-        std::abs(along.z()) < 0.99f ? along.cross(Eigen::Vector3f::UnitZ()).normalized() : Eigen::Vector3f::UnitX();
-    for (const Eigen::Vector3f& across : {level, Eigen::Vector3f(level.cross(along))})
+    const render::Vector3 level =
+        std::abs(along.z) < 0.99f ? along.cross(render::Vector3::unit(2)).normalized() : render::Vector3::unit(0);
+    for (const render::Vector3& across : {level, render::Vector3(level.cross(along))})
       for (const float side : {-0.5f, 0.5f}) {
-        const Eigen::Vector3f end = at + side * size * across;
-        bars.insert(bars.end(), {end.x(), end.y(), end.z()});
+        const render::Vector3 end = at + side * size * across;
+        bars.insert(bars.end(), {end.x, end.y, end.z});
       }
   }
   return bars;

@@ -27,7 +27,7 @@ GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& se
   if (settings.board) {
     // The simulation sets robots down on the floor.
     for (render::Bounds& robot : bounds)
-      if (land && !robot.empty()) robot = robot.moved({0, 0, -robot.low.z()});
+      if (land && !robot.empty()) robot = robot.moved({0, 0, -robot.low.z});
     return place_on_board(*settings.board, bounds, settings.camera, aspect, settings.theme);
   }
   std::vector<Room> rooms;

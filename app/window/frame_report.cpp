@@ -22,9 +22,9 @@ std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& p
   std::vector<std::array<float, 2>> places;
   for (const render::Bounds& box : scene.picture().bounds()) {
     if (places.size() == max_robots) break;
-    const Eigen::Vector3f p =
+    const render::Vector3 p =
         picture.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
-    places.push_back({area.low.x + p.x(), area.low.y + p.y()});
+    places.push_back({area.low.x + p.x, area.low.y + p.y});
   }
   return places;
 }

@@ -17,30 +17,33 @@ namespace mercury::fuzz {
 
 // A program with two commands, one of them with a command of its own.
 void check_configuration_file(std::string_view input) {
-  CLI::App program;
+  const CommandTree tree;
+  const Command program = tree.root();
   SimulationOptions simulation;
   std::string text;
   bool flag = false;
   std::vector<std::string> several;
-  CLI::App* run = program.add_subcommand("run");
-  simulation.add_to(*run);
-  run->add_option("--text", text);
-  run->add_flag("--flag", flag);
-  run->add_option("--several", several);
-  CLI::App* made = program.add_subcommand("new")->add_subcommand("voxel");
-  made->add_option("--text", text);
+  const Command run = program.add_command("run", "");
+  simulation.add_to(run);
+  add_text(run, "--text", text, "", "TEXT");
+  run.add_flag("--flag", flag, "");
+  run.add_list("--several", several, "");
+  const Command made = program.add_command("new", "").add_command("voxel", "");
+  add_text(made, "--text", text, "", "TEXT");
   const std::string path = scratch_file(input, "input.toml");
-  for (CLI::App* command : {run, made}) {
-    const ConfigFile file(path, program, *command, {"--dt=1"});
+  for (const Command& command : {run, made}) {
+    const ConfigFile file(path, program, command, {"--dt=1"});
     for (const std::string& argument : file.arguments())
       require(argument.starts_with("--"), "an argument that is not an option: " + argument);
-    if (command != run) continue;
+    if (!command.is_within(run)) continue;
     try {
-      std::vector<std::string> arguments = file.arguments();
-      std::reverse(arguments.begin(), arguments.end());
-      run->parse(arguments);
+      std::vector<std::string> arguments{"run"};
+      arguments.insert(arguments.end(), file.arguments().begin(), file.arguments().end());
+      tree.parse(arguments);
       simulation.configuration();
-    } catch (const CLI::ParseError&) {
+    } catch (const UnknownArgument&) {
+    } catch (const MissingValue&) {
+    } catch (const ParseFailure&) {
     } catch (const InputError& error) {
       throw InputError(file.located(error.what()));
     }

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/camera.h"
+#include "render/vector.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-using Eigen::Vector4f;
-
 constexpr float pi = std::numbers::pi_v<float>;
 
 // An independent pinhole camera: similar triangles along and across the line of sight.
-Vector3f pinhole(const Camera& camera, const Vector3f& point, int width, int height) {
-  const Vector3f forward = (camera.target - camera.eye).normalized();
-  const Vector3f right = forward.cross(camera.up).normalized();
-  const Vector3f up = right.cross(forward);
-  const Vector3f p = point - camera.eye;
+Vector3 pinhole(const Camera& camera, const Vector3& point, int width, int height) {
+  const Vector3 forward = (camera.target - camera.eye).normalized();
+  const Vector3 right = forward.cross(camera.up).normalized();
+  const Vector3 up = right.cross(forward);
+  const Vector3 p = point - camera.eye;
   const float depth = p.dot(forward);
   const float pixels = float(height) / 2 / std::tan(camera.field_of_view / 2);
   return {float(width) / 2 + pixels * p.dot(right) / depth, float(height) / 2 - pixels * p.dot(up) / depth, depth};
@@ -28,22 +25,22 @@ Vector3f pinhole(const Camera& camera, const Vector3f& point, int width, int hei
 
 TEST(Camera, ProjectsAsAPinhole) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}, .field_of_view = 0.8f};
-  for (const Vector3f& point : {Vector3f(0, 0, 0), Vector3f(0.5f, 0.2f, 0.1f), Vector3f(-1, 0.3f, 0.7f)})
+  for (const Vector3& point : {Vector3(0, 0, 0), Vector3(0.5f, 0.2f, 0.1f), Vector3(-1, 0.3f, 0.7f)})
     EXPECT_LT((camera.project(point, 640, 360) - pinhole(camera, point, 640, 360)).norm(), 2e-3f);
 }
 
 TEST(Camera, TargetIsInTheMiddleOfThePicture) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}};
-  const Vector3f seen = camera.project(camera.target, 640, 360);
-  EXPECT_NEAR(seen.x(), 320, 1e-3);
-  EXPECT_NEAR(seen.y(), 180, 1e-3);
+  const Vector3 seen = camera.project(camera.target, 640, 360);
+  EXPECT_NEAR(seen.x, 320, 1e-3);
+  EXPECT_NEAR(seen.y, 180, 1e-3);
 }
 
 TEST(Camera, DepthIsOneAtTheNearestAndZeroAtTheFarthest) {
   const Camera camera{.eye = {0, 0, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .near = 0.5f, .far = 50};
   const auto depth = [&](float z) {
-    const Vector4f clip = camera.projection(1) * camera.view() * Vector4f(0, 0, z, 1);
-    return clip.z() / clip.w();
+    const Vector4 clip = camera.projection(1) * camera.view() * Vector4(0, 0, z, 1);
+    return clip.z / clip.w;
   };
   EXPECT_NEAR(depth(4.5f), 1, 1e-6);
   EXPECT_NEAR(depth(-45), 0, 1e-6);
@@ -52,28 +49,28 @@ TEST(Camera, DepthIsOneAtTheNearestAndZeroAtTheFarthest) {
 
 TEST(Camera, RayRunsThroughThePointThatProjectsThere) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}};
-  const Vector3f point(-0.3f, 0.9f, 0.4f);
-  const Vector3f seen = camera.project(point, 640, 360);
-  const Ray ray = camera.ray(seen.x(), seen.y(), 640, 360);
+  const Vector3 point(-0.3f, 0.9f, 0.4f);
+  const Vector3 seen = camera.project(point, 640, 360);
+  const Ray ray = camera.ray(seen.x, seen.y, 640, 360);
   EXPECT_LT((point - ray.origin).cross(ray.direction).norm(), 1e-4f);
   EXPECT_NEAR(ray.direction.norm(), 1, 1e-5);
 }
 
 TEST(Orbit, EyeLiesInTheDirectionOfTheAngles) {
   const Orbit orbit{.target = {1, 2, 3}, .azimuth = 0, .elevation = pi / 6, .distance = 4};
-  EXPECT_LT((orbit.camera().eye - Vector3f(1 + 4 * std::cos(pi / 6), 2, 3 + 2)).norm(), 1e-5f);
+  EXPECT_LT((orbit.camera().eye - Vector3(1 + 4 * std::cos(pi / 6), 2, 3 + 2)).norm(), 1e-5f);
 }
 
 TEST(Orbit, FrameContainsAllCornersAndTouchesAnEdge) {
-  const Bounds box{Vector3f(-1, -2, 0), Vector3f(3, 1, 0.5f)};
+  const Bounds box{Vector3(-1, -2, 0), Vector3(3, 1, 0.5f)};
   for (const float elevation : {0.0f, 0.5f, pi / 2}) {
     Orbit orbit{.azimuth = 0.7f, .elevation = elevation};
     orbit.frame(box, 16.0f / 9, 1.0f);
     float margin = 1e9f;
     for (int corner = 0; corner < 8; ++corner) {
-      const Vector3f point(corner & 1 ? 3 : -1, corner & 2 ? 1 : -2, corner & 4 ? 0.5f : 0);
-      const Vector3f seen = orbit.camera().project(point, 1600, 900);
-      margin = std::min({margin, seen.x(), 1600 - seen.x(), seen.y(), 900 - seen.y()});
+      const Vector3 point(corner & 1 ? 3 : -1, corner & 2 ? 1 : -2, corner & 4 ? 0.5f : 0);
+      const Vector3 seen = orbit.camera().project(point, 1600, 900);
+      margin = std::min({margin, seen.x, 1600 - seen.x, seen.y, 900 - seen.y});
     }
     EXPECT_GT(margin, -2) << elevation;
     EXPECT_LT(margin, 16) << elevation;
@@ -81,29 +78,29 @@ TEST(Orbit, FrameContainsAllCornersAndTouchesAnEdge) {
 }
 
 TEST(Orbit, FrameLeavesRoomForALegend) {
-  const Bounds box{Vector3f(-1, -1, -1), Vector3f(1, 1, 1)};
+  const Bounds box{Vector3(-1, -1, -1), Vector3(1, 1, 1)};
   Orbit orbit;
   orbit.frame(box, 16.0f / 9, 1.0f, {.right = 0.6f});
   for (int corner = 0; corner < 8; ++corner) {
-    const Vector3f point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    EXPECT_LT(orbit.camera().project(point, 1600, 900).x(), 1600 * 0.4f + 2);
+    const Vector3 point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    EXPECT_LT(orbit.camera().project(point, 1600, 900).x, 1600 * 0.4f + 2);
   }
 }
 
 TEST(Orbit, TopViewHasXToTheRightAndYUp) {
-  const Orbit orbit = top_view(Bounds{Vector3f(-1, -1, 0), Vector3f(1, 1, 0)}, 1);
-  const Vector3f middle = orbit.camera().project({0, 0, 0}, 100, 100);
-  const Vector3f x = orbit.camera().project({0.5f, 0, 0}, 100, 100), y = orbit.camera().project({0, 0.5f, 0}, 100, 100);
-  EXPECT_GT(x.x(), middle.x() + 10);
-  EXPECT_NEAR(x.y(), middle.y(), 0.01);
-  EXPECT_LT(y.y(), middle.y() - 10);
+  const Orbit orbit = top_view(Bounds{Vector3(-1, -1, 0), Vector3(1, 1, 0)}, 1);
+  const Vector3 middle = orbit.camera().project({0, 0, 0}, 100, 100);
+  const Vector3 x = orbit.camera().project({0.5f, 0, 0}, 100, 100), y = orbit.camera().project({0, 0.5f, 0}, 100, 100);
+  EXPECT_GT(x.x, middle.x + 10);
+  EXPECT_NEAR(x.y, middle.y, 0.01);
+  EXPECT_LT(y.y, middle.y - 10);
 }
 
 TEST(Orbit, PanMovesThePictureByThatPartOfItsHeight) {
   Orbit orbit;
-  const Vector3f point = orbit.target;
+  const Vector3 point = orbit.target;
   orbit.pan(0.25f, 0);
-  EXPECT_NEAR(orbit.camera().project(point, 800, 400).x(), 400 - 100, 0.5);
+  EXPECT_NEAR(orbit.camera().project(point, 800, 400).x, 400 - 100, 0.5);
 }
 
 TEST(Orbit, TurntableReturnsAfterAPeriod) {
@@ -115,13 +112,13 @@ TEST(Orbit, TurntableReturnsAfterAPeriod) {
 TEST(Orbit, FollowApproachesItsTargetExponentially) {
   Orbit orbit;
   follow(orbit, {1, 0, 0}, 0.5, 0.5);
-  EXPECT_NEAR(orbit.target.x(), 1 - std::exp(-1.0), 1e-5);
+  EXPECT_NEAR(orbit.target.x, 1 - std::exp(-1.0), 1e-5);
 }
 
 TEST(Bounds, IgnoresPointsThatAreNotFinite) {
   const float nan = std::nanf("");
   const Bounds bounds = bounds_of(std::vector<float>{0, 0, 0, nan, 5, 5, 1, 2, 3});
-  EXPECT_EQ(bounds.high, Vector3f(1, 2, 3));
+  EXPECT_EQ(bounds.high, Vector3(1, 2, 3));
   EXPECT_TRUE(bounds_of({}).empty());
 }
 

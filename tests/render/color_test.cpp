@@ -6,8 +6,6 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector2f;
-
 class ColorTest : public Offscreen {};
 
 TEST_F(ColorTest, APlacementSelectsMaterialsWithoutNewBodies) {
@@ -29,16 +27,16 @@ TEST_F(ColorTest, APlacementSelectsMaterialsWithoutNewBodies) {
     scene.show = {.skin = !springs, .springs = springs};
     scene.spring_radius = 0.1f;
     scene.materials = materials;
-    const Vector2f middle = pinhole(front(), {0.05f, 0, -0.45f}, 160, 120);  // of the first spring
+    const Vector2 middle = pinhole(front(), {0.05f, 0, -0.45f}, 160, 120);  // of the first spring
     const auto color = [&](std::uint32_t first_material) {
       const std::array placements{Placement{.selected = false, .first_material = first_material}};
       scene.placements = placements;
-      return springs ? pixel(drawn(renderer, scene), int(middle.x()), int(middle.y()))
+      return springs ? pixel(drawn(renderer, scene), int(middle.x), int(middle.y))
                      : pixel(drawn(renderer, scene), 80, 60);
     };
-    const Eigen::Vector3i red = color(0), blue = color(2);
-    EXPECT_GT(red.x(), red.z() + 80) << springs;
-    EXPECT_GT(blue.z(), blue.x() + 80) << springs;
+    const Rgb red = color(0), blue = color(2);
+    EXPECT_GT(red.x, red.z + 80) << springs;
+    EXPECT_GT(blue.z, blue.x + 80) << springs;
   }
 }
 
@@ -73,8 +71,8 @@ TEST_F(ColorTest, ValuesColorSkinsSpringsAndMassesByTheScale) {
     for (int y = 0; y < 120; ++y)
       for (int x = 0; x < 160; ++x) {
         if (largest_difference(pixel(cold, x, y), pixel(warm, x, y)) < 10) continue;
-        redder += pixel(warm, x, y).x() > pixel(warm, x, y).z();
-        bluer += pixel(cold, x, y).z() > pixel(cold, x, y).x();
+        redder += pixel(warm, x, y).x > pixel(warm, x, y).z;
+        bluer += pixel(cold, x, y).z > pixel(cold, x, y).x;
       }
     EXPECT_GT(redder, 50);
     EXPECT_GT(bluer, 50);

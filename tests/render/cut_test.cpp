@@ -14,15 +14,11 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector2f;
-using Eigen::Vector3i;
-
 using Eigen::Matrix3f;
-using Eigen::Vector3f;
 
 const std::array materials{RenderMaterial{.color = {200, 40, 40}}, RenderMaterial{.color = {40, 200, 40}}};
-bool is_green(const Vector3i& color) { return 2 * color.y() > 3 * color.x(); }
-bool is_red(const Vector3i& color) { return 2 * color.x() > 3 * color.y(); }
+bool is_green(const Rgb& color) { return 2 * color.y > 3 * color.x; }
+bool is_red(const Rgb& color) { return 2 * color.x > 3 * color.y; }
 
 class CutTest : public Offscreen {};
 
@@ -35,11 +31,9 @@ TEST_F(CutTest, ACutRemovesTheSideItsNormalPointsTo) {
   Scene scene = plain();
   scene.cut = Cut{.axis = 2, .percent = 100 * 0.5f / 1.3f};  // the triangle reaches from z = -0.5 to 0.8
   const Image cut = drawn(renderer, scene);
-  const Vector2f above = pinhole(front(), {0.1f, 0, 0.3f}, 160, 120), below = pinhole(front(), {0, 0, -0.3f}, 160, 120);
-  EXPECT_LE(
-      largest_difference(pixel(cut, int(above.x()), int(above.y())), pixel(empty, int(above.x()), int(above.y()))), 1);
-  EXPECT_LE(
-      largest_difference(pixel(cut, int(below.x()), int(below.y())), pixel(whole, int(below.x()), int(below.y()))), 6);
+  const Vector2 above = pinhole(front(), {0.1f, 0, 0.3f}, 160, 120), below = pinhole(front(), {0, 0, -0.3f}, 160, 120);
+  EXPECT_LE(largest_difference(pixel(cut, int(above.x), int(above.y)), pixel(empty, int(above.x), int(above.y))), 1);
+  EXPECT_LE(largest_difference(pixel(cut, int(below.x), int(below.y)), pixel(whole, int(below.x), int(below.y))), 6);
 }
 
 // A cube of side 1 about the origin: faces of material 0; springs of material 1 along its edges and through its middle.
@@ -70,25 +64,31 @@ TEST_F(CutTest, ACutShowsSolidBodiesInTheMaterialsOfTheirSprings) {
   // The square where the plane cuts the cube, without its rim.
   for (const float x : {-0.44f, -0.2f, 0.0f, 0.2f, 0.44f})
     for (const float z : {-0.44f, -0.2f, 0.0f, 0.2f, 0.44f}) {
-      const Vector2f at = pinhole(front(), {x, 0, z}, 160, 120);
-      EXPECT_TRUE(is_red(pixel(whole, int(at.x()), int(at.y())))) << x << " " << z;
-      EXPECT_TRUE(is_green(pixel(cut, int(at.x()), int(at.y())))) << x << " " << z;
+      const Vector2 at = pinhole(front(), {x, 0, z}, 160, 120);
+      EXPECT_TRUE(is_red(pixel(whole, int(at.x), int(at.y)))) << x << " " << z;
+      EXPECT_TRUE(is_green(pixel(cut, int(at.x), int(at.y)))) << x << " " << z;
     }
   // From behind, the cut is not visible.
   const Camera behind{.eye = {0.2f, 4, 0.1f}};
-  const Vector2f middle = pinhole(behind, {0, 0.5f, 0}, 160, 120);
-  EXPECT_TRUE(is_red(pixel(drawn(renderer, scene, behind), int(middle.x()), int(middle.y()))));
+  const Vector2 middle = pinhole(behind, {0, 0.5f, 0}, 160, 120);
+  EXPECT_TRUE(is_red(pixel(drawn(renderer, scene, behind), int(middle.x), int(middle.y))));
   // With springs shown, bodies are hollow: between the springs, the far wall is visible.
   scene.show.springs = true;
   scene.spring_radius = 0.005f;
-  const Vector2f between = pinhole(front(), {0.13f, 0.5f, 0.33f}, 160, 120);
-  EXPECT_TRUE(is_red(pixel(drawn(renderer, scene), int(between.x()), int(between.y()))));
+  const Vector2 between = pinhole(front(), {0.13f, 0.5f, 0.33f}, 160, 120);
+  EXPECT_TRUE(is_red(pixel(drawn(renderer, scene), int(between.x), int(between.y))));
 }
 
-std::vector<float> turned(const std::vector<float>& positions, const Matrix3f& rotation, const Vector3f& offset) {
+Vector3 column(const Matrix3f& m, int i) { return {m(0, i), m(1, i), m(2, i)}; }
+
+Vector3 times(const Matrix3f& m, const Vector3& v) {
+  return v.x * column(m, 0) + v.y * column(m, 1) + v.z * column(m, 2);
+}
+
+std::vector<float> turned(const std::vector<float>& positions, const Matrix3f& rotation, const Vector3& offset) {
   std::vector<float> result;
   for (std::size_t i = 0; i < positions.size(); i += 3) {
-    const Vector3f p = rotation * Vector3f(positions.data() + i) + offset;
+    const Vector3 p = times(rotation, Vector3(positions.data() + i)) + offset;
     result.insert(result.end(), p.data(), p.data() + 3);
   }
   return result;
@@ -97,11 +97,11 @@ std::vector<float> turned(const std::vector<float>& positions, const Matrix3f& r
 std::vector<Matrix3f> rotations() {
   std::vector<Matrix3f> all{Matrix3f::Identity()};
   for (int axis = 0; axis < 3; ++axis)  // half turns
-    all.push_back(Eigen::AngleAxisf(std::numbers::pi_v<float>, Vector3f::Unit(axis)).toRotationMatrix());
+    all.push_back(Eigen::AngleAxisf(std::numbers::pi_v<float>, Eigen::Vector3f::Unit(axis)).toRotationMatrix());
   for (int i = 1; i < 20; ++i)
-    all.push_back(
-        Eigen::AngleAxisf(0.55f * float(i), Vector3f(std::sin(float(i)), std::cos(1.7f * float(i)), 0.3f).normalized())
-            .toRotationMatrix());
+    all.push_back(Eigen::AngleAxisf(0.55f * float(i),
+                                    Eigen::Vector3f(std::sin(float(i)), std::cos(1.7f * float(i)), 0.3f).normalized())
+                      .toRotationMatrix());
   return all;
 }
 
@@ -111,18 +111,18 @@ TEST(CutFrame, TurnsAndMovesWithTheBody) {
   for (std::uint32_t i = 0; i < 8; ++i)
     rest.insert(rest.end(), {i & 1 ? 1.0f : 0.0f, i & 2 ? 2.0f : 0.0f, i & 4 ? 3.0f : 0.0f});
   rest.insert(rest.end(), {0.2f, 0.3f, 1, 0.7f, 1.9f, 2.5f});
-  const Vector3f offset(5, -7, 3);
+  const Vector3 offset(5, -7, 3);
   for (const Matrix3f& rotation : rotations()) {
     const std::vector<float> now = turned(rest, rotation, offset);
     for (int axis = 0; axis < 3; ++axis) {
       const CutFrame frame = cut_frame(axis, rest, now).value();
-      EXPECT_LT((frame.axis - rotation.col(axis)).norm(), 1e-3f);
-      const float start = rotation.col(axis).dot(offset);
+      EXPECT_LT((frame.axis - column(rotation, axis)).norm(), 1e-3f);
+      const float start = column(rotation, axis).dot(offset);
       EXPECT_NEAR(frame.low, start, 5e-3f);
       EXPECT_NEAR(frame.high, start + float(axis + 1), 5e-3f);
       const CutPlane plane = frame.plane_of({.axis = axis, .percent = 25});
       const auto removed = [&](float share) {
-        return plane.removes(rotation * (share * float(axis + 1) * Vector3f::Unit(axis)) + offset);
+        return plane.removes(share * float(axis + 1) * column(rotation, axis) + offset);
       };
       EXPECT_FALSE(removed(0.23f));
       EXPECT_TRUE(removed(0.27f));
@@ -136,7 +136,7 @@ TEST(CutFrame, FollowsABodyThatIsStretchedAndHasLostMasses) {
   now[0] = -3;    // one mass is pulled along x
   now[14] = NAN;  // another is lost
   const CutFrame frame = cut_frame(0, rest, now).value();
-  EXPECT_LT((frame.axis - Vector3f::UnitX()).norm(), 1e-3f);
+  EXPECT_LT((frame.axis - Vector3::unit(0)).norm(), 1e-3f);
   EXPECT_NEAR(frame.low, -3, 1e-3f);
   EXPECT_NEAR(frame.high, 1, 1e-3f);
   EXPECT_FALSE(cut_frame(0, rest, std::vector<float>(15, NAN)));
@@ -145,14 +145,14 @@ TEST(CutFrame, FollowsABodyThatIsStretchedAndHasLostMasses) {
 
 TEST(CutFrame, OfABodyThatMayTurnFreelyStaysUpright) {
   const std::vector<float> rest{-1, 0, 0, 0, 0, 0, 1, 0, 0};  // turns about x change nothing
-  EXPECT_LT((cut_frame(2, rest, rest).value().axis - Vector3f::UnitZ()).norm(), 1e-3f);
+  EXPECT_LT((cut_frame(2, rest, rest).value().axis - Vector3::unit(2)).norm(), 1e-3f);
 }
 
 TEST(CutFrame, ItsEndsKeepAllOrNothing) {
   const Cube cube;
   const CutFrame frame = cut_frame(0, cube.positions, cube.positions).value();
   for (std::size_t i = 0; i < cube.positions.size(); i += 3) {
-    const Vector3f corner(cube.positions.data() + i);
+    const Vector3 corner(cube.positions.data() + i);
     EXPECT_FALSE(frame.plane_of({.axis = 0, .percent = 100}).removes(corner));
     EXPECT_TRUE(frame.plane_of({.axis = 0, .percent = 0}).removes(corner));
     EXPECT_FALSE(frame.plane_of({.axis = 0, .below = true, .percent = 0}).removes(corner));
@@ -170,11 +170,11 @@ TEST_F(CutTest, EachBodyIsCutInItsOwnFrame) {
   scene.materials = materials;
   scene.cut = Cut{.axis = 0, .percent = 60};
   std::array<Placement, 2> placements;
-  placements[0].offset = Vector3f(-0.9f, 0, 0);
-  placements[1].offset = Vector3f(0.9f, 0.3f, 0.1f);
+  placements[0].offset = Vector3(-0.9f, 0, 0);
+  placements[1].offset = Vector3(0.9f, 0.3f, 0.1f);
   scene.placements = placements;
   const Camera camera{.eye = {0.2f, -6, 0.4f}};
-  const Vector3f drift(0.1f, 0.05f, -0.1f);
+  const Vector3 drift(0.1f, 0.05f, -0.1f);
   int seen = 0, hidden = 0;
   const std::vector<Matrix3f> all = rotations();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -185,10 +185,10 @@ TEST_F(CutTest, EachBodyIsCutInItsOwnFrame) {
     scene.positions = positions;
     const Image image = drawn(renderer, scene, camera);
     for (std::size_t body = 0; body < 2; ++body) {
-      const Vector3f normal = turns[body].col(0), middle = placements[body].offset + drift + 0.1f * normal;
-      const Vector2f at = pinhole(camera, middle, 160, 120);
+      const Vector3 normal = column(turns[body], 0), middle = placements[body].offset + drift + 0.1f * normal;
+      const Vector2 at = pinhole(camera, middle, 160, 120);
       const float slant = normal.dot((camera.eye - middle).normalized());
-      const Vector3i color = pixel(image, int(at.x()), int(at.y()));
+      const Rgb color = pixel(image, int(at.x), int(at.y));
       if (slant > 0.3f) {
         ++seen;
         EXPECT_TRUE(is_green(color)) << i << " " << body;
@@ -213,24 +213,24 @@ TEST_F(CutTest, SectionsDoNotTakeTheColorsOfOtherBodies) {
   scene.materials = three;
   scene.cut = Cut{.axis = 1, .below = true};
   std::array<Placement, 2> placements;
-  placements[0].offset = Vector3f(-0.2f, -1, 0);  // nearer; it covers part of the other
-  placements[1].offset = Vector3f(0.35f, 1, 0);
+  placements[0].offset = Vector3(-0.2f, -1, 0);  // nearer; it covers part of the other
+  placements[1].offset = Vector3(0.35f, 1, 0);
   scene.placements = placements;
   const Camera camera{.eye = {0, -6, 0}};
   const Image image = drawn(renderer, scene, camera);
   int near = 0, far = 0;
   for (float x = -0.6f; x < 0.8f; x += 0.02f)
     for (const float z : {-0.3f, 0.0f, 0.3f}) {
-      const Vector2f in_front = pinhole(camera, {x, -1, z}, 160, 120), behind = pinhole(camera, {x, 1, z}, 160, 120);
+      const Vector2 in_front = pinhole(camera, {x, -1, z}, 160, 120), behind = pinhole(camera, {x, 1, z}, 160, 120);
       if (x > -0.66f && x < 0.26f) {
         ++near;
-        EXPECT_TRUE(is_green(pixel(image, int(in_front.x()), int(in_front.y())))) << x << " " << z;
+        EXPECT_TRUE(is_green(pixel(image, int(in_front.x), int(in_front.y)))) << x << " " << z;
       }
       // Beside the nearer cube, whose right edge is at x = 0.3, or 0.42 at the other's distance.
       if (x > 0.47f && x < 0.8f) {
         ++far;
-        const Vector3i color = pixel(image, int(behind.x()), int(behind.y()));
-        EXPECT_GT(color.z(), color.y() + 30) << x << " " << z;
+        const Rgb color = pixel(image, int(behind.x), int(behind.y));
+        EXPECT_GT(color.z, color.y + 30) << x << " " << z;
       }
     }
   EXPECT_GT(near, 50);
@@ -271,12 +271,12 @@ TEST_F(CutTest, ACutOfAConcaveBodyLeavesItsGapsOpen) {
   const Image image = drawn(renderer, scene, above);
   for (const float x : {-0.3f, 0.0f, 0.3f}) {
     // The line of sight goes on to the base at y = 0.2, and leaves the body through its lower side.
-    const Vector2f gap = pinhole(above, {x, -0.15f, 0.2f}, 160, 120);
-    EXPECT_TRUE(is_red(pixel(image, int(gap.x()), int(gap.y())))) << x;
+    const Vector2 gap = pinhole(above, {x, -0.15f, 0.2f}, 160, 120);
+    EXPECT_TRUE(is_red(pixel(image, int(gap.x), int(gap.y)))) << x;
   }
   for (const float x : {-0.75f, 0.75f}) {
-    const Vector2f arm = pinhole(above, {x, -0.1f, 0.2f}, 160, 120);
-    EXPECT_TRUE(is_green(pixel(image, int(arm.x()), int(arm.y())))) << x;
+    const Vector2 arm = pinhole(above, {x, -0.1f, 0.2f}, 160, 120);
+    EXPECT_TRUE(is_green(pixel(image, int(arm.x), int(arm.y)))) << x;
   }
 }
 

@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   Bounds bounds;
   const std::vector<Bounds> each = renderer.body_bounds();
   for (std::size_t i = 0; i < each.size(); ++i) bounds.extend(each[i].moved(group.placements[i].offset));
-  scene.floor = scene.surroundings == Surroundings::land ? bounds.low.z() : bounds.low.z() - 0.6f;
+  scene.floor = scene.surroundings == Surroundings::land ? bounds.low.z : bounds.low.z - 0.6f;
   Orbit orbit;
   orbit.azimuth = float(number("azimuth"));
   orbit.elevation = float(number("elevation"));
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     for (std::uint32_t b = 0; b < group.bodies.size(); ++b) {
       if (number("arrows") != 0)
         for (std::size_t m = renderer.mass_offsets()[b]; m < renderer.mass_offsets()[b + 1]; m += 7) {
-          const Eigen::Vector3f at(positions.data() + 3 * m);
+          const Vector3 at(positions.data() + 3 * m);
           arrows.push_back({b, at, 0.4f * at, rgb(m % 2 ? 0xffb000 : 0x56b4e9)});
         }
       for (float t = 0; t < 2; t += 0.02f)

@@ -25,9 +25,9 @@ class GhostTest : public Offscreen {
 };
 
 // The pixel of the middle of the triangle.
-Eigen::Vector3i middle_of(const Image& image) {
-  const Eigen::Vector2f at = pinhole(front(), {0.05f, 0, -0.05f}, width, height);
-  return pixel(image, int(at.x()), int(at.y()));
+Rgb middle_of(const Image& image) {
+  const Vector2 at = pinhole(front(), {0.05f, 0, -0.05f}, width, height);
+  return pixel(image, int(at.x), int(at.y));
 }
 
 int largest_change(const Image& a, const Image& b) {

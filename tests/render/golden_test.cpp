@@ -17,19 +17,19 @@ namespace {
 constexpr int width = 192, height = 108;
 
 // Lightness and two opponent colors (CIE 1976 L*a*b*, D65) of the mean light over a square of pixels.
-Eigen::Vector3f perceived(const Image& image, int x, int y, int side) {
-  Eigen::Vector3f sum(0, 0, 0);
+Vector3 perceived(const Image& image, int x, int y, int side) {
+  Vector3 sum(0, 0, 0);
   for (int dy = 0; dy < side; ++dy)
     for (int dx = 0; dx < side; ++dx) {
-      const Eigen::Vector3i p = pixel(image, x + dx, y + dy);
-      const auto light = linear_of({std::uint8_t(p.x()), std::uint8_t(p.y()), std::uint8_t(p.z()), 255});
-      sum += Eigen::Vector3f(light[0], light[1], light[2]);
+      const Rgb p = pixel(image, x + dx, y + dy);
+      const auto light = linear_of({std::uint8_t(p.x), std::uint8_t(p.y), std::uint8_t(p.z), 255});
+      sum += Vector3(light[0], light[1], light[2]);
     }
-  sum /= float(side * side);
+  sum *= 1 / float(side * side);
   const auto f = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116; };
-  const float fx = f((0.4124f * sum.x() + 0.3576f * sum.y() + 0.1805f * sum.z()) / 0.9505f);
-  const float fy = f(0.2126f * sum.x() + 0.7152f * sum.y() + 0.0722f * sum.z());
-  const float fz = f((0.0193f * sum.x() + 0.1192f * sum.y() + 0.9505f * sum.z()) / 1.089f);
+  const float fx = f((0.4124f * sum.x + 0.3576f * sum.y + 0.1805f * sum.z) / 0.9505f);
+  const float fy = f(0.2126f * sum.x + 0.7152f * sum.y + 0.0722f * sum.z);
+  const float fz = f((0.0193f * sum.x + 0.1192f * sum.y + 0.9505f * sum.z) / 1.089f);
   return {116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)};
 }
 

@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
+#include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "render/context.h"
 #include "render/readback.h"
 #include "render/renderer.h"
+#include "render/vector.h"
 
 namespace mercury::render {
 
@@ -51,13 +53,21 @@ class Offscreen : public testing::Test {
   Context* context_ = nullptr;
 };
 
-inline Eigen::Vector3i pixel(const Image& image, int x, int y) {
+// Red, green and blue of a pixel, or sums of them.
+struct Rgb {
+  int x = 0, y = 0, z = 0;
+  int sum() const { return x + y + z; }
+  Rgb& operator+=(const Rgb& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+inline Rgb pixel(const Image& image, int x, int y) {
   const std::size_t at = 3 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x));
   return {image.bytes[at], image.bytes[at + 1], image.bytes[at + 2]};
 }
 
-inline int largest_difference(const Eigen::Vector3i& a, const Eigen::Vector3i& b) {
-  return (a - b).cwiseAbs().maxCoeff();
+inline int largest_difference(const Rgb& a, const Rgb& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
 // The number of pixels that differ by more than `tolerance` steps in some channel.

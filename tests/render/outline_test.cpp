@@ -8,9 +8,6 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector2f;
-using Eigen::Vector3f;
-
 constexpr int width = 200, height = 150;
 constexpr float line = 3.6f;  // at most so far outside [pixels]
 
@@ -75,15 +72,15 @@ TEST_F(OutlineTest, IsAsWideAsItShouldBeOnEverySide) {
   const Image plain_image = with(renderer, plain(), false), marked = with(renderer, plain(), true);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto corner = [&](std::size_t j) {
-      return pinhole(front(), Vector3f(mesh.positions.data() + 3 * (j % 3)), width, height);
+      return pinhole(front(), Vector3(mesh.positions.data() + 3 * (j % 3)), width, height);
     };
-    const Vector2f middle = 0.5f * (corner(i) + corner(i + 1));
-    Vector2f out(corner(i + 1).y() - corner(i).y(), corner(i).x() - corner(i + 1).x());
-    out.normalize();
+    const Vector2 middle = 0.5f * (corner(i) + corner(i + 1));
+    Vector2 out(corner(i + 1).y - corner(i).y, corner(i).x - corner(i + 1).x);
+    out = (1 / out.norm()) * out;
     if (out.dot(corner(i + 2) - middle) > 0) out = -out;
     const auto change = [&](float off) {
-      const Vector2f at = middle + off * out;
-      return largest_difference(pixel(plain_image, int(at.x()), int(at.y())), pixel(marked, int(at.x()), int(at.y())));
+      const Vector2 at = middle + off * out;
+      return largest_difference(pixel(plain_image, int(at.x), int(at.y)), pixel(marked, int(at.x), int(at.y)));
     };
     EXPECT_GT(std::max({change(0.5f), change(1), change(1.5f)}), 60) << i;
     EXPECT_EQ(change(line + 1), 0) << i;
@@ -100,10 +97,10 @@ TEST_F(OutlineTest, FollowsACut) {
   renderer.set_bodies(std::array{mesh.body()});
   const Image plain_image = with(renderer, scene, false), marked = with(renderer, scene, true);
   expect_line_around(empty, plain_image, marked);
-  const Vector2f tip = pinhole(front(), {0.1f, 0, 0.8f}, width, height),
-                 edge = pinhole(front(), {0.1f, 0, 0}, width, height);
-  EXPECT_FALSE(any_near(plain_image, marked, int(tip.x()), int(tip.y()), 5)) << "what is cut away has no line";
-  EXPECT_TRUE(any_near(plain_image, marked, int(edge.x()), int(edge.y()) - 1, 1));
+  const Vector2 tip = pinhole(front(), {0.1f, 0, 0.8f}, width, height),
+                edge = pinhole(front(), {0.1f, 0, 0}, width, height);
+  EXPECT_FALSE(any_near(plain_image, marked, int(tip.x), int(tip.y), 5)) << "what is cut away has no line";
+  EXPECT_TRUE(any_near(plain_image, marked, int(edge.x), int(edge.y) - 1, 1));
 }
 
 TEST_F(OutlineTest, IsHiddenBehindNearerBodies) {
@@ -142,14 +139,14 @@ TEST_F(OutlineTest, CastsNoShadow) {
   renderer.set_bodies(std::array{mesh.body()});
   const Image plain_image = with(renderer, scene, false), marked = with(renderer, scene, true);
   // The body and its shadow: whatever changes lies at the body's silhouette, which the floor does not change.
-  std::array<Vector2f, 3> corners;
+  std::array<Vector2, 3> corners;
   for (std::size_t i = 0; i < 3; ++i)
-    corners[i] = pinhole(front(), Vector3f(mesh.positions.data() + 3 * i), width, height);
-  const auto distance_to_edges = [&](const Vector2f& p) {
+    corners[i] = pinhole(front(), Vector3(mesh.positions.data() + 3 * i), width, height);
+  const auto distance_to_edges = [&](const Vector2& p) {
     float nearest = 1e9f;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vector2f d = corners[(i + 1) % 3] - corners[i];
-      const float t = std::clamp((p - corners[i]).dot(d) / d.squaredNorm(), 0.0f, 1.0f);
+      const Vector2 d = corners[(i + 1) % 3] - corners[i];
+      const float t = std::clamp((p - corners[i]).dot(d) / d.dot(d), 0.0f, 1.0f);
       nearest = std::min(nearest, (corners[i] + t * d - p).norm());
     }
     return nearest;

@@ -8,8 +8,6 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-
 Overlay make_overlay() { return Overlay(640, 360, 16, style_of(Surroundings::water, Theme::dark)); }
 
 std::vector<Rectangle> boxes_of(const Overlay& overlay) {
@@ -19,7 +17,7 @@ std::vector<Rectangle> boxes_of(const Overlay& overlay) {
   return boxes;
 }
 
-Bounds box_at(float x, float y) { return {Vector3f(x - 0.1f, y - 0.1f, -0.1f), Vector3f(x + 0.1f, y + 0.1f, 0.1f)}; }
+Bounds box_at(float x, float y) { return {Vector3(x - 0.1f, y - 0.1f, -0.1f), Vector3(x + 0.1f, y + 0.1f, 0.1f)}; }
 
 TEST(Font, ReadsUtf8AndMarksBrokenBytes) {
   EXPECT_EQ(characters_of("a\u00e9\u03c0\U0001f916"), (std::vector<int>{'a', 0xe9, 0x3c0, 0x1f916}));
@@ -63,26 +61,26 @@ TEST(Overlay, LabelIsAboveItsBody) {
   overlay.labels(labels, bodies, orbit.camera());
   const std::vector<Rectangle> boxes = boxes_of(overlay);
   ASSERT_EQ(boxes.size(), 1u);
-  const Vector3f middle = orbit.camera().project({0, 0, 0}, 640, 360);
-  EXPECT_NEAR(boxes[0].x + boxes[0].width / 2, middle.x(), 1);
-  EXPECT_LT(boxes[0].y + boxes[0].height, middle.y());
+  const Vector3 middle = orbit.camera().project({0, 0, 0}, 640, 360);
+  EXPECT_NEAR(boxes[0].x + boxes[0].width / 2, middle.x, 1);
+  EXPECT_LT(boxes[0].y + boxes[0].height, middle.y);
 }
 
 TEST(Overlay, TextIsAlignedToItsPoint) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
-  const Vector3f point = orbit.camera().project({0.3f, 0, 0.2f}, 640, 360);
+  const Vector3 point = orbit.camera().project({0.3f, 0, 0.2f}, 640, 360);
   const auto middle_of = [&](float align_x) {
     Overlay overlay = make_overlay();
     const std::vector<Text> texts{{.at = {0.3f, 0, 0.2f}, .text = "HH", .align_x = align_x}};
     overlay.texts(texts, orbit.camera());
     const Rectangle &first = overlay.quads()[0].rectangle, &last = overlay.quads()[1].rectangle;
-    EXPECT_NEAR(first.y + first.height / 2, point.y(), 3);
+    EXPECT_NEAR(first.y + first.height / 2, point.y, 3);
     return (first.x + last.x + last.width) / 2;
   };
   const float width = text_width("HH", 16);
-  EXPECT_NEAR(middle_of(0.5f), point.x(), 1.5f);
-  EXPECT_NEAR(middle_of(0), point.x() + width / 2, 1.5f);
-  EXPECT_NEAR(middle_of(1), point.x() - width / 2, 1.5f);
+  EXPECT_NEAR(middle_of(0.5f), point.x, 1.5f);
+  EXPECT_NEAR(middle_of(0), point.x + width / 2, 1.5f);
+  EXPECT_NEAR(middle_of(1), point.x - width / 2, 1.5f);
 }
 
 TEST(Overlay, OfTwoOverlappingLabelsTheNearerStaysAboveItsBody) {
@@ -157,7 +155,7 @@ TEST(Overlay, ScaleBarHasTheLengthThatItShows) {
   for (const OverlayQuad& quad : overlay.quads())
     if (quad.kind == OverlayQuad::box && quad.source.x == 0) across = std::max(across, quad.rectangle.width);
   const float pixels_a_meter =
-      orbit.camera().project({1, 0, 0}, 640, 360).x() - orbit.camera().project({0, 0, 0}, 640, 360).x();
+      orbit.camera().project({1, 0, 0}, 640, 360).x - orbit.camera().project({0, 0, 0}, 640, 360).x;
   const float meters = across / pixels_a_meter;
   EXPECT_NEAR(meters, round_length(meters * 1.001f), 1e-3f);
 }

@@ -7,16 +7,13 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector2f;
-using Eigen::Vector3f;
-
 // The distance of a point from a triangle's edges in pixels, positive inside; corners in either order.
-float depth_inside(const Vector2f& point, const std::array<Vector2f, 3>& corners) {
-  const auto cross = [](const Vector2f& a, const Vector2f& b) { return a.x() * b.y() - a.y() * b.x(); };
+float depth_inside(const Vector2& point, const std::array<Vector2, 3>& corners) {
+  const auto cross = [](const Vector2& a, const Vector2& b) { return a.x * b.y - a.y * b.x; };
   const float sign = cross(corners[1] - corners[0], corners[2] - corners[0]) > 0 ? 1.0f : -1.0f;
   float inside = 1e9f;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vector2f edge = corners[(i + 1) % 3] - corners[i];
+    const Vector2 edge = corners[(i + 1) % 3] - corners[i];
     inside = std::min(inside, sign * cross(edge, point - corners[i]) / edge.norm());
   }
   return inside;
@@ -30,8 +27,8 @@ TEST_F(PlacementTest, ATriangleIsDrawnWhereTheCameraProjectsIt) {
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
   const Image image = drawn(renderer, plain());
-  std::array<Vector2f, 3> corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = pinhole(front(), Vector3f(mesh.positions.data() + 3 * i), 200, 150);
+  std::array<Vector2, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = pinhole(front(), Vector3(mesh.positions.data() + 3 * i), 200, 150);
   for (int y = 0; y < 150; ++y)
     for (int x = 0; x < 200; ++x) {
       const float inside = depth_inside({float(x) + 0.5f, float(y) + 0.5f}, corners);
@@ -86,10 +83,10 @@ TEST_F(PlacementTest, TheNearerBodyHidesTheFartherInEitherOrder) {
   a.face_materials = first;
   b.face_materials = second;
   renderer.set_bodies(std::array{a, b});
-  const Eigen::Vector3i near_color = pixel(drawn(renderer, scene), 80, 60);
+  const Rgb near_color = pixel(drawn(renderer, scene), 80, 60);
   renderer.set_bodies(std::array{b, a});
   EXPECT_LE(largest_difference(pixel(drawn(renderer, scene), 80, 60), near_color), 1);
-  EXPECT_GT(near_color.x(), near_color.z() + 80);
+  EXPECT_GT(near_color.x, near_color.z + 80);
 }
 
 TEST_F(PlacementTest, AHiddenBodyIsNotDrawn) {

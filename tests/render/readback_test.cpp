@@ -85,7 +85,10 @@ TEST_F(ReadbackTest, PlanesFollowTheStandard) {
   draw(renderer, 1);
   const Image rgb = read(renderer), yuv = read(renderer, PixelFormat::yuv420);
   ASSERT_EQ(yuv.bytes.size(), std::size_t(width * height * 3 / 2));
-  const auto channel = [&](int x, int y, int c) { return double(pixel(rgb, std::clamp(x, 0, width - 1), y)[c]) / 255; };
+  const auto channel = [&](int x, int y, int c) {
+    const Rgb color = pixel(rgb, std::clamp(x, 0, width - 1), y);
+    return double(c == 0 ? color.x : c == 1 ? color.y : color.z) / 255;
+  };
   const auto luma = [&](int x, int y) {
     return 0.2126 * channel(x, y, 0) + 0.7152 * channel(x, y, 1) + 0.0722 * channel(x, y, 2);
   };

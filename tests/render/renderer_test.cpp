@@ -12,8 +12,6 @@
 namespace mercury::render {
 namespace {
 
-using Eigen::Vector3f;
-
 class RendererTest : public Offscreen {};
 
 TEST_F(RendererTest, TheSameSceneGivesTheSamePicture) {
@@ -128,7 +126,7 @@ TEST_F(RendererTest, AThousandBodiesAreDrawnAsOneGroup) {
   renderer.set_bodies(bodies);
   Scene scene = plain();
   scene.placements = placements;
-  const Orbit orbit = top_view({Vector3f(0, 0, 0), Vector3f(20, 12.5f, 0.3f)}, 160.0f / 120);
+  const Orbit orbit = top_view({Vector3(0, 0, 0), Vector3(20, 12.5f, 0.3f)}, 160.0f / 120);
   const Image many = drawn(renderer, scene, orbit.camera());
   for (Placement& place : placements) place.hidden = &place != &placements[0];
   const Image one = drawn(renderer, scene, orbit.camera());

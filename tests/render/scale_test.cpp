@@ -2,6 +2,7 @@
 #include "render/scale.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include <cmath>
 #include <vector>
@@ -88,7 +89,8 @@ TEST_F(ScaleOnBodies, ShadersAndLegendsAgree) {
 }
 
 // Oklab of linear light (Ottosson 2020).
-Eigen::Vector3f oklab(const Eigen::Vector3f& rgb) {
+Eigen::Vector3f oklab(const Vector3& linear) {
+  const Eigen::Vector3f rgb(linear.x, linear.y, linear.z);
   Eigen::Matrix3f to_cones, to_lab;
   to_cones << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f, 0.6806995451f, 0.1073969566f, 0.0883024619f,
       0.2817188376f, 0.6299787005f;
@@ -104,7 +106,7 @@ TEST(Scale, LowEndsOfMapsDifferFromWater) {
       const Style style = style_of(Surroundings::water, theme, true);
       for (const float position : {0.0f, 0.05f, 0.1f}) {
         const auto low = linear_of(color_at(Colormap(map), position));
-        for (const Eigen::Vector3f& water : {style.backdrop_high, style.backdrop_low})
+        for (const Vector3& water : {style.backdrop_high, style.backdrop_low})
           EXPECT_GT((oklab({low[0], low[1], low[2]}) - oklab(water)).norm(), 0.12f)
               << name_of(Colormap(map)) << " " << position << " " << int(theme);
       }

@@ -68,14 +68,14 @@ TEST_F(SurroundingsTest, HazeJoinsGroundAndSkyAtTheHorizon) {
     const Image image = drawn(renderer, scene, Orbit{.target = {0, 0, 1}, .elevation = 0.02f, .distance = 6}.camera());
     // Neighboring rows differ little anywhere: there is no edge of the world.
     for (int y = 1; y < 120; ++y) {
-      Eigen::Vector3i above(0, 0, 0), below(0, 0, 0);
+      Rgb above, below;
       for (int x = 0; x < 160; ++x) {
         above += pixel(image, x, y - 1);
         below += pixel(image, x, y);
       }
-      EXPECT_LT((above - below).cwiseAbs().maxCoeff() / 160, 24) << "row " << y;
+      EXPECT_LT(largest_difference(above, below) / 160, 24) << "row " << y;
     }
-    const Eigen::Vector3i sky = pixel(image, 80, 2), haze = pixel(image, 80, 52);
+    const Rgb sky = pixel(image, 80, 2), haze = pixel(image, 80, 52);
     EXPECT_GT(largest_difference(sky, haze), 8) << "the sky is darker or bluer high up";
   }
 }

@@ -36,13 +36,12 @@ inline Image drawn(Renderer& renderer, const Scene& scene, const Camera& camera 
 }
 
 // An independent pinhole camera: similar triangles.
-inline Eigen::Vector2f pinhole(const Camera& camera, const Eigen::Vector3f& point, int width, int height) {
-  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
-  const Eigen::Vector3f right = Eigen::Vector3f(forward.y(), -forward.x(), 0).normalized();
-  const Eigen::Vector3f up(right.y() * forward.z() - right.z() * forward.y(),
-                           right.z() * forward.x() - right.x() * forward.z(),
-                           right.x() * forward.y() - right.y() * forward.x());
-  const Eigen::Vector3f p = point - camera.eye;
+inline Vector2 pinhole(const Camera& camera, const Vector3& point, int width, int height) {
+  const Vector3 forward = (camera.target - camera.eye).normalized();
+  const Vector3 right = Vector3(forward.y, -forward.x, 0).normalized();
+  const Vector3 up(right.y * forward.z - right.z * forward.y, right.z * forward.x - right.x * forward.z,
+                   right.x * forward.y - right.y * forward.x);
+  const Vector3 p = point - camera.eye;
   const float scale = float(height) / 2 / std::tan(camera.field_of_view / 2) / p.dot(forward);
   return {float(width) / 2 + scale * p.dot(right), float(height) / 2 - scale * p.dot(up)};
 }

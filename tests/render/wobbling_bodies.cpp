@@ -132,8 +132,8 @@ WobblingBody make_blob(int splits, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
   constexpr float g = 1.618034f;
-  std::vector<Eigen::Vector3f> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<Vector3> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                              {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   std::vector<std::uint32_t> faces{0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
                                    4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
                                    6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
@@ -152,19 +152,19 @@ WobblingBody make_blob(int splits, std::uint32_t seed) {
     }
     faces = finer;
   }
-  std::array<Eigen::Vector3f, 5> bumps;
-  for (Eigen::Vector3f& bump : bumps) bump = 2.5f * Eigen::Vector3f(normal(random), normal(random), normal(random));
+  std::array<Vector3, 5> bumps;
+  for (Vector3& bump : bumps) bump = 2.5f * Vector3(normal(random), normal(random), normal(random));
   WobblingBody body;
-  for (Eigen::Vector3f& point : points) {
-    point.normalize();
+  for (Vector3& point : points) {
+    point = point.normalized();
     float radius = 0.35f;
-    for (const Eigen::Vector3f& bump : bumps) radius += 0.045f * std::sin(bump.dot(point) + bump.x());
+    for (const Vector3& bump : bumps) radius += 0.045f * std::sin(bump.dot(point) + bump.x);
     for (int axis = 0; axis < 3; ++axis) body.rest.push_back(radius * point[axis] + 0.008f * normal(random));
   }
   body.faces = faces;
   for (std::size_t i = 0; i < faces.size(); i += 3) {
-    const Eigen::Vector3f at = points[faces[i]];
-    body.face_materials.push_back(std::uint32_t(7 * std::floor(3 + 2 * at.x()) + std::floor(3 + 2 * at.z())) % 22);
+    const Vector3 at = points[faces[i]];
+    body.face_materials.push_back(std::uint32_t(7 * std::floor(3 + 2 * at.x) + std::floor(3 + 2 * at.z)) % 22);
     for (std::size_t corner = 0; corner < 3; ++corner)
       if (faces[i + corner] < faces[i + (corner + 1) % 3]) {
         body.springs.insert(body.springs.end(), {faces[i + corner], faces[i + (corner + 1) % 3]});

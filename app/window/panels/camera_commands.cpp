@@ -32,13 +32,13 @@ struct End {
 };
 
 std::array<End, 6> ends_of(const render::Camera& camera, ImVec2 middle, float reach) {
-  const Eigen::Matrix4f view = camera.view();
+  const render::Matrix4 view = camera.view();
   std::array<End, 6> ends;
   for (int i = 0; i < 6; ++i) {
     const float sign = i % 2 == 0 ? 1.0f : -1.0f;
-    const Eigen::Vector3f seen = sign * view.block<3, 1>(0, i / 2);
+    const render::Vector3 seen = sign * view.column(i / 2);
     ends[static_cast<std::size_t>(i)] = {
-        i / 2, sign < 0, {middle.x + reach * seen.x(), middle.y - reach * seen.y()}, seen.z()};
+        i / 2, sign < 0, {middle.x + reach * seen.x, middle.y - reach * seen.y}, seen.z};
   }
   std::ranges::stable_sort(ends, {}, &End::depth);
   return ends;

@@ -41,11 +41,11 @@ struct Place {
 };
 Place place_of(const render::Bounds& box, const ViewportArea& area, const render::Camera& camera) {
   const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
-  Place place{camera.project(box.center(), width, height).x(), 0};
+  Place place{camera.project(box.center(), width, height).x, 0};
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f at((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
-                             (corner & 4) ? box.high.z() : box.low.z());
-    place.low = std::max(place.low, camera.project(at, width, height).y());
+    const render::Vector3 at((corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
+                             (corner & 4) ? box.high.z : box.low.z);
+    place.low = std::max(place.low, camera.project(at, width, height).y);
   }
   return place;
 }

@@ -33,9 +33,9 @@ std::optional<std::size_t> robot_with_handle(LiveScene& scene) {
   return std::nullopt;
 }
 
-ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
-  const Eigen::Vector3f p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
-  return {area.low.x + p.x(), area.low.y + p.y()};
+ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
+  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return {area.low.x + p.x, area.low.y + p.y};
 }
 
 // Where the mouse is on the line from `low` to `high`, in percent.

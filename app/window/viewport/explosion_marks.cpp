@@ -20,18 +20,18 @@ struct Line {
 };
 
 std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& area, const render::Camera& camera) {
-  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
-  const auto depth = [&](const Eigen::Vector3f& p) { return forward.dot(p - camera.eye) - camera.near; };
+  const render::Vector3 forward = (camera.target - camera.eye).normalized();
+  const auto depth = [&](const render::Vector3& p) { return forward.dot(p - camera.eye) - camera.near; };
   const float depth_a = depth(spring.at_a), depth_b = depth(spring.at_b);
   if (depth_a <= 0 && depth_b <= 0) return std::nullopt;
-  const Eigen::Vector3f along = spring.at_b - spring.at_a;
+  const render::Vector3 along = spring.at_b - spring.at_a;
   const float crossing = depth_a / (depth_a - depth_b);
-  const auto seen = [&](const Eigen::Vector3f& p) {
-    const Eigen::Vector3f at = camera.project(p, static_cast<int>(area.width()), static_cast<int>(area.height()));
-    return ImVec2(area.low.x + at.x(), area.low.y + at.y());
+  const auto seen = [&](const render::Vector3& p) {
+    const render::Vector3 at = camera.project(p, static_cast<int>(area.width()), static_cast<int>(area.height()));
+    return ImVec2(area.low.x + at.x, area.low.y + at.y);
   };
-  const auto end = [&](const Eigen::Vector3f& p, float d) {
-    return seen(d > 0 ? p : Eigen::Vector3f(spring.at_a + (crossing + (depth_a > 0 ? -1e-3f : 1e-3f)) * along));
+  const auto end = [&](const render::Vector3& p, float d) {
+    return seen(d > 0 ? p : render::Vector3(spring.at_a + (crossing + (depth_a > 0 ? -1e-3f : 1e-3f)) * along));
   };
   return Line{end(spring.at_a, depth_a), end(spring.at_b, depth_b), depth_a > 0, depth_b > 0};
 }

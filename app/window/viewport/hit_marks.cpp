@@ -7,16 +7,15 @@
 #include <cfloat>
 #include <string>
 
-#include "app/scene/eigen_vec3.h"
 #include "app/window/toolkit/theme.h"
 
 namespace mercury::window {
 namespace {
 
-std::optional<ImVec2> on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
-  const Eigen::Vector3f p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
-  if (!p.allFinite() || p.z() < camera.near) return std::nullopt;
-  return ImVec2(area.low.x + p.x(), area.low.y + p.y());
+std::optional<ImVec2> on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
+  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  if (!p.is_finite() || p.z < camera.near) return std::nullopt;
+  return ImVec2(area.low.x + p.x, area.low.y + p.y);
 }
 
 // Where a window of that size covers neither the two points nor the legend, if there is such a place.
@@ -46,7 +45,7 @@ std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const View
   const Robot& robot = *scene.pointed_snapshot().robots->robots[*index].robot;
   const std::span<const Vec3> positions = picture.positions_of(*index);
   const auto place = [&](std::uint16_t mass) {
-    return on_screen(area, camera, eigen(positions[mass]) + picture.offsets()[*index]);
+    return on_screen(area, camera, render::Vector3(positions[mass]) + picture.offsets()[*index]);
   };
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize(), thick = 0.16f * text, edge = 0.09f * text;

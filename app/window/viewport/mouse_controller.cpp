@@ -29,12 +29,12 @@ render::Ray ray_at(const ViewportArea& area, const render::Camera& camera, ImVec
                     static_cast<int>(area.height()));
 }
 
-ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const Eigen::Vector3f& point) {
-  const Eigen::Vector3f p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
-  return {area.low.x + p.x(), area.low.y + p.y()};
+ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
+  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return {area.low.x + p.x, area.low.y + p.y};
 }
 
-Eigen::Vector3f forward_of(const render::Camera& camera) { return (camera.target - camera.eye).normalized(); }
+render::Vector3 forward_of(const render::Camera& camera) { return (camera.target - camera.eye).normalized(); }
 
 std::string force_text(float newtons) {
   return newtons >= 1000 ? fmt::format("{:.3g} kN", newtons / 1000) : fmt::format("{:.3g} N", newtons);
@@ -84,9 +84,8 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
       pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
       scene_.begin_perturbation(*hit);
       scene_.select(hit->robot);
-      log_.write(
-          "pull",
-          {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x(), hit->point.y(), hit->point.z()}}});
+      log_.write("pull",
+                 {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x, hit->point.y, hit->point.z}}});
     }
     return;
   }
@@ -114,9 +113,9 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
 void MouseController::release(const ViewportArea& area, const render::Camera& camera) {
   if (drag_ == Drag::pull) {
     if (const auto pull = scene_.perturbation())
-      log_.write("pulled", {{"force", pull->force},
-                            {"at", {pull->at.x(), pull->at.y(), pull->at.z()}},
-                            {"stays", ImGui::GetIO().KeyShift}});
+      log_.write(
+          "pulled",
+          {{"force", pull->force}, {"at", {pull->at.x, pull->at.y, pull->at.z}}, {"stays", ImGui::GetIO().KeyShift}});
     if (ImGui::GetIO().KeyShift)
       scene_.attach_perturbation();
     else

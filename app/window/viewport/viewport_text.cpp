@@ -48,7 +48,7 @@ void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bou
     requests.push_back({.body = *body,
                         .width = size.x + 2 * margin,
                         .height = size.y + 1.2f * margin,
-                        .depth = camera.project(bounds[label.body].center(), width, height).z(),
+                        .depth = camera.project(bounds[label.body].center(), width, height).z,
                         .priority = label.priority,
                         .forced = label.forced || label.body == hovered});
   }

@@ -26,7 +26,7 @@ class Attachments : public test::FolderTest {
     const std::vector<RobotId> ids = ids_of(scene);
     scene.pin({.robot = ids[0], .index = 0, .mass = 4});
     scene.begin_perturbation({.robot = ids[1], .index = 1, .mass = 3}, 25);
-    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.5f, -0.25f, 0));
+    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.5f, -0.25f, 0));
     scene.attach_perturbation();
     scene.wait_until_done();
   }

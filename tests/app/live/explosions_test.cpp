@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "app/scene/eigen_vec3.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 
@@ -77,13 +76,15 @@ TEST(LiveExplosion, UnstableSpringAmongSeparatePairsIsShown) {
   EXPECT_EQ(spring.b, 4);
   EXPECT_EQ(spring.figures.material_name, "unstable");
   EXPECT_GT(spring.figures.length, 16 * length);
-  const Eigen::Vector3f offset = scene.picture().offsets()[0];
-  EXPECT_EQ(spring.at_a, Eigen::Vector3f(eigen(scene.snapshot().positions_of(0)[5]) + offset));
-  EXPECT_EQ(spring.at_b, Eigen::Vector3f(eigen(scene.snapshot().positions_of(0)[4]) + offset));
+  const render::Vector3 offset = scene.picture().offsets()[0];
+  EXPECT_EQ(spring.at_a, render::Vector3(render::Vector3(scene.snapshot().positions_of(0)[5]) + offset));
+  EXPECT_EQ(spring.at_b, render::Vector3(render::Vector3(scene.snapshot().positions_of(0)[4]) + offset));
   EXPECT_FLOAT_EQ((spring.at_b - spring.at_a).norm(), spring.figures.length);
-  for (const Eigen::Vector3f& end : {spring.at_a, spring.at_b}) {
-    EXPECT_TRUE((end.array() > spring.surroundings.low.array()).all());
-    EXPECT_TRUE((end.array() < spring.surroundings.high.array()).all());
+  for (const render::Vector3& end : {spring.at_a, spring.at_b}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GT(end[axis], spring.surroundings.low[axis]);
+      EXPECT_LT(end[axis], spring.surroundings.high[axis]);
+    }
   }
 }
 
@@ -134,7 +135,7 @@ TEST(LiveExplosion, SpringAndPlaceInAChainAreThoseOfASimpleLoop) {
     const CulpritSpring& spring = *exploded[0].spring;
     EXPECT_EQ(spring.index, loop.spring) << unstable;
     const float expected = static_cast<float>(loop.positions[spring.b] - loop.positions[spring.a]);
-    EXPECT_NEAR((spring.at_b - spring.at_a).x(), expected, 0.02f * std::abs(expected)) << unstable;
+    EXPECT_NEAR((spring.at_b - spring.at_a).x, expected, 0.02f * std::abs(expected)) << unstable;
   }
 }
 
@@ -152,8 +153,8 @@ TEST(LiveExplosion, SeveralExplosionsAreSortedByTime) {
   EXPECT_LT(exploded[0].time, exploded[2].time);
   for (const ExplodedRobot& one : exploded) {
     ASSERT_TRUE(one.spring);
-    const Eigen::Vector3f offset = scene.picture().offsets()[one.index];
-    EXPECT_EQ(Eigen::Vector3f(one.spring->at_a - offset).y(), 0) << "the chain lies on a line";
+    const render::Vector3 offset = scene.picture().offsets()[one.index];
+    EXPECT_EQ((one.spring->at_a - offset).y, 0) << "the chain lies on a line";
     EXPECT_TRUE(scene.picture().scene().placements[one.index].faulty);
   }
   scene.set_hidden(ids[3], true);

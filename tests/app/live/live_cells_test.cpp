@@ -4,22 +4,21 @@
 
 #include <chrono>
 
-#include "app/scene/eigen_vec3.h"
 #include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
 namespace {
 
-using Eigen::Vector3f;
+using render::Vector3;
 using test::ids_of;
 using test::make_robots;
 using test::on_cpu;
 
 // Where the center of mass of a robot is drawn.
-Vector3f shown(LiveScene& scene, std::size_t robot) {
-  Vector3f sum = Vector3f::Zero();
+Vector3 shown(LiveScene& scene, std::size_t robot) {
+  Vector3 sum = Vector3::all(0);
   const auto positions = scene.picture().positions_of(robot);
-  for (const Vec3 p : positions) sum += eigen(p);
+  for (const Vec3 p : positions) sum += Vector3(p);
   return sum / static_cast<float>(positions.size()) + scene.picture().offsets()[robot];
 }
 
@@ -36,27 +35,27 @@ TEST_P(Cells, ARobotThatMovesStaysAndIsPickedWhereItIsDrawn) {
   make_robots(scene_, 3);
   scene_.step(1);
   scene_.wait_until_done();
-  const Vector3f before = shown(scene_, 1), offset = scene_.picture().offsets()[1];
+  const Vector3 before = shown(scene_, 1), offset = scene_.picture().offsets()[1];
   scene_.step(2000);
   scene_.wait_until_done();
-  const Vector3f after = shown(scene_, 1);
-  EXPECT_LT((after - before).head<2>().norm(), 1e-3f);
+  const Vector3 after = shown(scene_, 1);
+  EXPECT_LT((after - before).xy().norm(), 1e-3f);
   EXPECT_GT((scene_.picture().offsets()[1] - offset).norm(), 1e-3f) << "it has moved";
-  const auto hit = scene_.pick({after + Vector3f(0, 0, 50), -Vector3f::UnitZ()});
+  const auto hit = scene_.pick({after + Vector3(0, 0, 50), -Vector3::unit(2)});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->robot, ids_of(scene_)[1]);
-  EXPECT_LT((hit->point - after).head<2>().norm(), 1e-4f);
+  EXPECT_LT((hit->point - after).xy().norm(), 1e-4f);
 }
 
 TEST_P(Cells, APulledRobotFollowsTheMouseAndReturnsToItsCell) {
   make_robots(scene_, 2);
   scene_.step(300);
   scene_.wait_until_done();
-  const Vector3f cell = shown(scene_, 0);
+  const Vector3 cell = shown(scene_, 0);
   scene_.begin_perturbation({.robot = ids_of(scene_)[0], .index = 0, .mass = 1});
   scene_.frame();
-  const Vector3f offset = scene_.picture().offsets()[0];
-  const Vector3f target = scene_.perturbation()->at + Vector3f(0.4f, 0.2f, 0.1f);
+  const Vector3 offset = scene_.picture().offsets()[0];
+  const Vector3 target = scene_.perturbation()->at + Vector3(0.4f, 0.2f, 0.1f);
   scene_.move_perturbation(target);
   scene_.step(300);
   scene_.wait_until_done();
@@ -65,9 +64,8 @@ TEST_P(Cells, APulledRobotFollowsTheMouseAndReturnsToItsCell) {
   EXPECT_GT((shown(scene_, 0) - cell).norm(), 1e-3f);
   scene_.end_perturbation();
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while ((shown(scene_, 0) - cell).head<2>().norm() > 1e-3f && std::chrono::steady_clock::now() < deadline)
-    scene_.frame();
-  EXPECT_LT((shown(scene_, 0) - cell).head<2>().norm(), 1e-3f);
+  while ((shown(scene_, 0) - cell).xy().norm() > 1e-3f && std::chrono::steady_clock::now() < deadline) scene_.frame();
+  EXPECT_LT((shown(scene_, 0) - cell).xy().norm(), 1e-3f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Everywhere, Cells, testing::Values("ocean", "land"),

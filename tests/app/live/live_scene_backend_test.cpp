@@ -92,7 +92,7 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
   scene.step(50);
   scene.wait_until_done();
   scene.begin_perturbation({.robot = robot, .index = 1, .mass = 2}, 30);
-  scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.3f, 0, 0));
+  scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
   scene.step(50);
   scene.wait_until_done();
   Configuration coarse = scene.configuration();

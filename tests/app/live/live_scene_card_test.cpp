@@ -136,7 +136,7 @@ TEST_P(LiveSceneOnCard, PicksTheSameRobots) {
     scene.step(200);
   });
   const render::Bounds& target = on_host_->picture().bounds()[2];
-  const Eigen::Vector3f eye = target.center() + Eigen::Vector3f(0, -5, 0);
+  const render::Vector3 eye = target.center() + render::Vector3(0, -5, 0);
   const render::Ray ray{.origin = eye, .direction = {0, 1, 0}};
   const auto from_card = on_card_->pick(ray), from_host = on_host_->pick(ray);
   ASSERT_EQ(from_card.has_value(), from_host.has_value());

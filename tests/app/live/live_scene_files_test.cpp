@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
@@ -54,14 +52,14 @@ class LiveFiles : public test::FolderTest {
     std::vector<std::string> words = words_of(line);
     EXPECT_THAT(std::vector(words.begin(), words.begin() + 2), ElementsAre("mercury", "view"));
     words.erase(words.begin(), words.begin() + 2);
-    CLI::App app;
+    const CommandTree tree;
     RobotOptions robots;
     SimulationOptions simulation;
     ViewOptions view;
-    robots.add_to(app);
-    simulation.add_to(app);
-    view.add_to(app);
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    robots.add_to(tree.root());
+    simulation.add_to(tree.root());
+    view.add_to(tree.root());
+    tree.parse(words);
     std::vector<Robot> copies;
     for (const auto& robot : robots.load({}).robots) copies.push_back(*robot);
     return {std::move(copies), simulation.configuration(), view.settings()};

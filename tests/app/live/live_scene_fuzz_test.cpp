@@ -68,7 +68,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
     return wanted;
   }
   render::Ray ray() {
-    return {.origin = {number(), number(), 3}, .direction = Eigen::Vector3f(number(), number(), -1).normalized()};
+    return {.origin = {number(), number(), 3}, .direction = render::Vector3(number(), number(), -1).normalized()};
   }
 
   void act() {

@@ -107,7 +107,7 @@ TEST(LiveScene, AnAttachedSpringGoesOnPulling) {
   const Vec3 start = scene.snapshot().telemetry[0].center_of_mass;
   scene.begin_perturbation({.robot = id, .index = 0, .mass = 4});
   const PerturbationDetails pull = scene.perturbation().value();
-  scene.move_perturbation(pull.at + Eigen::Vector3f(2, 0, 0));
+  scene.move_perturbation(pull.at + render::Vector3(2, 0, 0));
   scene.attach_perturbation();
   EXPECT_FALSE(scene.perturbation());
   ASSERT_THAT(scene.attachments(), testing::SizeIs(1));

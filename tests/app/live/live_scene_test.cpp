@@ -217,12 +217,12 @@ TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
   make_robots(scene, 4);
   const std::size_t last = 3;
   const RobotId id = ids_of(scene)[last];
-  const Eigen::Vector3f offset = scene.picture().offsets()[last];
+  const render::Vector3 offset = scene.picture().offsets()[last];
   EXPECT_GT(offset.norm(), 0.1f) << "the robots stand side by side";
   scene.begin_perturbation({.robot = id, .index = last, .mass = 2}, 30);
   ASSERT_TRUE(scene.perturbation());
   EXPECT_EQ(scene.perturbation()->force, 0);
-  const Eigen::Vector3f target = scene.perturbation()->at + Eigen::Vector3f(0, 0.3f, 0.4f);
+  const render::Vector3 target = scene.perturbation()->at + render::Vector3(0, 0.3f, 0.4f);
   scene.move_perturbation(target);
   EXPECT_NEAR(scene.perturbation()->force, 30 * 0.5f, 1e-4f);
   EXPECT_LT((scene.perturbation()->target - target).norm(), 1e-6f);

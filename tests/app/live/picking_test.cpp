@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "app/scene/eigen_vec3.h"
 #include "mercury/random.h"
 #include "tests/app/live/live_scene_setup.h"
 
@@ -14,13 +13,15 @@ namespace mercury {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::Vector3f;
+using render::Vector3;
+
+Vector3d exact(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 // Intersects a triangle by solving for barycentric coordinates and distance in double precision.
 std::optional<double> crossing(const render::Ray& ray, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   Eigen::Matrix3d columns;
-  columns << b - a, c - a, -ray.direction.cast<double>();
-  const Vector3d right = ray.origin.cast<double>() - a;
+  columns << b - a, c - a, -exact(ray.direction);
+  const Vector3d right = exact(ray.origin) - a;
   const double determinant = columns.determinant();
   if (std::abs(determinant) < 1e-12) return std::nullopt;
   Vector3d solution;
@@ -43,12 +44,12 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
   int met = 0;
   for (int shot = 0; shot < 400; ++shot) {
     const std::size_t aim = random.below(snapshot.robots->size());
-    const Vector3f target = eigen(snapshot.positions_of(aim)[random.below(snapshot.positions_of(aim).size())]) +
-                            scene.picture().offsets()[aim];
+    const Vector3 target = Vector3(snapshot.positions_of(aim)[random.below(snapshot.positions_of(aim).size())]) +
+                           scene.picture().offsets()[aim];
     render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)),
                                static_cast<float>(random.uniform(-5, 5))}};
-    const Vector3f jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
-                          static_cast<float>(random.uniform(-0.2, 0.2)));
+    const Vector3 jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
+                         static_cast<float>(random.uniform(-0.2, 0.2)));
     ray.direction = (target + jitter - ray.origin).normalized();
     double nearest = INFINITY, second = INFINITY;
     std::size_t robot = 0;
@@ -56,7 +57,7 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
     for (std::size_t i = 0; i < snapshot.robots->size(); ++i) {
       const auto& faces = snapshot.robots->robots[i].robot->faces;
       const auto place = [&](std::uint16_t mass) -> Vector3d {
-        return (eigen(snapshot.positions_of(i)[mass]) + scene.picture().offsets()[i]).cast<double>();
+        return exact(Vector3(snapshot.positions_of(i)[mass]) + scene.picture().offsets()[i]);
       };
       for (std::uint32_t f = 0; f < faces.size(); ++f) {
         const auto t = crossing(ray, place(faces[f].a), place(faces[f].b), place(faces[f].c));
@@ -97,9 +98,9 @@ TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
   LiveScene scene(test::on_cpu(OceanSimple{.stiffness_scale = 3}));
   scene.add({two_springs()});
   scene.wait_until_done();
-  const Vector3f offset = scene.picture().offsets()[0];
+  const Vector3 offset = scene.picture().offsets()[0];
   const auto from_above = [&](float x, float y) {
-    return render::Ray{.origin = offset + Vector3f(x, y, 2), .direction = {0, 0, -1}};
+    return render::Ray{.origin = offset + Vector3(x, y, 2), .direction = {0, 0, -1}};
   };
   const auto hit = pick(scene.snapshot(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
   ASSERT_TRUE(hit);
@@ -122,7 +123,7 @@ TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 1);
   const render::Bounds box = scene.picture().bounds()[0];
-  const render::Ray ray{.origin = box.center() + Vector3f(0, 0, 5), .direction = {0, 0, -1}};
+  const render::Ray ray{.origin = box.center() + Vector3(0, 0, 5), .direction = {0, 0, -1}};
   const auto hit = scene.pick(ray);
   ASSERT_TRUE(hit);
   ViewSettings view = scene.view();

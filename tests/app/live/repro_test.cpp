@@ -33,7 +33,7 @@ class LiveRepro : public test::FolderTest {
     const std::size_t index = *scene.snapshot().robots->index_of(robot);
     scene.begin_perturbation({.robot = robot, .index = index, .mass = 3}, 40);
     for (int i = 0; i < 5; ++i) {
-      scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.1f * static_cast<float>(i), 0.2f, 0));
+      scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.1f * static_cast<float>(i), 0.2f, 0));
       step(7);
     }
     Material muscle = scene.materials(robot)[2];

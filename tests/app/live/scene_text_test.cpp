@@ -98,7 +98,7 @@ std::vector<ViewSettings> views() {
                 .elevation = 0.123456f,
                 .zoom = 1.5f,
                 .field_of_view = 0.55f,
-                .target = Eigen::Vector3f(1, -1e-5f, 0.3f),
+                .target = render::Vector3(1, -1e-5f, 0.3f),
                 .distance = 12.25f};
   });
   add([](ViewSettings& v) { v.camera = {.mode = CameraMode::follow, .robot = "the \\ eel"}; });
@@ -147,7 +147,7 @@ TEST_F(SceneText, RobotsComeBackInTheirOrder) {
   ASSERT_TRUE(scene.set_material({ids_of(scene)[1]}, 1, stiff));
   ViewSettings view = scene.view();
   view.color = &color_quantity("strain");
-  view.camera = {.mode = CameraMode::still, .azimuth = 0.5f, .target = Eigen::Vector3f(1, 2, 3), .distance = 4};
+  view.camera = {.mode = CameraMode::still, .azimuth = 0.5f, .target = render::Vector3(1, 2, 3), .distance = 4};
   scene.set_view(view);
   std::filesystem::create_directory(folder_ / "scenes");
   const std::string file = path("scenes/both.toml");

@@ -70,10 +70,10 @@ class TimelineOn : public BackendTest {
     make_steps(scene, 40);
     keep();
     scene.begin_perturbation({.robot = robots[0], .index = 0, .mass = 2}, 30);
-    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0.3f, 0, 0));
+    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
     make_steps(scene, 25);
     keep();
-    scene.move_perturbation(scene.perturbation()->at + Eigen::Vector3f(0, 0.4f, 0));
+    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0, 0.4f, 0));
     make_steps(scene, 10);
     scene.end_perturbation();
     Configuration configuration = scene.configuration();

@@ -14,12 +14,11 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-ParameterValues parsed(std::vector<std::string> arguments) {
-  CLI::App app;
+ParameterValues parsed(const std::vector<std::string>& arguments) {
+  const CommandTree tree;
   GeneratorOptions options;
-  options.add_to(app);
-  std::reverse(arguments.begin(), arguments.end());
-  app.parse(arguments);
+  options.add_to(tree.root());
+  tree.parse(arguments);
   return options.values();
 }
 

@@ -46,12 +46,12 @@ void for_each_change(const Test& test) {
 }
 
 Configuration parsed(const OptionValues& options) {
-  CLI::App app;
+  const CommandTree tree;
   SimulationOptions simulation;
-  simulation.add_to(app);
+  simulation.add_to(tree.root());
   std::vector<std::string> arguments;
   for (const auto& [name, value] : options) arguments.push_back(value.empty() ? name : name + "=" + value);
-  app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  tree.parse(arguments);
   return simulation.configuration();
 }
 

@@ -15,15 +15,14 @@ namespace {
 
 class RobotOptionsTest : public FolderTest {
  protected:
-  RobotOptionsTest() { options_.add_to(app_); }
-  const RobotOptions& parsed(std::vector<std::string> arguments) {
-    std::ranges::reverse(arguments);
-    app_.parse(arguments);
+  RobotOptionsTest() { options_.add_to(tree_.root()); }
+  const RobotOptions& parsed(const std::vector<std::string>& arguments) {
+    tree_.parse(arguments);
     return options_;
   }
 
  private:
-  CLI::App app_;
+  CommandTree tree_;
   RobotOptions options_;
 };
 

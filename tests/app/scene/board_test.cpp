@@ -18,8 +18,8 @@ constexpr float aspect = 16.0f / 9;
 
 Bounds box(float x, float y, float z) {
   Bounds bounds;
-  bounds.extend(Eigen::Vector3f(3, 4, 5));
-  bounds.extend(Eigen::Vector3f(3 + x, 4 + y, 5 + z));
+  bounds.extend(render::Vector3(3, 4, 5));
+  bounds.extend(render::Vector3(3 + x, 4 + y, 5 + z));
   return bounds;
 }
 
@@ -46,12 +46,12 @@ struct PlacedBoard {
     for (std::size_t i = 0; i < robots.size(); ++i) moved.push_back(robots[i].moved(placement.offsets[i]));
     camera = controller.at(moved, 0);
   }
-  Eigen::Vector3f seen(const Eigen::Vector3f& point) const { return camera.project(point, width, height); }
+  render::Vector3 seen(const render::Vector3& point) const { return camera.project(point, width, height); }
   // The rectangle of a tile in the picture: left, upper, right and lower end.
-  Eigen::Vector4f rectangle(const render::Tile& tile) const {
-    const Eigen::Vector3f upper_left = seen(tile.center - tile.half_width + tile.half_height),
+  render::Vector4 rectangle(const render::Tile& tile) const {
+    const render::Vector3 upper_left = seen(tile.center - tile.half_width + tile.half_height),
                           lower_right = seen(tile.center + tile.half_width - tile.half_height);
-    return {upper_left.x(), upper_left.y(), lower_right.x(), lower_right.y()};
+    return {upper_left.x, upper_left.y, lower_right.x, lower_right.y};
   }
 };
 
@@ -59,19 +59,19 @@ TEST(Board, TilesAreRectanglesInRowsInsideThePicture) {
   const PlacedBoard placed;
   ASSERT_EQ(placed.placement.tiles.size(), 12u);
   for (std::size_t i = 0; i < 12; ++i) {
-    const Eigen::Vector4f r = placed.rectangle(placed.placement.tiles[i]);
-    EXPECT_GT(r[0], 0);
-    EXPECT_GT(r[1], 0);
-    EXPECT_LT(r[2], width);
-    EXPECT_LT(r[3], height);
+    const render::Vector4 r = placed.rectangle(placed.placement.tiles[i]);
+    EXPECT_GT(r.x, 0);
+    EXPECT_GT(r.y, 0);
+    EXPECT_LT(r.z, width);
+    EXPECT_LT(r.w, height);
     if (i % 4 != 3) {  // the next one is to the right, at the same height and of the same size
-      const Eigen::Vector4f next = placed.rectangle(placed.placement.tiles[i + 1]);
-      EXPECT_GT(next[0], r[2]);
-      EXPECT_NEAR(next[1], r[1], 1);
-      EXPECT_NEAR(next[2] - next[0], r[2] - r[0], 1);
+      const render::Vector4 next = placed.rectangle(placed.placement.tiles[i + 1]);
+      EXPECT_GT(next.x, r.z);
+      EXPECT_NEAR(next.y, r.y, 1);
+      EXPECT_NEAR(next.z - next.x, r.z - r.x, 1);
     }
     if (i < 8) {
-      EXPECT_GT(placed.rectangle(placed.placement.tiles[i + 4])[1], r[3]);
+      EXPECT_GT(placed.rectangle(placed.placement.tiles[i + 4]).y, r.w);
     }
   }
 }
@@ -80,17 +80,17 @@ TEST(Board, EachRobotIsInItsCellBeforeTheTile) {
   const PlacedBoard placed;
   for (std::size_t i = 0; i < placed.robots.size(); ++i) {
     const render::Tile& tile = placed.placement.tiles[placed.board.cell_of[i]];
-    const Eigen::Vector4f r = placed.rectangle(tile);
+    const render::Vector4 r = placed.rectangle(tile);
     const Bounds robot = placed.robots[i].moved(placed.placement.offsets[i]);
     for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3f point =
-          placed.seen({corner & 1 ? robot.high.x() : robot.low.x(), corner & 2 ? robot.high.y() : robot.low.y(),
-                       corner & 4 ? robot.high.z() : robot.low.z()});
-      EXPECT_GT(point.x(), r[0]);
-      EXPECT_LT(point.x(), r[2]);
-      EXPECT_GT(point.y(), r[1]);
-      EXPECT_LT(point.y(), r[3]);
-      EXPECT_LE(point.z(), placed.seen(tile.center).z() * 1.001f);
+      const render::Vector3 point =
+          placed.seen({corner & 1 ? robot.high.x : robot.low.x, corner & 2 ? robot.high.y : robot.low.y,
+                       corner & 4 ? robot.high.z : robot.low.z});
+      EXPECT_GT(point.x, r.x);
+      EXPECT_LT(point.x, r.z);
+      EXPECT_GT(point.y, r.y);
+      EXPECT_LT(point.y, r.w);
+      EXPECT_LE(point.z, placed.seen(tile.center).z * 1.001f);
     }
   }
 }
@@ -109,16 +109,16 @@ TEST(Board, TicksAreAtTheBordersOfCells) {
     for (const render::Text& t : placed.placement.texts)
       if (t.text == text && (t.align_y == 0) == across) return placed.seen(t.at);
     ADD_FAILURE() << text;
-    return Eigen::Vector3f(0, 0, 0);
+    return render::Vector3(0, 0, 0);
   };
   const auto& tiles = placed.placement.tiles;
-  const float border = 0.5f * (placed.rectangle(tiles[8])[2] + placed.rectangle(tiles[9])[0]);
-  EXPECT_NEAR(place_of("1", true).x(), border, 1);
-  EXPECT_GT(place_of("1", true).y(), placed.rectangle(tiles[8])[3]);
+  const float border = 0.5f * (placed.rectangle(tiles[8]).z + placed.rectangle(tiles[9]).x);
+  EXPECT_NEAR(place_of("1", true).x, border, 1);
+  EXPECT_GT(place_of("1", true).y, placed.rectangle(tiles[8]).w);
   // The lowest row is the first of the axis that goes up.
-  const float level = 0.5f * (placed.rectangle(tiles[8])[1] + placed.rectangle(tiles[4])[3]);
-  EXPECT_NEAR(place_of("1", false).y(), level, 1);
-  EXPECT_LT(place_of("1", false).x(), placed.rectangle(tiles[8])[0]);
+  const float level = 0.5f * (placed.rectangle(tiles[8]).y + placed.rectangle(tiles[4]).w);
+  EXPECT_NEAR(place_of("1", false).y, level, 1);
+  EXPECT_LT(place_of("1", false).x, placed.rectangle(tiles[8]).x);
 }
 
 }  // namespace

@@ -18,10 +18,10 @@ using render::Bounds;
 constexpr int width = 1280, height = 720;
 constexpr double tick = 1.0 / 30;
 
-Bounds box(Eigen::Vector3f middle, float half) {
+Bounds box(render::Vector3 middle, float half) {
   Bounds bounds;
-  bounds.extend(middle - Eigen::Vector3f::Constant(half));
-  bounds.extend(middle + Eigen::Vector3f::Constant(half));
+  bounds.extend(middle - render::Vector3::all(half));
+  bounds.extend(middle + render::Vector3::all(half));
   return bounds;
 }
 
@@ -38,11 +38,10 @@ float fill_of(const render::Camera& camera, const std::vector<Bounds>& boxes) {
   float fill = 0;
   for (const Bounds& b : boxes)
     for (int i = 0; i < 8 && !b.empty(); ++i) {
-      const Eigen::Vector3f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(),
-                                   i & 4 ? b.high.z() : b.low.z());
-      const Eigen::Vector3f pixel = camera.project(corner, width, height);
-      EXPECT_GT(pixel.z(), 0) << "behind the eye";
-      fill = std::max({fill, std::abs(pixel.x() / width * 2 - 1), std::abs(1 - pixel.y() / height * 2)});
+      const render::Vector3 corner(i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z);
+      const render::Vector3 pixel = camera.project(corner, width, height);
+      EXPECT_GT(pixel.z, 0) << "behind the eye";
+      fill = std::max({fill, std::abs(pixel.x / width * 2 - 1), std::abs(1 - pixel.y / height * 2)});
     }
   return fill;
 }
@@ -75,10 +74,10 @@ INSTANTIATE_TEST_SUITE_P(CameraController, GroupInView, testing::Values(CameraMo
 TEST(CameraController, MovesSmoothly) {
   std::vector<Bounds> boxes = scattered(2, 2);
   CameraController camera({}, {}, {});
-  Eigen::Vector3f before = camera.at(boxes, tick).eye;
+  render::Vector3 before = camera.at(boxes, tick).eye;
   boxes[0] = boxes[0].moved({0.05f, 0, 0});  // less than the margin, so that the camera need not catch up at once
   for (int frame = 0; frame < 100; ++frame) {
-    const Eigen::Vector3f eye = camera.at(boxes, tick).eye;
+    const render::Vector3 eye = camera.at(boxes, tick).eye;
     EXPECT_LT((eye - before).norm(), 0.02f);
     before = eye;
   }
@@ -89,7 +88,7 @@ TEST(CameraController, MovesSmoothly) {
 TEST(CameraController, EmptyBoxesAreIgnored) {
   std::vector<Bounds> boxes = scattered(3, 2);
   CameraController without({}, {}, {}), with({}, {}, {});
-  const Eigen::Vector3f eye = without.at(boxes, 0).eye;
+  const render::Vector3 eye = without.at(boxes, 0).eye;
   boxes.push_back({});
   EXPECT_EQ(with.at(boxes, 0).eye, eye);
 }
@@ -97,7 +96,7 @@ TEST(CameraController, EmptyBoxesAreIgnored) {
 TEST(CameraController, TopLooksStraightDown) {
   CameraController camera({.mode = CameraMode::top}, {}, {});
   const render::Camera view = camera.at(scattered(4, 2), 0);
-  EXPECT_NEAR((view.eye - view.target).normalized().z(), 1, 1e-5);
+  EXPECT_NEAR((view.eye - view.target).normalized().z, 1, 1e-5);
 }
 
 TEST(CameraController, FollowKeepsItsDistanceToTheRobot) {
@@ -126,7 +125,7 @@ TEST(CameraController, UnknownRobotToFollowThrows) {
 TEST(CameraController, TurntableTurnsOncePerPeriodWithAllRobotsInView) {
   const std::vector<Bounds> boxes = scattered(5, 1);
   CameraController camera({.mode = CameraMode::turntable, .period = 2}, {}, {});
-  const Eigen::Vector3f start = camera.at(boxes, 0.1).eye;
+  const render::Vector3 start = camera.at(boxes, 0.1).eye;
   float farthest = 0;
   for (int frame = 0; frame < 19; ++frame) {
     const render::Camera view = camera.at(boxes, 0.1);
@@ -139,11 +138,11 @@ TEST(CameraController, TurntableTurnsOncePerPeriodWithAllRobotsInView) {
 
 TEST(CameraController, StillKeepsThePlansPosition) {
   CameraController camera(
-      {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = Eigen::Vector3f(1, 2, 3), .distance = 5}, {},
+      {.mode = CameraMode::still, .azimuth = 0, .elevation = 0, .target = render::Vector3(1, 2, 3), .distance = 5}, {},
       {});
   std::vector<Bounds> boxes = scattered(6, 1);
   for (int frame = 0; frame < 3; ++frame) {
-    EXPECT_LT((camera.at(boxes, tick).eye - Eigen::Vector3f(6, 2, 3)).norm(), 1e-5);
+    EXPECT_LT((camera.at(boxes, tick).eye - render::Vector3(6, 2, 3)).norm(), 1e-5);
     boxes[0] = boxes[0].moved({1, 0, 0});
   }
 }

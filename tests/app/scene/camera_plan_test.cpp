@@ -19,7 +19,7 @@ TEST_F(CameraFile, LoadsWhatWasSaved) {
                         .zoom = 2,
                         .field_of_view = 0.4f,
                         .period = 8,
-                        .target = Eigen::Vector3f(1, -2, 0.3f),
+                        .target = render::Vector3(1, -2, 0.3f),
                         .distance = 7};
   save_camera(path("a.json"), plan);
   const CameraPlan loaded = load_camera(path("a.json"));
@@ -76,7 +76,7 @@ TEST(CameraBookmarks, AreReadAsTheyWereWritten) {
   bookmarks[1] = CameraPlan{.mode = CameraMode::still,
                             .azimuth = 0.25f,
                             .elevation = -0.5f,
-                            .target = Eigen::Vector3f(1, 2, 3),
+                            .target = render::Vector3(1, 2, 3),
                             .distance = 4.5f};
   bookmarks[3] = CameraPlan{.mode = CameraMode::follow, .robot = "eel \"2\""};
   const CameraBookmarks read = bookmarks_from(bookmarks_text(bookmarks));
@@ -86,7 +86,7 @@ TEST(CameraBookmarks, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read[1]->mode, CameraMode::still);
   EXPECT_EQ(read[1]->azimuth, 0.25f);
   EXPECT_EQ(read[1]->distance, 4.5f);
-  EXPECT_EQ(*read[1]->target, Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(*read[1]->target, render::Vector3(1, 2, 3));
   EXPECT_EQ(read[3]->robot, "eel \"2\"");
   EXPECT_EQ(bookmarks_text({}), "");
 }

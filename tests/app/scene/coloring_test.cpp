@@ -261,7 +261,7 @@ TEST(Arrows, LongestIsHalfARobotAndKeepsItsScale) {
   ASSERT_EQ(fast.size(), 1u);
   // 1000 N, a round number; the diagonal of the plate is sqrt(8) m.
   EXPECT_NEAR(fast[0].vector.norm(), 0.5 * std::sqrt(8.0), 1e-3);
-  EXPECT_GT(fast[0].vector.z(), 0);
+  EXPECT_GT(fast[0].vector.z, 0);
   const auto slow = arrows.at(state(plate().masses, {0, 0, -0.5f}), telemetry);
   EXPECT_NEAR(slow[0].vector.norm() / fast[0].vector.norm(), 0.25, 1e-4);
   EXPECT_EQ(arrows.key(), "drag: 1.4 m = 1000 N");
@@ -299,7 +299,7 @@ TEST(Arrows, AreAsLongAndDenseAsTheUserWants) {
 
   const auto from = [](const std::vector<render::Arrow>& list) {
     std::vector<std::array<float, 3>> points;
-    for (const render::Arrow& arrow : list) points.push_back({arrow.from.x(), arrow.from.y(), arrow.from.z()});
+    for (const render::Arrow& arrow : list) points.push_back({arrow.from.x, arrow.from.y, arrow.from.z});
     std::ranges::sort(points);
     return points;
   };
@@ -314,8 +314,7 @@ TEST(Arrows, AreAsLongAndDenseAsTheUserWants) {
   float longest_left_out = 0;
   std::size_t kept = 0;
   for (const render::Arrow& arrow : all) {
-    const bool is_kept =
-        std::ranges::binary_search(from(strong), std::array{arrow.from.x(), arrow.from.y(), arrow.from.z()});
+    const bool is_kept = std::ranges::binary_search(from(strong), std::array{arrow.from.x, arrow.from.y, arrow.from.z});
     kept += is_kept;
     if (!is_kept) longest_left_out = std::max(longest_left_out, arrow.vector.norm());
   }

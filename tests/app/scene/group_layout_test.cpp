@@ -13,7 +13,7 @@ namespace {
 
 using render::Bounds;
 
-Bounds box(Eigen::Vector3f low, Eigen::Vector3f high) {
+Bounds box(render::Vector3 low, render::Vector3 high) {
   Bounds bounds;
   bounds.extend(low);
   bounds.extend(high);
@@ -25,8 +25,8 @@ std::vector<Bounds> robots(int count) {
   std::vector<Bounds> boxes;
   for (int i = 0; i < count; ++i) {
     const float size = 0.5f + 0.1f * static_cast<float>(i % 5);
-    const Eigen::Vector3f low(0.3f * static_cast<float>(i), -1, 0);
-    boxes.push_back(box(low, low + Eigen::Vector3f(size, 0.6f, 0.4f * size)));
+    const render::Vector3 low(0.3f * static_cast<float>(i), -1, 0);
+    boxes.push_back(box(low, low + render::Vector3(size, 0.6f, 0.4f * size)));
   }
   return boxes;
 }
@@ -38,13 +38,12 @@ struct Rectangle {
 // The rectangle that a box covers in an orthographic view along the view's direction.
 Rectangle seen(const Bounds& b, const render::Orbit& view) {
   const render::Camera camera = view.camera();
-  const Eigen::Matrix4f eye = camera.view();
+  const render::Matrix4 eye = camera.view();
   Rectangle r{1e9f, -1e9f, 1e9f, -1e9f};
   for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector4f corner(i & 1 ? b.high.x() : b.low.x(), i & 2 ? b.high.y() : b.low.y(),
-                                 i & 4 ? b.high.z() : b.low.z(), 1);
-    const Eigen::Vector4f p = eye * corner;
-    r = {std::min(r.left, p.x()), std::max(r.right, p.x()), std::min(r.bottom, p.y()), std::max(r.top, p.y())};
+    const render::Vector4 corner(i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z, 1);
+    const render::Vector4 p = eye * corner;
+    r = {std::min(r.left, p.x), std::max(r.right, p.x), std::min(r.bottom, p.y), std::max(r.top, p.y)};
   }
   return r;
 }
@@ -81,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Grid, Layout, testing::Values(false, true),
 
 TEST(GridLayout, OnTheGroundHeightsDoNotChange) {
   for (const auto& offset : grid_layout(robots(8), {.view = {.elevation = 0.5f}, .on_ground = true}))
-    EXPECT_EQ(offset.z(), 0);
+    EXPECT_EQ(offset.z, 0);
 }
 
 TEST(GridLayout, GridThatIsTooSmallThrows) {
@@ -94,8 +93,8 @@ TEST(RaceLayout, HasOneLanePerRobotFromOneStartLine) {
   const auto offsets = grid_layout(
       boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});
   for (std::size_t i = 1; i < boxes.size(); ++i) {
-    EXPECT_NEAR(boxes[i].moved(offsets[i]).center().x(), boxes[0].moved(offsets[0]).center().x(), 1e-4);
-    EXPECT_LT(boxes[i].moved(offsets[i]).high.y(), boxes[i - 1].moved(offsets[i - 1]).low.y());
+    EXPECT_NEAR(boxes[i].moved(offsets[i]).center().x, boxes[0].moved(offsets[0]).center().x, 1e-4);
+    EXPECT_LT(boxes[i].moved(offsets[i]).high.y, boxes[i - 1].moved(offsets[i - 1]).low.y);
   }
 }
 

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <random>
 
-#include "app/scene/eigen_vec3.h"
 #include "app/scene/group_scene.h"
 
 namespace mercury::test {
 namespace {
 
-using Eigen::Vector3f;
+using render::Vector3;
 
 Trail moved(Vec3 from, Vec3 to) {
   Trail trail(from);
@@ -29,17 +28,17 @@ GroupMotion motion(Layout layout, const Environment& environment = Ocean{}) {
 
 TEST(Cells, TheCenterOfMassStaysInTheMiddleOfItsCell) {
   const Room room{{1, 2, 3}, 1};
-  const Vector3f offset(10, 20, 30);
+  const Vector3 offset(10, 20, 30);
   for (const Vec3 place : {Vec3{1, 2, 3}, Vec3{-40, 7, 900}, Vec3{1e4f, 0, 0}}) {
-    const Vector3f shown = eigen(place) + motion(Layout::cells).offset_of(offset, room, moved({1, 2, 3}, place));
-    EXPECT_LT((shown - Vector3f(11, 22, 33)).norm(), 1e-3f);
+    const Vector3 shown = Vector3(place) + motion(Layout::cells).offset_of(offset, room, moved({1, 2, 3}, place));
+    EXPECT_LT((shown - Vector3(11, 22, 33)).norm(), 1e-3f);
   }
 }
 
 TEST(Cells, OnLandHeightsDoNotChange) {
-  const Vector3f offset = motion(Layout::cells, Land{}).offset_of({4, 5, 0}, {{0, 0, 1}, 1}, moved({}, {3, 3, 0.2f}));
-  EXPECT_EQ(offset.z(), 0);
-  EXPECT_LT((offset - Vector3f(1, 2, 0)).norm(), 1e-5f);
+  const Vector3 offset = motion(Layout::cells, Land{}).offset_of({4, 5, 0}, {{0, 0, 1}, 1}, moved({}, {3, 3, 0.2f}));
+  EXPECT_EQ(offset.z, 0);
+  EXPECT_LT((offset - Vector3(1, 2, 0)).norm(), 1e-5f);
 }
 
 TEST(Cells, RobotsNeverMeetHoweverTheyTurn) {
@@ -58,7 +57,7 @@ TEST(Cells, RobotsNeverMeetHoweverTheyTurn) {
             group_offsets(boxes, rooms, {.layout = Layout::cells, .camera = {.mode = mode}}, environment, 1.78f);
         for (std::size_t a = 0; a < count; ++a)
           for (std::size_t b = 0; b < a; ++b) {
-            const Vector3f apart = offsets[a] + rooms[a].center - offsets[b] - rooms[b].center;
+            const Vector3 apart = offsets[a] + rooms[a].center - offsets[b] - rooms[b].center;
             EXPECT_GT(apart.norm(), rooms[a].radius + rooms[b].radius);
           }
       }
@@ -68,21 +67,21 @@ TEST(Race, ARobotIsAsFarAlongItsLaneAsItIsFromItsStart) {
   const Room room{{0, 0, 0}, 1};
   const GroupMotion race = motion(Layout::race, Land{});
   const Trail trail = moved({1, 1, 0}, {4, 5, 2});  // 5 m along the ground
-  const Vector3f shown = eigen(trail.last()) + race.offset_of({0, 7, 0}, room, trail);
-  EXPECT_NEAR(shown.x(), 5, 1e-5);
-  EXPECT_NEAR(shown.y(), 7, 1e-5);
-  EXPECT_NEAR(shown.z(), 2, 1e-5) << "its height is its own";
+  const Vector3 shown = Vector3(trail.last()) + race.offset_of({0, 7, 0}, room, trail);
+  EXPECT_NEAR(shown.x, 5, 1e-5);
+  EXPECT_NEAR(shown.y, 7, 1e-5);
+  EXPECT_NEAR(shown.z, 2, 1e-5) << "its height is its own";
 }
 
 TEST(HeldRobot, FollowsTheMouseAndGlidesBack) {
   HeldRobot held;
-  EXPECT_EQ(held.correction(2, {1, 0, 0}), Vector3f::Zero());
+  EXPECT_EQ(held.correction(2, {1, 0, 0}), Vector3::all(0));
   held.hold(2, 0.1);
   EXPECT_LT(held.correction(2, {1, 0, 0}).norm(), 1e-6f);
   held.hold(2, 0.1);
   // Its cell wants to be shifted by -3 m, since it moved by 3 m; it does not.
-  EXPECT_LT((Vector3f(-2, 0, 0) + held.correction(2, {-2, 0, 0}) - Vector3f(1, 0, 0)).norm(), 1e-6f);
-  EXPECT_EQ(held.correction(1, {5, 0, 0}), Vector3f::Zero()) << "others go on";
+  EXPECT_LT((Vector3(-2, 0, 0) + held.correction(2, {-2, 0, 0}) - Vector3(1, 0, 0)).norm(), 1e-6f);
+  EXPECT_EQ(held.correction(1, {5, 0, 0}), Vector3::all(0)) << "others go on";
   float before = 3;
   for (int i = 0; i < 40; ++i) {
     held.hold({}, 0.05);

@@ -72,7 +72,7 @@ TEST(Course, MarksStandFromTheStartLineOnAndLanesReachTheirRobots) {
   Course course;
   course.draw(lanes, {1, 0, 0}, 0.25f, passings, 1, render::Theme::dark);
   ASSERT_EQ(course.numbers().size(), 4u);  // start, and marks up to the one before the leader
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(course.numbers()[i].at.x(), 3 + static_cast<float>(i), 1e-5);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(course.numbers()[i].at.x, 3 + static_cast<float>(i), 1e-5);
   EXPECT_EQ(course.numbers()[3].text, "3 m");
   bool reached = false;
   for (const render::Path& line : course.lines()) {

@@ -51,7 +51,7 @@ class PositionBridgeTest : public testing::Test {
   std::optional<Simulation> simulation_;
   std::optional<render::Renderer> renderer_;
   std::optional<GroupScene> scene_;
-  std::vector<Eigen::Vector3f> offsets_;
+  std::vector<render::Vector3> offsets_;
 };
 
 TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirPositions) {
