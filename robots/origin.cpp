@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/origin.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "mercury/error.h"
 #include "robots/file/document.h"
+#include "robots/number_text.h"
 
 namespace mercury {
 namespace {
@@ -86,11 +85,6 @@ bool take_out_ancestry(std::string& object) {
   return false;
 }
 
-std::string text_of(double value) {
-  std::array<char, 32> room;
-  return {room.data(), std::to_chars(room.data(), room.data() + room.size(), value).ptr};
-}
-
 std::string text_of(const Ancestry& ancestry) {
   std::string text = "{\"parents\":[";
   for (std::size_t i = 0; i < ancestry.parents.size(); ++i) {
@@ -101,8 +95,8 @@ std::string text_of(const Ancestry& ancestry) {
   const auto add = [&](const char* key, const std::string& value) { text += std::string(",\"") + key + "\":" + value; };
   if (ancestry.crossover_seed) add("crossover_seed", std::to_string(*ancestry.crossover_seed));
   if (ancestry.mutation_seed) add("mutation_seed", std::to_string(*ancestry.mutation_seed));
-  if (ancestry.strength) add("strength", text_of(*ancestry.strength));
-  if (ancestry.muscles) add("muscles", text_of(*ancestry.muscles));
+  if (ancestry.strength) add("strength", shortest_text(*ancestry.strength));
+  if (ancestry.muscles) add("muscles", shortest_text(*ancestry.muscles));
   if (ancestry.generation) add("generation", std::to_string(*ancestry.generation));
   return text += '}';
 }

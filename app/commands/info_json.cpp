@@ -226,11 +226,12 @@ Json info_of(const RunHistory& run) {
 Configuration configuration_of(const SceneFile& scene) {
   std::vector<std::string> environments, notes;
   for (const std::string& file : scene.robots()) {
-    if (!import_format_of(file)) {
+    const ImportFormat* format = import_format_of(file);
+    if (!format) {
       environments.push_back(environment_of(load_robot(file)));
       continue;
     }
-    for (const Robot& robot : import_file(file).robots) environments.push_back(environment_of(robot));
+    for (const Robot& robot : import_file(file, *format).robots) environments.push_back(environment_of(robot));
   }
   for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
   return scene.configuration(environments, notes);

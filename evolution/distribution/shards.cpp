@@ -5,11 +5,10 @@
 #include <charconv>
 #include <map>
 
-#include "evolution/bytes.h"
-#include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/generation_record.h"
 #include "mercury/error.h"
 #include "mercury/shards.h"
+#include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "evolution/bytes.h"
-#include "evolution/run_folder/checksum.h"
+#include "robots/bytes.h"
 
 namespace mercury {
 namespace {

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "evolution/bytes.h"
 #include "mercury/evolution.h"
 #include "mercury/individual.h"
 #include "mercury/run_folder.h"
+#include "robots/bytes.h"
 
 namespace mercury {
 

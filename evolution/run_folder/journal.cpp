@@ -9,9 +9,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "evolution/bytes.h"
-#include "evolution/run_folder/checksum.h"
 #include "mercury/error.h"
+#include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {

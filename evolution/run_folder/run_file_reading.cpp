@@ -18,12 +18,12 @@
 #include <utility>
 #include <vector>
 
-#include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/run_file_layout.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/robot_file.h"
 #include "mercury/vec3.h"
+#include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 #include "robots/number_text.h"
 
@@ -303,7 +303,7 @@ RunFile parse(const std::filesystem::path& folder, std::string_view text, const 
   describe(reader, run);
   reader.finish();
   check_values(path, run.settings.evolution, lines);
-  run.fingerprint = empty_checksum;
+  run.fingerprint = Fnv1a::empty;
   add_to_fingerprint(run.fingerprint, "", table);
   for (const std::string& name : run.founder_files) {
     const std::filesystem::path at = folder / founders_name / name;

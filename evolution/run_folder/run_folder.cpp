@@ -7,13 +7,13 @@
 #include <limits>
 #include <utility>
 
-#include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/generation_record.h"
 #include "evolution/run_folder/new_folder.h"
 #include "evolution/run_folder/run_history.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
+#include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "evolution/bytes.h"
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/generation_record.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
+#include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {

@@ -11,15 +11,10 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t largest_population = 1'000'000;
 constexpr int most_cells = 1'000'000;  // of a map
 
 void require(bool holds, const char* parameter, const std::string& problem) {
   if (!holds) throw ParameterError(parameter, problem);
-}
-
-void require_share(double value, const char* parameter) {
-  require(value >= 0 && value <= 1, parameter, std::to_string(value) + " is not accepted; give 0 to 1");
 }
 
 std::string names_of_quantities() {
@@ -43,12 +38,7 @@ void validate_axes(std::span<const MapAxis> axes) {
 }
 
 void validate(const AlgorithmSettings& settings) {
-  require(settings.population >= 1 && settings.population <= largest_population, "population",
-          std::to_string(settings.population) + " is not accepted; give 1 to " + std::to_string(largest_population));
-  require(settings.tournament >= 1, "tournament",
-          std::to_string(settings.tournament) + " is not accepted; give at least 1");
-  require_share(settings.elites, "elites");
-  require_share(settings.crossover, "crossover");
+  check_parameters(settings);
   validate_axes(settings.axes);
   require(settings.name != "map-elites" || !settings.axes.empty(), "axes",
           "map-elites needs one or more quantities, such as size and muscle_share");

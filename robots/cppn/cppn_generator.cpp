@@ -15,6 +15,9 @@
 #include "robots/parameter_table.h"
 
 namespace mercury {
+
+const GenesKind& cppn_genes();
+
 namespace {
 
 class RandomNetwork {
@@ -192,6 +195,7 @@ void validate(const CppnOptions& options) {
 
 Generator cppn_generator() {
   Generator cppn{.kind = "cppn",
+                 .word = "painted",
                  .title = "Painted voxel robots",
                  .noun = "a painted voxel robot",
                  .help = "Voxel robots painted by a small network (CPPN)",
@@ -199,7 +203,8 @@ Generator cppn_generator() {
                  .example = {.name = "ripple", .seed = 4, .values = {{"canvas", "10x4x4"}}},
                  .regrow = [](const Robot& robot) { return grow(cppn_genome_in(robot), robot.name); },
                  .mutate = mutate_cppn_robot,
-                 .cross = cross_cppn_robots};
+                 .cross = cross_cppn_robots,
+                 .genes = &cppn_genes()};
   return with_parameters(std::move(cppn), table(), random_cppn_robot);
 }
 

@@ -11,6 +11,9 @@
 #include "robots/parameter_table.h"
 
 namespace mercury {
+
+const GenesKind& nn_genes();
+
 namespace {
 
 const ParameterTable<NnOptions>& table() {
@@ -78,6 +81,7 @@ void validate(const NnOptions& options) { check_each(table(), options); }
 
 Generator nn_generator() {
   Generator nn{.kind = "nn",
+               .word = "network",
                .title = "Network robots",
                .noun = "an nn robot",
                .help = "Robots grown by random neural networks",
@@ -86,7 +90,8 @@ Generator nn_generator() {
                .example = {.name = "blob", .seed = 4, .values = {{"points", "1000"}}},
                .regrow = regrow,
                .mutate = mutant,
-               .cross = crossed};
+               .cross = crossed,
+               .genes = &nn_genes()};
   return with_parameters(std::move(nn), table(), random_nn_robot);
 }
 

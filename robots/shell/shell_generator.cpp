@@ -15,6 +15,9 @@
 #include "robots/shell/shell_genome.h"
 
 namespace mercury {
+
+const GenesKind& shell_genes();
+
 namespace {
 
 const std::vector<std::string> form_names{"bell", "tube", "ring", "pod"};
@@ -235,6 +238,7 @@ Robot random_shell_robot(const ShellOptions& options, std::uint64_t seed, std::u
 
 Generator shell_generator() {
   Generator shell{.kind = "shell",
+                  .word = "shell",
                   .title = "Shell robots",
                   .noun = "a shell robot",
                   .help = "Thin hollow bodies that pulse: bells, tubes, rings and pods",
@@ -244,7 +248,8 @@ Generator shell_generator() {
                   .example = {.name = "medusa", .seed = 4, .values = {{"form", "bell"}, {"lobes", "8"}}},
                   .regrow = [](const Robot& robot) { return grow(shell_genome_in(robot), robot.name); },
                   .mutate = mutate_shell_robot,
-                  .cross = cross_shell_robots};
+                  .cross = cross_shell_robots,
+                  .genes = &shell_genes()};
   return with_parameters(std::move(shell), option_table(), random_shell_robot);
 }
 

@@ -15,6 +15,9 @@
 #include "robots/parameter_table.h"
 
 namespace mercury {
+
+const GenesKind& voxel_genes();
+
 namespace {
 
 constexpr int phases = muscle_count / voxel_frequencies;  // of the base muscles
@@ -293,13 +296,15 @@ void validate(const RandomVoxelOptions& options) {
 
 Generator voxel_generator() {
   Generator voxel{.kind = "voxel",
+                  .word = "voxel",
                   .title = "Voxel robots",
                   .noun = "a voxel robot",
                   .help = "Random voxel robots",
                   .example = {.name = "eel", .seed = 4, .values = {{"voxels", "12x2x3"}}},
                   .regrow = regrow,
                   .mutate = mutant,
-                  .cross = crossed};
+                  .cross = crossed,
+                  .genes = &voxel_genes()};
   return with_parameters(std::move(voxel), table(), random_voxel_robot);
 }
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "evolution/bytes.h"
 #include "mercury/random.h"
+#include "robots/bytes.h"
 
 namespace mercury {
 namespace {

@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evolution/genomes/body_genes.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "mercury/voxel.h"
 #include "mercury/voxel_evolution.h"
+#include "robots/genes.h"
 
 namespace mercury {
 namespace {
@@ -30,7 +31,19 @@ VoxelGrid crossed_grids(const VoxelGrid& a, const VoxelGrid& b, std::uint64_t se
   return cross(a, b, seed, 2, mirror == mirror_of(b) ? mirror : Mirror::none);
 }
 
-}  // namespace
+struct VoxelGenes {
+  static constexpr std::uint8_t tag = 1;
+  VoxelGrid grid;
+  MaterialGenes materials;
+
+  static VoxelGenes of(const Robot& robot);
+  VoxelGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
+  VoxelGenes crossed(const VoxelGenes& other, Genes genes, std::uint64_t seed) const;
+  Robot grown(const std::string& name, const std::string& environment) const;
+  void write(ByteWriter& writer) const;
+  static VoxelGenes read(ByteReader& reader);
+  void add_identity(IdentityHash& hash) const;
+};
 
 VoxelGenes VoxelGenes::of(const Robot& robot) {
   std::optional<VoxelGrid> grid = voxel_grid_of(robot);
@@ -92,6 +105,13 @@ void VoxelGenes::add_identity(IdentityHash& hash) const {
   hash.add(grid.edge);
   hash.add(body.cells);
   mercury::add_identity(hash, materials, materials_in(body));
+}
+
+}  // namespace
+
+const GenesKind& voxel_genes() {
+  static constexpr GenesKind kind = genes_kind<VoxelGenes>();
+  return kind;
 }
 
 }  // namespace mercury

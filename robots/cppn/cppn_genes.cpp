@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/genomes/body_genes.h"
+#include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/genes.h"
 
 namespace mercury {
+namespace {
+
+// A robot's phases are part of its body. Its muscles have one amplitude, and frequencies that follow from one.
+struct CppnGenes {
+  static constexpr std::uint8_t tag = 2;
+  CppnGenome genome;
+
+  static CppnGenes of(const Robot& robot);
+  CppnGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
+  CppnGenes crossed(const CppnGenes& other, Genes genes, std::uint64_t seed) const;
+  Robot grown(const std::string& name, const std::string& environment) const;
+  void write(ByteWriter& writer) const;
+  static CppnGenes read(ByteReader& reader);
+  void add_identity(IdentityHash& hash) const;
+};
 
 CppnGenes CppnGenes::of(const Robot& robot) {
   std::optional<CppnGenome> genome = cppn_genome_of(robot);
@@ -94,6 +110,13 @@ void CppnGenes::add_identity(IdentityHash& hash) const {
   hash.add(static_cast<std::uint8_t>(genome.frequencies));
   hash.add(genome.frequency);
   hash.add(genome.amplitude);
+}
+
+}  // namespace
+
+const GenesKind& cppn_genes() {
+  static constexpr GenesKind kind = genes_kind<CppnGenes>();
+  return kind;
 }
 
 }  // namespace mercury

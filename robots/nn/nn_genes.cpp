@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/genomes/body_genes.h"
 #include "mercury/error.h"
+#include "mercury/nn_robot.h"
 #include "mercury/random.h"
+#include "robots/genes.h"
 
 namespace mercury {
+namespace {
+
+struct NnGenes {
+  static constexpr std::uint8_t tag = 3;
+  NnGenome genome;
+  MaterialGenes materials;
+
+  static NnGenes of(const Robot& robot);
+  NnGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
+  NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const;
+  Robot grown(const std::string& name, const std::string& environment) const;
+  void write(ByteWriter& writer) const;
+  static NnGenes read(ByteReader& reader);
+  void add_identity(IdentityHash& hash) const;
+};
 
 NnGenes NnGenes::of(const Robot& robot) {
   std::optional<NnGenome> genome = nn_genome_of(robot);
@@ -93,6 +109,13 @@ void NnGenes::add_identity(IdentityHash& hash) const {
   body.write(writer);
   hash.add(std::move(writer).take());
   mercury::add_identity(hash, materials, {});
+}
+
+}  // namespace
+
+const GenesKind& nn_genes() {
+  static constexpr GenesKind kind = genes_kind<NnGenes>();
+  return kind;
 }
 
 }  // namespace mercury

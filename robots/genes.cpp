@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/genomes/material_genes.h"
+#include "robots/genes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mercury/error.h"
@@ -9,6 +10,8 @@
 
 namespace mercury {
 namespace {
+
+constexpr std::array<std::string_view, 3> genes_names{"body", "muscles", "both"};
 
 MaterialGenes filled_in(const MaterialGenes& genes) { return genes.empty() ? base_materials_of(Robot{}) : genes; }
 
@@ -73,6 +76,20 @@ void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vec
     for (const float number : {all[i].stiffness, all[i].amplitude, all[i].frequency, all[i].phase}) hash.add(number);
     if (all[i].half_wave) hash.add(std::uint8_t{1});
   }
+}
+
+std::string_view name_of(Genes genes) { return genes_names[static_cast<std::size_t>(genes)]; }
+
+Genes genes_named(std::string_view name) {
+  for (std::size_t i = 0; i < genes_names.size(); ++i)
+    if (genes_names[i] == name) return static_cast<Genes>(i);
+  throw ParameterError("genes", "\"" + std::string(name) + "\" is not accepted; give body, muscles or both");
+}
+
+Changes changes_of(Genes genes, std::uint64_t seed) {
+  const std::uint64_t choice = Random(seed_of(seed, 1)).below(3);
+  return {.body = genes == Genes::body || (genes == Genes::both && choice != 0),
+          .muscles = genes == Genes::muscles || (genes == Genes::both && choice != 1)};
 }
 
 }  // namespace mercury

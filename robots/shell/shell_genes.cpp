@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include "evolution/genomes/body_genes.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "mercury/shell.h"
+#include "robots/genes.h"
 
 namespace mercury {
 namespace {
@@ -22,7 +23,19 @@ ShellGenome with_muscles_of(ShellGenome body, const ShellGenome& muscles) {
   return body;
 }
 
-}  // namespace
+// The muscle laws are amplitudes and frequency; the waves of the muscles are part of the body.
+struct ShellGenes {
+  static constexpr std::uint8_t tag = 4;
+  ShellGenome genome;
+
+  static ShellGenes of(const Robot& robot);
+  ShellGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
+  ShellGenes crossed(const ShellGenes& other, Genes genes, std::uint64_t seed) const;
+  Robot grown(const std::string& name, const std::string& environment) const;
+  void write(ByteWriter& writer) const;
+  static ShellGenes read(ByteReader& reader);
+  void add_identity(IdentityHash& hash) const;
+};
 
 ShellGenes ShellGenes::of(const Robot& robot) {
   std::optional<ShellGenome> genome = shell_genome_of(robot);
@@ -72,6 +85,13 @@ void ShellGenes::add_identity(IdentityHash& hash) const {
   ByteWriter writer;
   write(writer);
   hash.add(std::move(writer).take());
+}
+
+}  // namespace
+
+const GenesKind& shell_genes() {
+  static constexpr GenesKind kind = genes_kind<ShellGenes>();
+  return kind;
 }
 
 }  // namespace mercury

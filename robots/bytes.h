@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "mercury/fnv.h"
+
 namespace mercury {
 
 // Bytes that are not what they should be. what() says why; the caller, who knows where they come from, adds the place.
@@ -108,5 +110,14 @@ class ByteReader {
  private:
   std::string_view rest_;
 };
+
+// A checksum of bytes that follow others.
+constexpr std::uint64_t checksum_of(std::string_view bytes, std::uint64_t so_far = Fnv1a::empty) {
+  return Fnv1a(so_far).add(bytes).value();
+}
+constexpr std::uint32_t short_checksum_of(std::string_view bytes) {
+  const std::uint64_t checksum = checksum_of(bytes);
+  return static_cast<std::uint32_t>(checksum ^ checksum >> 32);
+}
 
 }  // namespace mercury
