@@ -83,7 +83,7 @@ std::string_view name_of(Genes genes) { return genes_names[static_cast<std::size
 Genes genes_named(std::string_view name) {
   for (std::size_t i = 0; i < genes_names.size(); ++i)
     if (genes_names[i] == name) return static_cast<Genes>(i);
-  throw ParameterError("genes", "\"" + std::string(name) + "\" is not accepted; give body, muscles or both");
+  throw ParameterError("genes", std::string("\"").append(name) + "\" is not accepted; give body, muscles or both");
 }
 
 Changes changes_of(Genes genes, std::uint64_t seed) {

@@ -16,11 +16,12 @@ namespace mercury {
 //   table(key, describe)                     [key]
 //   tables(key, list, describe)              [[key]], one per element
 //   generator_values(key, kind, values)      [key], the parameters of a generator
+// All of a table. Files of earlier versions may lack some.
 template <class File, class Settings>
 void describe_parameters(File& file, Settings& settings) {
   for_each_parameter(settings, [&](const auto& parameter, auto& value) {
     const std::string unit(parameter.unit), help(parameter.help);
-    file.value(parameter.name, value, unit.empty() ? help : unit + "; " + help);
+    file.parameter(parameter.name, value, unit.empty() ? help : unit + "; " + help);
   });
 }
 
