@@ -56,10 +56,10 @@ void Evolution::restore(int generation, std::vector<Individual> living, std::uin
 namespace {
 
 // Makes the children of a generation on all cores, and makes those again that are not new.
-class Nursery {
+class Breeding {
  public:
-  Nursery(const EvolutionSettings& settings, const GenomeSpace& space, std::span<const Individual> living,
-          int generation, std::vector<ChildPlan> plans)
+  Breeding(const EvolutionSettings& settings, const GenomeSpace& space, std::span<const Individual> living,
+           int generation, std::vector<ChildPlan> plans)
       : settings_(settings), space_(space), living_(living), generation_(generation), plans_(std::move(plans)),
         seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
 
@@ -76,26 +76,28 @@ class Nursery {
   }
 
  private:
+  // A try that fails leaves the child of an earlier one, which is like another but can live.
   void make(std::size_t i, int attempt) {
-    seeds_[i] = seed_of_child(settings_.seed, generation_, i, attempt);
+    const std::uint64_t seed = seed_of_child(settings_.seed, generation_, i, attempt);
     try {
-      genomes_[i] = make_genome(i, attempt);
-      identities_[i] = genomes_[i]->identity();
+      GenomePointer genome = make_genome(i, attempt, seed);
+      identities_[i] = genome->identity();
+      genomes_[i] = std::move(genome);
+      seeds_[i] = seed;
     } catch (const InputError&) {
-      genomes_[i] = nullptr;
     }
   }
 
-  GenomePointer make_genome(std::size_t i, int attempt) const {
+  GenomePointer make_genome(std::size_t i, int attempt, std::uint64_t seed) const {
     const std::vector<std::size_t>& parents = plans_[i].parents;
     if (parents.empty()) {
       const bool may_be_founder = generation_ == 0 && attempt == 0;
-      return space_.random(seeds_[i], may_be_founder ? i : space_.founders() + i);
+      return space_.random(seed, may_be_founder ? i : space_.founders() + i);
     }
     const double strength = settings_.mutation * (1 + attempt / 4.0);  // each further try changes a little more
     GenomePointer genome = living_[parents[0]].genome;
-    if (parents.size() > 1) genome = genome->cross(*living_[parents[1]].genome, seed_of(seeds_[i], 0));
-    return genome->mutate(strength, seeds_[i]);
+    if (parents.size() > 1) genome = genome->cross(*living_[parents[1]].genome, seed_of(seed, 0));
+    return genome->mutate(strength, seed);
   }
 
   std::vector<Individual> individuals() {
@@ -134,7 +136,8 @@ std::vector<Individual> Evolution::children() const {
     Random random(seed_of_plan(settings_.seed, next_generation_));
     plans = algorithm_->plan(living_, children_per_generation(settings_), random);
   }
-  std::vector<Individual> children = Nursery(settings_, space_, living_, next_generation_, std::move(plans)).children();
+  std::vector<Individual> children =
+      Breeding(settings_, space_, living_, next_generation_, std::move(plans)).children();
   for (std::size_t i = 0; i < children.size(); ++i) children[i].id = next_id_ + i;
   return children;
 }

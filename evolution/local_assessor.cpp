@@ -13,6 +13,7 @@
 #include "mercury/assessor.h"
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
+#include "mercury/fnv.h"
 #include "mercury/quantity.h"
 
 namespace mercury {
@@ -22,9 +23,9 @@ constexpr std::chrono::milliseconds watch_period(100);
 constexpr std::size_t most_waiting = 128;  // evaluations
 
 // The robots of all trials: those of candidate 0, then those of candidate 1, ... Each candidate is grown once.
-class Cast {
+class EvaluationQueue {
  public:
-  Cast(std::span<const GenomePointer> candidates, const TrialSettings& settings, std::uint64_t seed)
+  EvaluationQueue(std::span<const GenomePointer> candidates, const TrialSettings& settings, std::uint64_t seed)
       : candidates_(candidates), settings_(settings), seed_(seed), grown_(candidates.size()) {}
 
   std::shared_ptr<const Robot> operator()(std::size_t index) {
@@ -68,7 +69,7 @@ class Tally {
       if (assessment_.problem.empty()) assessment_.problem = evaluation.failure;
       return;
     }
-    add_hash(evaluation.hash);
+    assessment_.hash = Fnv1a(assessment_.hash).add(evaluation.hash).value();
     const std::vector<double> values =
         quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request_.configuration});
     values_.resize(values.size());
@@ -95,16 +96,10 @@ class Tally {
  private:
   static Fate worse(Fate a, Fate b) { return std::max(a, b); }
 
-  void add_hash(std::uint64_t hash) {
-    // FNV-1a over the trials' hashes.
-    for (int byte = 0; byte < 8; ++byte)
-      assessment_.hash = (assessment_.hash ^ (hash >> (8 * byte) & 0xff)) * 0x100000001b3u;
-  }
-
   const EvaluationRequest& request_;
   const TrialSettings& settings_;
   const std::span<const Objective> objectives_;
-  Assessment assessment_{.fate = Fate::sound, .hash = 0xcbf29ce484222325u};
+  Assessment assessment_{.fate = Fate::sound, .hash = Fnv1a::empty};
   std::vector<double> values_, scores_;  // sums
   double trials_ = 0;
 };
@@ -119,7 +114,7 @@ class LocalAssessor : public Assessor {
                                                 std::span<const double> interim_limits, const Watch& watch) override {
     const auto trials = static_cast<std::size_t>(settings_.trials);
     const std::size_t all = candidates.size() * trials;
-    Cast cast(candidates, settings_, seed_);
+    EvaluationQueue queue(candidates, settings_, seed_);
     EvaluationRequest request = trial_request(settings_, configuration_);
     std::vector<std::vector<double>> interim_scores(candidates.size());
     if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
@@ -134,7 +129,7 @@ class LocalAssessor : public Assessor {
         return interim_limits.empty() || scores[check] >= interim_limits[check];
       };
     }
-    Evaluator evaluator(request, std::ref(cast), all);
+    Evaluator evaluator(request, std::ref(queue), all);
     std::vector<Assessment> assessments(candidates.size());
     std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
     std::size_t assessed = 0;

@@ -38,6 +38,7 @@
 #include "render/pace.h"
 #include "render/patch_pass.h"
 #include "render/quality.h"
+#include "render/pass_timer.h"
 #include "render/renderer.h"
 #include "render/scene_buffers.h"
 #include "render/section_pass.h"

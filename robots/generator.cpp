@@ -2,13 +2,13 @@
 #include "mercury/generator.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "robots/make_all.h"
+#include "robots/number_text.h"
 
 namespace mercury {
 
@@ -71,13 +71,6 @@ const std::vector<Generator>& generators() {
 
 namespace {
 
-// The shortest text that gives the number again.
-template <class Value>
-std::string text_of(Value value) {
-  char room[32];
-  return {room, std::to_chars(room, room + sizeof room, value).ptr};
-}
-
 // "a, b or c"
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
@@ -119,7 +112,7 @@ class Check {
     const double highest = parameter_.highest.value_or(std::is_integral_v<Value> ? std::numeric_limits<int>::max()
                                                                                  : std::numeric_limits<double>::max());
     const bool too_large = parameter_.below_highest ? number >= highest : number > highest;
-    if (!std::isfinite(number) || number < parameter_.lowest || too_large) refuse(text_of(value));
+    if (!std::isfinite(number) || number < parameter_.lowest || too_large) refuse(shortest_text(value));
   }
 
  private:
@@ -139,9 +132,9 @@ void check(const GeneratorParameter& parameter, const ParameterValue& value) {
 
 std::string accepted_values(const GeneratorParameter& parameter) {
   if (!parameter.words.empty()) return listed(parameter.words);
-  const std::string lowest = text_of(parameter.lowest), unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  const std::string lowest = shortest_text(parameter.lowest), unit = parameter.unit.empty() ? "" : " " + parameter.unit;
   if (!parameter.highest) return lowest + unit + " or more";
-  const std::string highest = text_of(*parameter.highest);
+  const std::string highest = shortest_text(*parameter.highest);
   return parameter.below_highest ? "at least " + lowest + " and below " + highest + unit
                                  : lowest + " to " + highest + unit;
 }
@@ -182,7 +175,7 @@ std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<F
 void validate(const MutationRequest& request) {
   for (const auto& [name, strength] : {std::pair("strength", request.strength), std::pair("muscles", request.muscles)})
     if (!(std::isfinite(strength) && strength >= 0))
-      throw ParameterError(name, text_of(strength) + " is not accepted; give 0 or more");
+      throw ParameterError(name, shortest_text(strength) + " is not accepted; give 0 or more");
 }
 
 // A robot as messages name it.

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
+
+#include "mercury/fnv.h"
 
 namespace mercury {
 namespace {
@@ -129,25 +130,21 @@ Inspection inspect(const Robot& robot) {
 }
 
 std::uint64_t body_hash(const Robot& robot) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&](std::uint32_t value) {
-    for (int byte = 0; byte < 4; ++byte) hash = (hash ^ (value >> 8 * byte & 0xff)) * 0x100000001b3u;
-  };
-  const auto add_float = [&](float value) { add(std::bit_cast<std::uint32_t>(value)); };
+  Fnv1a hash;
+  const auto add = [&](std::uint32_t value) { hash.add(value); };
   const auto add_size = [&](std::size_t size) { add(static_cast<std::uint32_t>(size)); };
   add_size(robot.masses.size());
-  for (const Vec3& place : robot.masses) add_float(place.x), add_float(place.y), add_float(place.z);
+  for (const Vec3& place : robot.masses) hash.add(place);
   add_size(robot.springs.size());
   for (const Spring& spring : robot.springs)
-    add(spring.a), add(spring.b), add(spring.material), add_float(spring.rest_length);
+    add(spring.a), add(spring.b), add(spring.material), hash.add(spring.rest_length);
   add_size(robot.faces.size());
   for (const Face& face : robot.faces) add(face.a), add(face.b), add(face.c);
   for (const Material& material : materials_of(robot)) {
-    add_float(material.stiffness), add_float(material.amplitude), add_float(material.frequency),
-        add_float(material.phase);
+    hash.add(material.stiffness).add(material.amplitude).add(material.frequency).add(material.phase);
     if (material.half_wave) add(1);  // robots without it keep the hash that they had before there was any
   }
-  return hash;
+  return hash.value();
 }
 
 }  // namespace mercury

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/origin.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "mercury/error.h"
+#include "robots/file/document.h"
+#include "robots/number_text.h"
 
 namespace mercury {
 namespace {
@@ -21,5 +27,141 @@ std::string text_of(const Robot& robot, const char* key) {
 
 std::string kind_of(const Robot& robot) { return text_of(robot, "kind"); }
 std::string environment_of(const Robot& robot) { return text_of(robot, "environment"); }
+
+// The ancestry in a robot's origin.
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* ancestry_key = "ancestry";
+constexpr std::size_t most_parents = 16;
+
+[[noreturn]] void refuse(const std::string& place, const std::string& what) {
+  throw InputError("/origin/ancestry" + place, what);
+}
+
+// The position behind a JSON string that begins at `begin`.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  for (std::size_t i = begin + 1; i < text.size(); ++i) {
+    if (text[i] == '\\')
+      ++i;
+    else if (text[i] == '"')
+      return i + 1;
+  }
+  return text.size();
+}
+
+// Takes the member "ancestry" out of a JSON object's text; returns false if it has none. The rest of the text is not
+// parsed: the weights of a network are many, and they keep every digit this way.
+bool take_out_ancestry(std::string& object) {
+  int depth = 0;
+  std::size_t member = 0;  // where the present member of the outermost object begins, with the comma before it
+  bool is_ancestry = false, at_key = false;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    const char c = object[i];
+    if (c == '"') {
+      const std::size_t end = end_of_string(object, i);
+      if (at_key) is_ancestry = object.compare(i, end - i, "\"ancestry\"") == 0;
+      at_key = false;
+      i = end - 1;
+      continue;
+    }
+    if ((c == '{' || c == '[') && ++depth == 1) {
+      at_key = true;
+      member = i + 1;
+    }
+    if (c == '}' || c == ']') --depth;
+    const bool ends = (c == ',' && depth == 1) || depth == 0;
+    if (ends && is_ancestry) {
+      const bool was_first = object[member] != ',';
+      object.erase(member, i - member + (was_first && c == ',' ? 1 : 0));
+      return true;
+    }
+    if (c == ',' && depth == 1) {
+      at_key = true;
+      member = i;
+    }
+  }
+  return false;
+}
+
+std::string text_of(const Ancestry& ancestry) {
+  std::string text = "{\"parents\":[";
+  for (std::size_t i = 0; i < ancestry.parents.size(); ++i) {
+    if (i > 0) text += ',';
+    text += json_text(ancestry.parents[i]);
+  }
+  text += ']';
+  const auto add = [&](const char* key, const std::string& value) { text += std::string(",\"") + key + "\":" + value; };
+  if (ancestry.crossover_seed) add("crossover_seed", std::to_string(*ancestry.crossover_seed));
+  if (ancestry.mutation_seed) add("mutation_seed", std::to_string(*ancestry.mutation_seed));
+  if (ancestry.strength) add("strength", shortest_text(*ancestry.strength));
+  if (ancestry.muscles) add("muscles", shortest_text(*ancestry.muscles));
+  if (ancestry.generation) add("generation", std::to_string(*ancestry.generation));
+  return text += '}';
+}
+
+std::optional<std::uint64_t> natural(const Json& ancestry, const char* key) {
+  const auto found = ancestry.find(key);
+  if (found == ancestry.end()) return std::nullopt;
+  if (!found->is_number_unsigned()) refuse(std::string("/") + key, "a whole number >= 0 is expected");
+  return found->get<std::uint64_t>();
+}
+
+std::optional<double> strength(const Json& ancestry, const char* key) {
+  const auto found = ancestry.find(key);
+  if (found == ancestry.end()) return std::nullopt;
+  if (!found->is_number() || !(found->get<double>() >= 0)) refuse(std::string("/") + key, "a number >= 0 is expected");
+  return found->get<double>();
+}
+
+std::vector<std::string> parents_in(const Json& ancestry) {
+  const auto found = ancestry.find("parents");
+  if (found == ancestry.end()) refuse("/parents", "is missing");
+  if (!found->is_array()) refuse("/parents", "an array of names is expected");
+  if (found->size() > most_parents) refuse("/parents", "at most 16 names are accepted");
+  std::vector<std::string> parents;
+  for (const Json& parent : *found) {
+    if (!parent.is_string())
+      refuse(std::string("/parents/").append(std::to_string(parents.size())), "a name is expected");
+    parents.push_back(parent.get<std::string>());
+  }
+  return parents;
+}
+
+}  // namespace
+
+std::optional<Ancestry> ancestry_of(const Robot& robot) {
+  if (robot.origin.find(ancestry_key) == std::string::npos) return std::nullopt;
+  // Of the outermost object, this member alone: a tree of all weights of a network would be large.
+  const auto keep = [&](int depth, Json::parse_event_t event, Json& value) {
+    return event != Json::parse_event_t::key || depth != 1 || value == ancestry_key;
+  };
+  const Json origin = Json::parse(robot.origin, keep, false);
+  if (!origin.is_object()) throw InputError("/origin", "a JSON object is expected");
+  const auto found = origin.find(ancestry_key);
+  if (found == origin.end()) return std::nullopt;
+  if (!found->is_object()) refuse("", "a JSON object is expected");
+  return Ancestry{.parents = parents_in(*found),
+                  .crossover_seed = natural(*found, "crossover_seed"),
+                  .mutation_seed = natural(*found, "mutation_seed"),
+                  .strength = strength(*found, "strength"),
+                  .muscles = strength(*found, "muscles"),
+                  .generation = natural(*found, "generation")};
+}
+
+std::string with_ancestry(const std::string& origin, const Ancestry& ancestry) {
+  constexpr const char* spaces = " \t\r\n";
+  std::string whole = origin.empty() ? std::string("{}") : origin;
+  while (whole.find(ancestry_key) != std::string::npos && take_out_ancestry(whole)) {
+  }
+  const std::size_t begin = whole.find_first_not_of(spaces), end = whole.find_last_not_of(spaces);
+  if (begin == std::string::npos || begin == end || whole[begin] != '{' || whole[end] != '}')
+    throw InputError("/origin", "a JSON object is expected");
+  const bool is_empty = whole.find_first_not_of(spaces, begin + 1) == end;
+  whole.resize(end);
+  if (!is_empty) whole += ',';
+  return whole.append("\"ancestry\":").append(text_of(ancestry)).append("}");
+}
 
 }  // namespace mercury

@@ -3,63 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <thread>
 
 #include "mercury/error.h"
 #include "mercury/threads.h"
 
 namespace mercury {
-namespace {
-
-template <class Number>
-std::string shown(Number value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return {text, end.ptr};
-}
-
-bool is_accepted(double value, Accepts accepts) {
-  return std::isfinite(value) &&
-         (accepts == Accepts::any || value > 0 || (accepts == Accepts::at_least_zero && value == 0));
-}
-
-std::string bounds(Accepts accepts) {
-  return accepts == Accepts::above_zero ? " > 0" : accepts == Accepts::at_least_zero ? " >= 0" : "";
-}
-
-// Throws ParameterError if the value is not accepted.
-struct Check {
-  template <class Parameter, class Number>
-  void operator()(const Parameter& parameter, Number value) const {
-    const auto number = static_cast<double>(value);
-    if (is_accepted(number, parameter.accepts)) return;
-    refuse(parameter, shown(value), "a finite number" + bounds(parameter.accepts), " ");
-  }
-  template <class Parameter>
-  void operator()(const Parameter& parameter, int value) const {
-    if (!is_accepted(value, parameter.accepts)) refuse(parameter, std::to_string(value), "0 or more", " ");
-  }
-  template <class Parameter>
-  void operator()(const Parameter& parameter, Vec3 value) const {
-    for (const float component : {value.x, value.y, value.z})
-      if (!is_accepted(static_cast<double>(component), parameter.accepts))
-        refuse(parameter, shown(value.x) + "," + shown(value.y) + "," + shown(value.z),
-               "three finite numbers" + bounds(parameter.accepts), " of ");
-  }
-  template <class Parameter>
-  void operator()(const Parameter&, bool) const {}
-
-  template <class Parameter>
-  [[noreturn]] static void refuse(const Parameter& parameter, const std::string& value, const std::string& accepted,
-                                  const char* before_unit) {
-    const std::string unit(parameter.unit);
-    throw ParameterError(std::string(parameter.name),
-                         value + " is not accepted; give " + accepted + (unit.empty() ? unit : before_unit + unit));
-  }
-};
-
-}  // namespace
 
 std::string_view name_of(Solver solver) { return solver == Solver::force ? "force" : "xpbd"; }
 
@@ -109,9 +58,9 @@ void require_possible_threads(const Device& device) {
 }
 
 void validate(const Configuration& configuration) {
-  for_each_parameter(configuration, Check{});
-  for_each_parameter(configuration.device, Check{});
-  for_each_parameter(configuration.environment, Check{});
+  check_parameters(configuration);
+  check_parameters(configuration.device);
+  check_parameters(configuration.environment);
 }
 
 }  // namespace mercury

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mercury/error.h"
+#include "mercury/fnv.h"
 #include "sim/actuators.h"
 
 namespace mercury {
@@ -80,13 +81,10 @@ bool same_topology(const Robot& a, const Robot& b) {
 }
 
 std::uint64_t topology_key(const Robot& robot) {
-  std::uint64_t key = 0xcbf29ce484222325u ^ robot.masses.size();
-  const auto take = [&](std::uint64_t value) {
-    key = (key ^ value) * 0x100000001b3u;
-  };  // FNV-1a, with numbers in place of bytes
-  for (const Spring& spring : robot.springs) take(std::uint64_t{spring.a} << 16 | spring.b);
-  for (const Face& face : robot.faces) take(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
-  return key;
+  Fnv1a key(Fnv1a::empty ^ robot.masses.size());
+  for (const Spring& spring : robot.springs) key.step(std::uint64_t{spring.a} << 16 | spring.b);
+  for (const Face& face : robot.faces) key.step(std::uint64_t{face.a} << 32 | std::uint64_t{face.b} << 16 | face.c);
+  return key.value();
 }
 
 void validate(const Robot& robot) {

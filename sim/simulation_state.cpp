@@ -2,10 +2,10 @@
 // States, explosions and telemetry of a Simulation.
 #include <oneapi/tbb/parallel_for.h>
 
-#include <bit>
 #include <stdexcept>
 #include <utility>
 
+#include "mercury/fnv.h"
 #include "mercury/simulation.h"
 #include "sim/physics/measures.h"
 #include "sim/simulation_parts.h"
@@ -13,19 +13,10 @@
 namespace mercury {
 namespace {
 
-constexpr std::uint64_t offset_basis = 0xcbf29ce484222325u;
-
-std::uint64_t fnv1a(std::span<const Vec3> values, std::uint64_t hash) {
-  const auto add = [&](float value) {
-    auto bits = std::bit_cast<std::uint32_t>(value);
-    for (int byte = 0; byte < 4; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 0x100000001b3u;
-  };
-  for (const Vec3 value : values) {
-    add(value.x);
-    add(value.y);
-    add(value.z);
-  }
-  return hash;
+std::uint64_t fnv1a(std::span<const Vec3> values, std::uint64_t so_far = Fnv1a::empty) {
+  Fnv1a hash(so_far);
+  for (const Vec3& value : values) hash.add(value);
+  return hash.value();
 }
 
 }  // namespace
@@ -155,11 +146,11 @@ Telemetry Simulation::telemetry(std::size_t robot) const {
 
 std::uint64_t Simulation::hash(std::size_t robot) const {
   const State now = parts_->state(robot);
-  return fnv1a(now.velocities, fnv1a(now.positions, offset_basis));
+  return fnv1a(now.velocities, fnv1a(now.positions));
 }
 
 std::vector<std::uint64_t> Simulation::hashes() const {
-  std::vector<std::uint64_t> all(size(), offset_basis);
+  std::vector<std::uint64_t> all(size(), Fnv1a::empty);
   std::vector<Vec3> values(mass_count());
   const auto take_values = [&] {
     oneapi::tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {

@@ -11,7 +11,7 @@
 #include "app/commands/completion.h"
 #include "app/commands/man_page.h"
 #include "app/options/option_values.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

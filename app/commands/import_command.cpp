@@ -42,8 +42,6 @@ struct ImportedFile {
   std::string configuration_file;
 };
 
-bool is_base(const fs::path& file) { return file.filename() == "base.vxa" || file.filename() == "env.rsc"; }
-
 // The files of a folder that can be imported, sorted by name; those on which others build are left out.
 void add_files_of(const fs::path& folder, bool recursive, std::vector<fs::path>& files) {
   std::vector<fs::path> own, folders;
@@ -64,7 +62,7 @@ void add_files_of(const fs::path& folder, bool recursive, std::vector<fs::path>&
   for (const fs::path& file : own) {
     if (!import_format_of(file)) continue;
     const bool builds = file.extension() == ".rsc" ? others > 1 : has(".vxd");
-    if (is_base(file) && builds)
+    if (is_import_base(file) && builds)
       say_detail(fmt::format("{}: the base of the files beside it", file.string()));
     else
       files.push_back(file);
@@ -84,9 +82,7 @@ std::vector<fs::path> files_in(const ImportCommandOptions& options) {
     }
     const std::size_t before = files.size();
     add_files_of(path, options.recursive, files);
-    if (files.size() == before)
-      throw InputError(path.string(),
-                       "the folder holds no file of another simulator: .vxa, .vxc, .vxd, .rsc, or .json of EvoGym");
+    if (files.size() == before) throw InputError(path.string(), "the folder holds no file of " + import_sources());
   }
   return files;
 }
@@ -278,10 +274,7 @@ int import_files(ImportCommandOptions options) {
 void add_import_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<ImportCommandOptions>();
   const Command command = program.add_command("import", "Make robots from files of other simulators");
-  command
-      .add_list("FILES", options->paths,
-                "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json), and "
-                "folders of them")
+  command.add_list("FILES", options->paths, "Files of " + import_sources() + ", and folders of them")
       .with_form("PATH")
       .required();
   add_text(command, "-o,--output", options->output, "Folder for the robots and their configurations", "FOLDER")

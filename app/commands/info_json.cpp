@@ -61,10 +61,13 @@ Json chip_of(const Robot& robot) {
           {"devices", devices}};
 }
 
-Json json_of(const TrialSettings& trials) {
-  return {{"seconds", trials.seconds}, {"settle", trials.settle}, {"trials", trials.trials},
-          {"noise", trials.noise},     {"damage", trials.damage}, {"strain_limit", trials.strain_limit},
-          {"racing", trials.racing}};
+// A member for each parameter of a struct.
+template <class Struct>
+Json parameters_of(const Struct& values) {
+  Json json = Json::object();
+  for_each_parameter(values,
+                     [&](const auto& parameter, const auto& value) { json[std::string(parameter.name)] = value; });
+  return json;
 }
 
 Json json_of(const EvolutionSettings& settings) {
@@ -73,13 +76,13 @@ Json json_of(const EvolutionSettings& settings) {
   for (const MapAxis& axis : algorithm.axes)
     axes.push_back(
         {{"quantity", axis.quantity}, {"lowest", axis.lowest}, {"highest", axis.highest}, {"cells", axis.cells}});
-  return {{"name", algorithm.name},
-          {"population", algorithm.population},
-          {"children", settings.children > 0 ? settings.children : algorithm.population},
-          {"crossover", algorithm.crossover},
-          {"mutation", settings.mutation},
-          {"seed", settings.seed},
-          {"axes", axes}};
+  Json json{{"name", algorithm.name}};
+  json.update(parameters_of(algorithm));
+  json.update(parameters_of(settings));
+  json.erase("generations");  // planned, among the results
+  json["children"] = settings.children > 0 ? settings.children : algorithm.population;
+  json["axes"] = axes;
+  return json;
 }
 
 Json json_of(const GenomeSpaceRequest& space) {
@@ -212,7 +215,7 @@ Json info_of(const RunHistory& run) {
           {"genomes", json_of(settings.space)},
           {"objectives", settings.evolution.objectives},
           {"algorithm", json_of(settings.evolution)},
-          {"trials", json_of(settings.evolution.trials)},
+          {"trials", parameters_of(settings.evolution.trials)},
           {"configuration", mercury::json_of(settings.evolution.configuration)},
           {"generations", settings.evolution.generations},
           {"last_generation", run.generations().empty() ? Json() : Json(run.generations().back().number)},
@@ -228,11 +231,12 @@ Json info_of(const RunHistory& run) {
 Configuration configuration_of(const SceneFile& scene) {
   std::vector<std::string> environments, notes;
   for (const std::string& file : scene.robots()) {
-    if (!import_format_of(file)) {
+    const ImportFormat* format = import_format_of(file);
+    if (!format) {
       environments.push_back(environment_of(load_robot(file)));
       continue;
     }
-    for (const Robot& robot : import_file(file).robots) environments.push_back(environment_of(robot));
+    for (const Robot& robot : import_file(file, *format).robots) environments.push_back(environment_of(robot));
   }
   for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
   return scene.configuration(environments, notes);

@@ -14,9 +14,9 @@
 #include "app/commands/results_file.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
+#include "app/options/parameter_options.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
-#include "app/options/trial_options.h"
 
 namespace mercury {
 namespace {

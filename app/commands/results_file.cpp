@@ -14,7 +14,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/standard_streams.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

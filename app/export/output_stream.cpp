@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 

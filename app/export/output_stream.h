@@ -22,7 +22,7 @@ namespace mercury {
 static_assert(std::endian::native == std::endian::little, "the binary formats are little-endian");
 
 // The file has a temporary name until keep(); without keep() nothing is left behind. All members throw as fail() of
-// robots/whole_file.h: InputError if the file cannot be made, std::runtime_error if the disk is full.
+// robots/file/whole_file.h: InputError if the file cannot be made, std::runtime_error if the disk is full.
 class OutputStream {
  public:
   explicit OutputStream(const std::filesystem::path& target);

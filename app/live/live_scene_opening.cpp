@@ -73,8 +73,8 @@ void read_recording(const fs::path& file, bool alone, Opened& opened, Messages& 
 }
 
 // Opens the robots of another simulator. Their worlds are not applied: the scene may have others.
-void read_import(const fs::path& file, Opened& opened, Messages& messages) {
-  Import import = import_file(file);
+void read_import(const fs::path& file, const ImportFormat& format, Opened& opened, Messages& messages) {
+  Import import = import_file(file, format);
   for (Robot& robot : import.robots) opened.robots.push_back({"", std::move(robot)});
   const auto count = [&](ImportOutcome outcome) {
     return std::ranges::count(import.report.elements, outcome, &ImportedElement::outcome);
@@ -112,11 +112,12 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
     if (!alone) throw InputError(file.string(), "is a scene, which takes the place of the present one; open it alone");
     std::vector<OpenedRobot> robots;
     for (const std::string& robot : scene->robots()) {
-      if (!import_format_of(robot)) {
+      const ImportFormat* format = import_format_of(robot);
+      if (!format) {
         robots.push_back({robot, load_robot(robot)});
         continue;
       }
-      for (Robot& imported : import_file(robot).robots) robots.push_back({"", std::move(imported)});
+      for (Robot& imported : import_file(robot, *format).robots) robots.push_back({"", std::move(imported)});
     }
     std::vector<std::string> notes;
     (void)scene->configuration(environments_of(*scene, robots), notes);  // throws while nothing has changed yet
@@ -124,7 +125,7 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
     opened.scene = std::move(scene);
     return;
   }
-  if (import_format_of(file)) return read_import(file, opened, messages);
+  if (const ImportFormat* format = import_format_of(file)) return read_import(file, *format, opened, messages);
   opened.robots.push_back({file.string(), load_robot(file)});
 }
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <system_error>
 
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "app/options/generator_options.h"
 #include "mercury/robot_file.h"
-#include "robots/document.h"
+#include "robots/file/document.h"
 
 namespace mercury {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "app/base/version.h"
 #include "app/options/option_values.h"
-#include "app/options/trial_options.h"
+#include "app/options/parameter_options.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
@@ -55,6 +55,7 @@ MapAxis axis_from(const std::string& text) {
 }  // namespace
 
 void EvolutionOptions::add_to(const Command& command) {
+  command_ = command;
   const auto repeated = [&](const char* name, std::vector<std::string>& values, const std::string& help,
                             const char* form) {
     return command.add_list(name, values, help).one_value_each().with_form(form).in_group(search_group);
@@ -82,32 +83,10 @@ void EvolutionOptions::add_to(const Command& command) {
       .offering(names_of_quantities());
   repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
-  const auto search = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
-    add_number(command, name, value, help, form).in_group(search_group);
-  };
-  AlgorithmSettings& algorithm = given_.algorithm;
-  search("--population", algorithm.population, "Robots that live on after each generation (default 128)", "N");
-  search("--children", given_.children, "Robots born in a generation (default: --population)", "N");
-  search("--generations", generations_, "Generations after the first, random one (default 100)", "N");
-  search("--mutation", given_.mutation, "Strength of mutations (default 1)", "X");
-  search("--crossover", algorithm.crossover,
-         fmt::format("Share of the children with two parents (default {})", algorithm.crossover), "0..1");
-  search("--tournament", algorithm.tournament,
-         fmt::format("Robots among which the best becomes a parent (default {})", algorithm.tournament), "N");
-  search("--elites", algorithm.elites,
-         fmt::format("ga: share that lives on unconditionally (default {})", algorithm.elites), "0..1");
-  search("--seed", given_.seed, "Seed of the run (default 1)", "N");
-
-  TrialSettings& trials = given_.trials;
-  const auto trial = [&](const std::string& name, auto& value, const std::string& help, const char* form) {
-    add_number(command, name, value, help, form).in_group(trial_options_group);
-  };
-  add_trial_options(command, trials);
-  trial("--trials", trials.trials, "Trials per robot, started at different moments of its movement (default 1)", "N");
-  trial("--noise", trials.noise, "Standard deviation of stiffness and amplitude between trials (default 0)", "0..1");
-  trial("--damage", trials.damage, "Share of the voxels that are missing in a trial (default 0)", "0..1");
-  command.add_flag("--racing", trials.racing, "Stop robots early that are clearly behind")
-      .in_group(trial_options_group);
+  add_parameters(command, given_.algorithm, search_group);
+  add_parameters(command, given_, search_group);
+  add_trial_options(command, given_.trials);
+  add_evolution_trial_options(command, given_.trials);
   simulation_.add_to(command);
   generators_.add_to(command);
 }
@@ -151,6 +130,10 @@ std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& pa
   return founders;
 }
 
+std::optional<int> EvolutionOptions::generations() const {
+  return command_->is_given("--generations") ? std::optional(given_.generations) : std::nullopt;
+}
+
 AlgorithmSettings EvolutionOptions::algorithm() const {
   AlgorithmSettings algorithm = given_.algorithm;
   for (const std::string& axis : axes_) algorithm.axes.push_back(axis_from(axis));
@@ -170,7 +153,6 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   EvolutionSettings& evolution = settings.evolution;
   evolution.algorithm = algorithm();
   if (!objectives_.empty()) evolution.objectives = objectives_;
-  if (generations_) evolution.generations = *generations_;
   evolution.trials.seconds = simulation_.seconds();
   evolution.configuration = simulation_.configuration();
   validate(evolution);

@@ -29,7 +29,7 @@ class EvolutionOptions {
 
   // What may change when a run goes on: throws InputError for any other option that was given.
   void require_only_what_may_change(const Command& command) const;
-  std::optional<int> generations() const { return generations_; }
+  std::optional<int> generations() const;  // if it was given
   // Puts the device and threads that were given into the settings of a run that goes on.
   void choose_device(const Command& command, Configuration& configuration) const;
 
@@ -39,6 +39,7 @@ class EvolutionOptions {
   void set_size(GenomeSpaceRequest& space, const std::string& size) const;
   AlgorithmSettings algorithm() const;
 
+  std::optional<Command> command_;
   RobotInputs founder_files_;
   std::vector<std::string> from_;  // "voxel:6x4x4", or files and folders
   GeneratorOptions generators_;
@@ -46,7 +47,6 @@ class EvolutionOptions {
   std::string genes_ = "body";
   std::optional<std::string> algorithm_;
   std::vector<std::string> objectives_, axes_;
-  std::optional<int> generations_;
   EvolutionSettings given_;  // what needs no further reading
 };
 

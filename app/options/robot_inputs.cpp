@@ -45,8 +45,9 @@ std::string read_standard_input() {
 
 // The robot of a file, or those of a file of another simulator. Their worlds are not applied.
 std::vector<Robot> robots_in(const fs::path& file) {
-  if (!import_format_of(file)) return {load_robot(file)};
-  Import import = import_file(file);
+  const ImportFormat* format = import_format_of(file);
+  if (!format) return {load_robot(file)};
+  Import import = import_file(file, *format);
   if (import.robots.empty()) throw InputError(file.string(), "holds no robot: " + import.report.notes.front());
   say(fmt::format("{}: imported without its world ({}, dt {:.3g} s); mercury import writes it, and a report",
                   printable(file.string()), import.settings.environment, import.settings.dt));

@@ -5,13 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 #include <type_traits>
 #include <utility>
 
 #include "app/options/option_values.h"
+#include "app/options/parameter_options.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/threads.h"
@@ -21,13 +21,6 @@ namespace {
 
 constexpr const char* simulation_group = "Simulation";
 constexpr const char* environment_group = "Environment";
-
-// The text of a default value.
-std::string text_of(double value) { return fmt::format("{}", value); }
-std::string text_of(float value) { return fmt::format("{}", value); }
-std::string text_of(int value) { return fmt::format("{}", value); }
-std::string text_of(Vec3 value) { return fmt::format("{},{},{}", value.x, value.y, value.z); }
-std::string text_of(bool value) { return value ? "on" : "off"; }
 
 std::string joined(const std::vector<std::string_view>& names, const char* last_separator) {
   std::string text;
@@ -68,27 +61,10 @@ std::string where_and_default(std::string_view name) {
   return fmt::format("(default {})", fmt::join(defaults, ", "));
 }
 
-// How the help shows a value: "KG/M3", or "X" for a number without unit, "N" for a whole one.
-std::string form_of(std::string_view unit, bool whole = false) {
-  std::string form(!unit.empty() ? unit : whole ? "N" : "X");
-  for (char& letter : form) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  return form;
-}
-
 // One number is a magnitude, downwards.
 Vec3 gravity_from(const std::string& option, const std::string& text) {
   if (text.find(',') != std::string::npos) return vector_from(option, text);
   return {0, 0, -number_from<float>(option, text)};
-}
-
-// Adds an option for each parameter of a struct, read into its member.
-template <class Struct>
-void add_parameters(const Command& command, Struct& values) {
-  for_each_parameter(values, [&](const auto& parameter, auto& value) {
-    const std::string help = fmt::format("{} (default {})", parameter.help, text_of(parameter.default_value()));
-    const std::string form = form_of(parameter.unit, std::is_integral_v<std::remove_reference_t<decltype(value)>>);
-    add_number(command, option_of(parameter.name), value, help, form).in_group(simulation_group);
-  });
 }
 
 }  // namespace
@@ -105,7 +81,7 @@ void SimulationOptions::add_to(const Command& command) {
       },
       "What computes; cuda:all spreads robots over all GPUs (default auto: a GPU if there is one)",
       "auto|cpu|cuda[:N]"));
-  add_parameters(command, given_.device);
+  add_parameters(command, given_.device, simulation_group);
   add(add_value(
       command, "--environment", environment_,
       "Where the robots live; + adds parts, as in ocean+ground+contacts (default: what they are made for, else ocean)",
@@ -114,7 +90,7 @@ void SimulationOptions::add_to(const Command& command) {
   add(add_value(command, "--solver", given_.solver, "Solver (default force)", "force|xpbd",
                 [](const std::string&, const std::string& text) { return solver_named(text); }));
   add(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S"));
-  add_parameters(command, given_);
+  add_parameters(command, given_, simulation_group);
   add_environment_parameters(command);
 }
 

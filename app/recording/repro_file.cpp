@@ -10,7 +10,7 @@
 #include "app/recording/repro.h"
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mercury/error.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

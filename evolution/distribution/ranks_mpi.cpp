@@ -22,12 +22,12 @@
 #include <thread>
 #include <utility>
 
-#include "evolution/bytes.h"
 #include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
-#include "evolution/run_folder/assessment_bytes.h"
+#include "evolution/run_folder/generation_record.h"
 #include "evolution/run_folder/run_file.h"
 #include "mercury/error.h"
+#include "robots/bytes.h"
 
 namespace mercury {
 namespace {

@@ -5,12 +5,11 @@
 #include <charconv>
 #include <map>
 
-#include "evolution/bytes.h"
-#include "evolution/run_folder/assessment_bytes.h"
-#include "evolution/run_folder/checksum.h"
+#include "evolution/run_folder/generation_record.h"
 #include "mercury/error.h"
 #include "mercury/shards.h"
-#include "robots/whole_file.h"
+#include "robots/bytes.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

@@ -1,32 +1,121 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which genome space a request is for.
-#include <array>
+// Genomes and genome spaces of all kinds of robots that have genes (robots/genes.h), and which space a request is for.
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "evolution/genomes/body_genome.h"
-#include "evolution/genomes/given_body.h"
+#include "evolution/genomes/spaces.h"
 #include "mercury/configuration.h"
 #include "mercury/error.h"
+#include "mercury/genome.h"
 #include "mercury/origin.h"
+#include "mercury/random.h"
+#include "robots/genes.h"
 
 namespace mercury {
 namespace {
 
-constexpr std::array<std::string_view, 3> genes_names{"body", "muscles", "both"};
+// What all genomes of a space share.
+struct GenomeContext {
+  const GenesKind& kind;
+  Genes genes = Genes::body;
+  std::string environment;
+};
 
-template <class BodyGenes>
-std::unique_ptr<GenomeSpace> make_space(const Generator& generator, const GenomeSpaceRequest& request) {
-  return std::make_unique<BodySpace<BodyGenes>>(generator, request);
-}
+using GenesPointer = std::shared_ptr<const BodyGenes>;
 
-using MakeSpace = std::unique_ptr<GenomeSpace> (*)(const Generator&, const GenomeSpaceRequest&);
+class BodyGenome : public Genome {
+ public:
+  BodyGenome(GenesPointer genes, std::shared_ptr<const GenomeContext> context)
+      : genes_(std::move(genes)), context_(std::move(context)) {}
 
-MakeSpace maker_of(std::string_view kind) {
-  if (kind == "voxel") return make_space<VoxelGenes>;
-  if (kind == "cppn") return make_space<CppnGenes>;
-  if (kind == "nn") return make_space<NnGenes>;
-  if (kind == "shell") return make_space<ShellGenes>;
-  return nullptr;
-}
+  Robot grow(const std::string& name) const override { return genes_->grown(name, context_->environment); }
+  GenomePointer mutate(double strength, std::uint64_t seed) const override {
+    if (strength == 0) return std::make_shared<BodyGenome>(genes_, context_);
+    return std::make_shared<BodyGenome>(genes_->mutated(context_->genes, strength, seed), context_);
+  }
+  GenomePointer cross(const Genome& other, std::uint64_t seed) const override {
+    const auto* mate = dynamic_cast<const BodyGenome*>(&other);
+    if (!mate) throw InputError("crossover", "two genomes of one space are needed");
+    return std::make_shared<BodyGenome>(genes_->crossed(*mate->genes_, context_->genes, seed), context_);
+  }
+  std::uint64_t identity() const override {
+    std::uint64_t identity = identity_.load(std::memory_order_relaxed);
+    if (identity != 0) return identity;
+    IdentityHash hash;
+    genes_->add_identity(hash);
+    identity_.store(identity = hash.value(), std::memory_order_relaxed);
+    return identity;
+  }
+  std::string encode() const override {
+    ByteWriter writer;
+    write_head(writer, context_->kind.tag);
+    genes_->write(writer);
+    return std::move(writer).take();
+  }
+
+ private:
+  GenesPointer genes_;
+  std::shared_ptr<const GenomeContext> context_;
+  mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet
+};
+
+// Random robots of a generator, or the founders and mutants of them.
+class BodySpace : public GenomeSpace {
+ public:
+  BodySpace(const Generator& generator, const GenomeSpaceRequest& request)
+      : generator_(generator), values_(request.values),
+        context_(std::make_shared<GenomeContext>(GenomeContext{*generator.genes, request.genes, request.environment})) {
+    for (const Robot& founder : request.founders) founders_.push_back(genes_of(founder));
+    if (founders_.empty()) generator_.validate(values_);
+  }
+
+  GenomePointer random(std::uint64_t seed, std::uint64_t index) const override {
+    if (index < founders_.size()) return genome(founders_[index]);
+    Random random(seed_of(seed, index));
+    const std::uint64_t mutation_seed = random.bits();
+    if (!founders_.empty()) {
+      const double strength = random.uniform(1, strongest_at_first);
+      return genome(founders_[index % founders_.size()])->mutate(strength, mutation_seed);
+    }
+    GenesPointer genes = context_->kind.of(generator_.make(values_, context_->environment, seed, index));
+    if (context_->genes != Genes::body) genes = genes->mutated(Genes::muscles, strongest_at_first, mutation_seed);
+    return genome(std::move(genes));
+  }
+  std::size_t founders() const override { return founders_.size(); }
+  GenomePointer decode(std::string_view bytes) const override try {
+    ByteReader reader(bytes);
+    read_head(reader, context_->kind.tag);
+    GenesPointer genes = context_->kind.read(reader);
+    reader.end();
+    return genome(std::move(genes));
+  } catch (const DamagedBytes& error) {
+    throw InputError("genome", error.what());
+  }
+
+ private:
+  static constexpr double strongest_at_first = 4;  // mutation of the robots that a run begins with
+
+  GenomePointer genome(GenesPointer genes) const { return std::make_shared<BodyGenome>(std::move(genes), context_); }
+  // A body or materials that were changed by hand would be lost without a word.
+  GenesPointer genes_of(const Robot& founder) const try {
+    GenesPointer genes = context_->kind.of(founder);
+    const Robot grown = genes->grown(founder.name, "");
+    if (!std::ranges::equal(materials_of(grown).subspan(1), materials_of(founder).subspan(1)) ||
+        grown.springs != founder.springs || grown.masses != founder.masses)
+      throw InputError("/origin", "leads to another robot; evolve its muscles alone");
+    return genes;
+  } catch (const InputError& error) {
+    throw InputError("robot " + founder.name, error.what());
+  }
+
+  const Generator& generator_;
+  ParameterValues values_;
+  std::shared_ptr<const GenomeContext> context_;
+  std::vector<GenesPointer> founders_;
+};
 
 // The kind of all founders, or that of the request.
 std::string kind_for(const GenomeSpaceRequest& request) {
@@ -46,20 +135,6 @@ std::string kind_for(const GenomeSpaceRequest& request) {
 
 }  // namespace
 
-std::string_view name_of(Genes genes) { return genes_names[static_cast<std::size_t>(genes)]; }
-
-Genes genes_named(std::string_view name) {
-  for (std::size_t i = 0; i < genes_names.size(); ++i)
-    if (genes_names[i] == name) return static_cast<Genes>(i);
-  throw ParameterError("genes", "\"" + std::string(name) + "\" is not accepted; give body, muscles or both");
-}
-
-Changes changes_of(Genes genes, std::uint64_t seed) {
-  const std::uint64_t choice = Random(seed_of(seed, 1)).below(3);
-  return {.body = genes == Genes::body || (genes == Genes::both && choice != 0),
-          .muscles = genes == Genes::muscles || (genes == Genes::both && choice != 1)};
-}
-
 void write_head(ByteWriter& writer, std::uint8_t tag) {
   constexpr std::uint8_t version = 1;
   writer.add(tag);
@@ -77,12 +152,11 @@ std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request
   if (!request.environment.empty()) environment_named(request.environment);  // or it throws
   if (!request.founders.empty() && request.genes == Genes::muscles) return make_given_body_space(request);
   const Generator& generator = generator_named(kind_for(request));
-  const MakeSpace make = maker_of(generator.kind);
-  if (!make) throw ParameterError("kind", generator.kind + " robots cannot be evolved");
+  if (!generator.genes) throw ParameterError("kind", generator.kind + " robots cannot be evolved");
   GenomeSpaceRequest whole = request;
   if (whole.environment.empty())
     whole.environment = request.founders.empty() ? generator.environment : environment_of(request.founders.front());
-  return make(generator, whole);
+  return std::make_unique<BodySpace>(generator, whole);
 }
 
 }  // namespace mercury

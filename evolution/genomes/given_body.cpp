@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/genomes/given_body.h"
+#include "evolution/genomes/spaces.h"
 
 #include <algorithm>
 
-#include "evolution/genomes/genome_head.h"
-#include "evolution/genomes/material_genes.h"
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
+#include "robots/genes.h"
 
 namespace mercury {
 namespace {

@@ -1,12 +1,204 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/derived_files.h"
 
-#include "evolution/run_folder/champions.h"
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/progress_plot.h"
-#include "evolution/run_folder/tables.h"
-#include "robots/whole_file.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "mercury/quantity.h"
+#include "mercury/random.h"
+#include "mercury/robot_file.h"
+#include "robots/file/whole_file.h"
+#include "robots/number_text.h"
 
 namespace mercury {
+namespace {
+
+std::string run_name(const RunHistory& run) {
+  const std::filesystem::path folder = std::filesystem::absolute(run.folder()).lexically_normal();
+  return (folder.has_filename() ? folder.filename() : folder.parent_path().filename()).string();
+}
+
+}  // namespace
+
+Robot run_robot(const RunHistory& run, std::uint64_t id) {
+  Robot robot = run.genome(id)->grow(run_name(run) + "-" + std::to_string(id));
+  const Individual& individual = run.individuals()[id];
+  Ancestry ancestry{.generation = static_cast<std::uint64_t>(individual.generation)};
+  for (const std::uint64_t parent : individual.parents)
+    ancestry.parents.push_back(run_name(run) + "-" + std::to_string(parent));
+  if (!individual.parents.empty()) ancestry.mutation_seed = individual.seed;
+  if (individual.parents.size() > 1) ancestry.crossover_seed = seed_of(individual.seed, 0);
+  robot.origin = with_ancestry(robot.origin, ancestry);
+  return robot;
+}
+
+namespace {
+
+std::string file_name(int generation, std::uint64_t id) {
+  char name[64];
+  std::snprintf(name, sizeof name, "%05d-%07llu.json", generation, static_cast<unsigned long long>(id));
+  return name;
+}
+
+std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
+  const GenomePointer genome = run.genome(id);  // a damaged journal is an error
+  try {
+    return run.grow(id);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void write_champions(const RunHistory& run) {
+  const std::filesystem::path folder = run.folder() / champions_name;
+  std::optional<std::uint64_t> previous;
+  for (const GenerationSummary& generation : run.generations()) {
+    if (generation.living == 0 || generation.best == previous) continue;
+    previous = generation.best;
+    const std::filesystem::path path = folder / file_name(generation.number, generation.best);
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) continue;
+    const std::optional<Robot> robot = grown(run, generation.best);
+    if (!robot) continue;
+    std::filesystem::create_directories(folder, error);
+    if (error) fail(folder, error.value());
+    save_robot(path, *robot);
+  }
+}
+
+namespace {
+
+class Csv {
+ public:
+  Csv& cell(std::string_view text) {
+    if (!at_line_start_) text_ += ',';
+    at_line_start_ = false;
+    if (text.find_first_of(",\"\n\r") == std::string_view::npos) {
+      text_ += text;
+      return *this;
+    }
+    text_ += '"';
+    for (const char letter : text) text_.append(letter == '"' ? 2 : 1, letter);
+    text_ += '"';
+    return *this;
+  }
+  Csv& cell(double value) { return cell(shortest_text(value)); }
+  template <std::integral Whole>
+  Csv& cell(Whole value) {
+    return cell(std::to_string(value));
+  }
+  void end_line() {
+    text_ += '\n';
+    at_line_start_ = true;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  bool at_line_start_ = true;
+};
+
+// "score", or "score_1", "score_2", ... of several objectives.
+std::string score_name(std::size_t objective, std::size_t objectives) {
+  return objectives == 1 ? "score" : "score_" + std::to_string(objective + 1);
+}
+
+std::string ancestor_list(const Individual& individual) {
+  if (individual.parents.empty()) return "[none]";
+  std::string list = "[";
+  for (const std::uint64_t parent : individual.parents)
+    list.append(list.size() > 1 ? "," : "").append(std::to_string(parent));
+  return list + "]";
+}
+
+// A quantity's name, unless tools for phylogenies give a column of that name a meaning of their own.
+std::string column_of(const Quantity& quantity) {
+  constexpr std::string_view taken[] = {"branch_length", "edge_length", "label",    "length",          "name",
+                                        "num_orgs",      "taxon_label", "tot_orgs", "total_offspring", "weight"};
+  return (std::ranges::find(taken, quantity.name) == std::end(taken) ? "" : "robot_") + std::string(quantity.name);
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+void add_quantities(Csv& csv, const Assessment& assessment) {
+  for (std::size_t q = 0; q < quantities().size(); ++q) {
+    const bool has_value = q < assessment.values.size() && counts(quantities()[q], assessment.fate);
+    csv.cell(has_value ? shortest_text(assessment.values[q]) : std::string());
+  }
+}
+
+// Numbers that an individual may lack.
+void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
+}
+
+}  // namespace
+
+void write_lineage(const RunHistory& run) {
+  const std::size_t objectives = run.settings().evolution.objectives.size();
+  Csv csv;
+  for (const char* name :
+       {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
+    csv.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
+  csv.cell("hash");
+  for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
+  csv.end_line();
+  for (const Individual& individual : run.individuals()) {
+    const Assessment& assessment = individual.assessment;
+    const std::optional<int> died = run.died(individual.id);
+    csv.cell(individual.id).cell(ancestor_list(individual)).cell(individual.generation);
+    csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
+    csv.cell(individual.seed).cell(name_of(assessment.fate));
+    add_cells(csv, assessment.scores, objectives);
+    csv.cell(hexadecimal(assessment.hash));
+    add_quantities(csv, assessment);
+    csv.end_line();
+  }
+  write_whole_file(run.folder() / lineage_name, csv.text());
+}
+
+void write_generations(const RunHistory& run) {
+  const std::size_t objectives = run.settings().evolution.objectives.size();
+  Csv csv;
+  for (const char* name : {"generation", "born", "living", "best_id"}) csv.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i)
+    for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
+      csv.cell(name + score_name(i, objectives));
+  for (const char* name :
+       {"sound", "stopped", "exploded", "overstretched", "failed", "seconds", "robots_per_second", "device"})
+    csv.cell(name);
+  csv.end_line();
+  for (const GenerationSummary& generation : run.generations()) {
+    csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
+    for (const ScoreSpread& scores : generation.scores)
+      csv.cell(scores.highest).cell(scores.upper_quartile).cell(scores.median).cell(scores.lower_quartile);
+    csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched - generation.failed)
+        .cell(generation.stopped)
+        .cell(generation.exploded)
+        .cell(generation.overstretched)
+        .cell(generation.failed);
+    const double seconds = generation.times.seconds;
+    csv.cell(fixed_text(seconds, 3))
+        .cell(seconds > 0 ? fixed_text(static_cast<double>(generation.born) / seconds, 1) : std::string())
+        .cell(generation.times.device);
+    csv.end_line();
+  }
+  write_whole_file(run.folder() / generations_name, csv.text());
+}
 
 void DerivedFiles::write_now_and_then(const RunHistory& run) {
   write_champions(run);

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <string_view>
 
+#include "mercury/robot.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {
@@ -26,5 +28,22 @@ class DerivedFiles {
   using Clock = std::chrono::steady_clock;
   Clock::time_point next_ = Clock::time_point::min();
 };
+
+// Writes the champion of each generation that has another one than the previous generation, unless its file is there:
+// best/GENERATION-ID.json. A champion that cannot be grown has none.
+void write_champions(const RunHistory& run);
+
+// The robot of an individual, "RUN-ID", with its ancestry in the origin. Throws InputError if it cannot be grown.
+Robot run_robot(const RunHistory& run, std::uint64_t id);
+
+// lineage.csv: every individual, in the ALife data standard for phylogenies
+// (https://alife-data-standards.github.io/alife-data-standards/phylogeny): id, ancestor_list ("[3,7]", "[none]"),
+// origin_time and destruction_time in generations ("inf" for the living). Then generation, line_began, seed, fate, one
+// score per objective, hash, and one column per quantity ("robot_length" for the quantity length, since tools take a
+// column of that name for the length of a branch).
+void write_lineage(const RunHistory& run);
+
+// generations.csv: one line per generation. All columns but the last three are the same in every repetition.
+void write_generations(const RunHistory& run);
 
 }  // namespace mercury

@@ -1,11 +1,113 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/generation_record.h"
 
-#include "evolution/bytes.h"
-#include "evolution/run_folder/assessment_bytes.h"
-#include "evolution/run_folder/checksum.h"
+#include <algorithm>
+#include <cstdint>
+
+#include "robots/bytes.h"
 
 namespace mercury {
+namespace {
+
+// Equal bytes between two changes that are stored as changed: two numbers cost as much.
+constexpr std::size_t shortest_copy = 3;
+
+void put(std::string& bytes, std::size_t value) {
+  for (; value >= 0x80; value >>= 7) bytes.push_back(static_cast<char>(value | 0x80));
+  bytes.push_back(static_cast<char>(value));
+}
+
+std::size_t take_number(ByteReader& reader) {
+  std::size_t value = 0;
+  for (int shift = 0; shift < 63; shift += 7) {
+    const auto byte = reader.read<std::uint8_t>();
+    value |= static_cast<std::size_t>(byte & 0x7f) << shift;
+    if (byte < 0x80) return value;
+  }
+  throw DamagedBytes("a number of a difference is too large");
+}
+
+}  // namespace
+
+std::string difference_of(std::string_view base, std::string_view target) {
+  const std::size_t common = std::min(base.size(), target.size());
+  const auto differs = [&](std::size_t i) { return i >= common || base[i] != target[i]; };
+  std::string difference;
+  put(difference, target.size());
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (!differs(i)) continue;
+    std::size_t end = i + 1;
+    for (std::size_t k = end; k < target.size() && k - end < shortest_copy; ++k)
+      if (differs(k)) end = k + 1;
+    put(difference, i - done);
+    put(difference, end - i);
+    difference.append(target.substr(i, end - i));
+    done = end;
+    i = end - 1;
+  }
+  return difference;
+}
+
+std::string with_difference(std::string_view base, std::string_view difference) {
+  ByteReader reader(difference);
+  const std::size_t size = take_number(reader);
+  if (size > base.size() + difference.size()) throw DamagedBytes("a difference gives more bytes than it has");
+  std::string target;
+  target.reserve(size);
+  const auto copy = [&](std::size_t count) {
+    if (count > 0 && (target.size() > base.size() || count > base.size() - target.size()))
+      throw DamagedBytes("a difference copies what its base does not have");
+    target.append(base.substr(std::min(target.size(), base.size()), count));
+  };
+  while (!reader.is_at_end()) {
+    copy(take_number(reader));
+    target.append(reader.take(take_number(reader)));
+  }
+  if (target.size() > size) throw DamagedBytes("a difference gives more bytes than it says");
+  copy(size - target.size());
+  return target;
+}
+
+namespace {
+
+constexpr std::uint8_t last_fate = static_cast<std::uint8_t>(Fate::failed);
+constexpr std::size_t smallest_assessment = 25;  // bytes
+
+}  // namespace
+
+void encode(ByteWriter& writer, const Assessment& assessment) {
+  writer.add(static_cast<std::uint8_t>(assessment.fate));
+  writer.text(assessment.problem);
+  writer.numbers(assessment.scores);
+  writer.numbers(assessment.values);
+  writer.numbers(assessment.interim_scores);
+  writer.add(assessment.hash);
+}
+
+Assessment decode_assessment(ByteReader& reader) {
+  Assessment assessment;
+  const auto fate = reader.read<std::uint8_t>();
+  if (fate > last_fate) throw DamagedBytes("an individual has an unknown fate");
+  assessment.fate = static_cast<Fate>(fate);
+  assessment.problem = reader.text();
+  assessment.scores = reader.numbers<double>();
+  assessment.values = reader.numbers<double>();
+  assessment.interim_scores = reader.numbers<double>();
+  assessment.hash = reader.read<std::uint64_t>();
+  return assessment;
+}
+
+void encode(ByteWriter& writer, const std::vector<Assessment>& assessments) {
+  writer.count(assessments.size());
+  for (const Assessment& assessment : assessments) encode(writer, assessment);
+}
+
+std::vector<Assessment> decode_assessments(ByteReader& reader) {
+  std::vector<Assessment> assessments(reader.count(smallest_assessment));
+  for (Assessment& assessment : assessments) assessment = decode_assessment(reader);
+  return assessments;
+}
 
 const std::string_view head_mark = "GENERATN";
 

@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A generation as a record of the journal.
-//
-// A record is a head, an index and the genomes:
-//
-//     head     "GENERATN"; u64 bytes of the index; u64 bytes of the genomes; u64 checksum of the index;
-//              u64 checksum of the genomes; u64 checksum of the head so far
-//     index    number; times; everyone born, in the order of ids; ids of the living
-//     genomes  one after the other, in the order of ids: whole, or as the difference from the first parent's
-//
-// So a reader that does not need the genomes skips them.
+// What differs between two strings of bytes that are alike at the same places.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +10,37 @@
 #include <vector>
 
 #include "mercury/evolution.h"
+#include "mercury/individual.h"
 #include "mercury/run_folder.h"
+#include "robots/bytes.h"
 
 namespace mercury {
+
+// Turns `base` into `target`: pairs of (how many bytes to copy from the base, new bytes that replace as many of it);
+// then the rest of the base follows, up to the target's length. Numbers are LEB128.
+std::string difference_of(std::string_view base, std::string_view target);
+
+// The target. Throws DamagedBytes for bytes that are no difference from this base.
+std::string with_difference(std::string_view base, std::string_view difference);
+
+// Assessments as bytes: in the journal, in the files of shards, and between ranks.
+void encode(ByteWriter& writer, const Assessment& assessment);
+// Throws DamagedBytes.
+Assessment decode_assessment(ByteReader& reader);
+
+void encode(ByteWriter& writer, const std::vector<Assessment>& assessments);
+std::vector<Assessment> decode_assessments(ByteReader& reader);
+
+// A generation as a record of the journal.
+//
+// A record is a head, an index and the genomes:
+//
+//     head     "GENERATN"; u64 bytes of the index; u64 bytes of the genomes; u64 checksum of the index;
+//              u64 checksum of the genomes; u64 checksum of the head so far
+//     index    number; times; everyone born, in the order of ids; ids of the living
+//     genomes  one after the other, in the order of ids: whole, or as the difference from the first parent's
+//
+// So a reader that does not need the genomes skips them.
 
 // Genomes are read by applying at most as many differences one after the other.
 inline constexpr int longest_chain = 32;

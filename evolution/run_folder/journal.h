@@ -1,4 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "evolution/run_folder/generation_record.h"
+
+namespace mercury {
+
+// An open file, closed when this ends.
+class FileDescriptor {
+ public:
+  FileDescriptor() = default;
+  // Opens a file as open(2). Throws InputError with the path and the system's reason, and for what is not a regular
+  // file.
+  FileDescriptor(const std::filesystem::path& path, int flags);
+  ~FileDescriptor();
+  FileDescriptor(FileDescriptor&& other) noexcept;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept;
+
+  int get() const { return descriptor_; }
+  std::uint64_t size() const;
+  // Up to `size` bytes from `offset`; fewer at the file's end. Throws InputError if the system cannot read them.
+  std::string read(std::uint64_t offset, std::size_t size) const;
+  // Throws the path and the system's reason (robots/file/whole_file.h).
+  [[noreturn]] void fail(int error) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+// Makes names in a folder durable: files that were made, renamed or removed in it.
+void sync_folder(const std::filesystem::path& folder);
+
+// The header of a journal: "mercury-genomes\n"; u32 version; u32 0; u64 fingerprint of the run's settings; u64 checksum
+// of all that.
+inline constexpr std::string_view journal_mark = "mercury-genomes\n";
+inline constexpr std::size_t journal_header_size = 40;  // bytes
+
 // The journal of a run, the file `genomes`: a header, then one record per generation (generation_record.h).
 //
 // A record is appended by one write and is on the disk before the next one is begun, so only the last record can be cut
@@ -6,19 +50,6 @@
 // damaged record with a sound one behind it was not cut off: that is an error, and nothing is removed.
 //
 // The writer holds a lock (flock) on the file; readers need none, because what they have read does not change.
-#pragma once
-
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-
-#include "evolution/run_folder/file_descriptor.h"
-#include "evolution/run_folder/generation_record.h"
-
-namespace mercury {
-
 inline constexpr std::string_view journal_name = "genomes";  // in a run folder
 inline constexpr std::uint32_t journal_version = 1;
 

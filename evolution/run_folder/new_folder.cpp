@@ -5,11 +5,10 @@
 #include <system_error>
 
 #include "evolution/run_folder/derived_files.h"
-#include "evolution/run_folder/file_descriptor.h"
-#include "evolution/run_folder/journal_header.h"
+#include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/run_file.h"
 #include "mercury/error.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {
@@ -49,7 +48,7 @@ bool is_unfinished(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     const bool is_journal =
         name == journal_name && entry.is_regular_file(error) && entry.file_size(error) <= journal_header_size;
-    // ".run.toml..." is a temporary name (robots/whole_file.h).
+    // ".run.toml..." is a temporary name (robots/file/whole_file.h).
     if (!is_journal && name != founders_name && name.find(run_file_name) != 1) return false;
   }
   return !error && fs::exists(folder / journal_name, error);

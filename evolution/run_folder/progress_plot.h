@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "evolution/run_folder/svg.h"
+#include "evolution/run_folder/plot.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {

@@ -16,30 +16,25 @@ namespace mercury {
 //   table(key, describe)                     [key]
 //   tables(key, list, describe)              [[key]], one per element
 //   generator_values(key, kind, values)      [key], the parameters of a generator
+// All of a table. Files of earlier versions may lack some.
+template <class File, class Settings>
+void describe_parameters(File& file, Settings& settings) {
+  for_each_parameter(settings, [&](const auto& parameter, auto& value) {
+    const std::string unit(parameter.unit), help(parameter.help);
+    file.parameter(parameter.name, value, unit.empty() ? help : unit + "; " + help);
+  });
+}
+
 template <class File, class Run>
 void describe_algorithm(File& file, Run& algorithm) {
   file.value("name", algorithm.name);
-  file.value("population", algorithm.population);
-  file.value("tournament", algorithm.tournament);
-  file.value("elites", algorithm.elites);
-  file.value("crossover", algorithm.crossover);
+  describe_parameters(file, algorithm);
   file.tables("axes", algorithm.axes, [](auto& table, auto& axis) {
     table.value("quantity", axis.quantity);
     table.value("lowest", axis.lowest);
     table.value("highest", axis.highest);
     table.value("cells", axis.cells);
   });
-}
-
-template <class File, class Trials>
-void describe_trials(File& file, Trials& trials) {
-  file.value("seconds", trials.seconds, "s, settling included");
-  file.value("settle", trials.settle, "s");
-  file.value("trials", trials.trials, "per individual");
-  file.value("noise", trials.noise);
-  file.value("damage", trials.damage);
-  file.value("strain_limit", trials.strain_limit);
-  file.value("racing", trials.racing);
 }
 
 template <class File, class Configured>
@@ -65,15 +60,12 @@ void describe(File& file, Run& run) {
   auto& evolution = settings.evolution;
   file.value("program", settings.program);
   file.table("evolution", [&](auto& table) {
-    table.value("generations", evolution.generations, "after generation 0, which is random");
-    table.value("children", evolution.children, "per generation; 0 = as many as the population");
-    table.value("mutation", evolution.mutation, "strength");
-    table.value("seed", evolution.seed);
+    describe_parameters(table, evolution);
     table.value("objectives", evolution.objectives);
     table.value("quantities", run.quantities, "that the journal holds of each individual");
   });
   file.table("algorithm", [&](auto& table) { describe_algorithm(table, evolution.algorithm); });
-  file.table("trials", [&](auto& table) { describe_trials(table, evolution.trials); });
+  file.table("trials", [&](auto& table) { describe_parameters(table, evolution.trials); });
   describe_configuration(file, evolution.configuration);
   file.table("genomes", [&](auto& table) {
     auto& space = settings.space;

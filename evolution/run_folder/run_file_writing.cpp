@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <utility>
 
-#include "evolution/run_folder/number_text.h"
 #include "evolution/run_folder/run_file.h"
 #include "evolution/run_folder/run_file_layout.h"
 #include "mercury/generator.h"
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
+#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -7,14 +7,14 @@
 #include <limits>
 #include <utility>
 
-#include "evolution/run_folder/byte_difference.h"
-#include "evolution/run_folder/checksum.h"
 #include "evolution/run_folder/derived_files.h"
-#include "evolution/run_folder/history_parts.h"
+#include "evolution/run_folder/generation_record.h"
 #include "evolution/run_folder/new_folder.h"
+#include "evolution/run_folder/run_history.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
-#include "robots/whole_file.h"
+#include "robots/bytes.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 

@@ -1,12 +1,230 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <utility>
+#include "evolution/run_folder/run_history.h"
 
-#include "evolution/run_folder/history_parts.h"
-#include "evolution/run_folder/run_robot.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "evolution/run_folder/derived_files.h"
+#include "evolution/run_folder/generation_record.h"
 #include "mercury/error.h"
+#include "mercury/quantity.h"
+#include "robots/bytes.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
+namespace {
+
+constexpr std::size_t most_cached_bytes = std::size_t{128} << 20;
+
+}  // namespace
+
+void GenomeStore::add(std::span<const StoredGenome> genomes) {
+  for (const StoredGenome& genome : genomes) {
+    const int chain = genome.base == StoredGenome::none ? 0 : chains_.at(genome.base) + 1;
+    if (chain > longest_chain)
+      throw InputError(journal_.path().string(),
+                       "the genome of individual " + std::to_string(genomes_.size()) + " has too many differences");
+    genomes_.push_back(genome);
+    chains_.push_back(static_cast<std::uint8_t>(chain));
+  }
+}
+
+GenomeStore::Bytes GenomeStore::bytes(std::uint64_t id) const {
+  std::vector<std::uint64_t> differences;  // to be applied, the last one first
+  Bytes bytes = cached(id);
+  for (; !bytes; bytes = cached(id)) {
+    const StoredGenome& genome = genomes_.at(id);
+    if (genome.base == StoredGenome::none) {
+      bytes = std::make_shared<const std::string>(journal_.bytes_of(genome, id));
+      cache(id, bytes);
+      break;
+    }
+    differences.push_back(id);
+    id = genome.base;
+  }
+  for (; !differences.empty(); differences.pop_back()) {
+    const std::uint64_t next = differences.back();
+    try {
+      bytes = std::make_shared<const std::string>(with_difference(*bytes, journal_.bytes_of(genomes_[next], next)));
+    } catch (const DamagedBytes& error) {
+      throw InputError(journal_.path().string(),
+                       "the genome of individual " + std::to_string(next) + ": " + error.what());
+    }
+    cache(next, bytes);
+  }
+  return bytes;
+}
+
+GenomeStore::Bytes GenomeStore::cached(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = cache_.find(id);
+  return found == cache_.end() ? nullptr : found->second;
+}
+
+void GenomeStore::cache(std::uint64_t id, Bytes bytes) const {
+  const std::lock_guard lock(mutex_);
+  if (cached_bytes_ > most_cached_bytes) {
+    cache_.clear();
+    cached_bytes_ = 0;
+  }
+  const std::size_t size = bytes->size();
+  if (cache_.emplace(id, std::move(bytes)).second) cached_bytes_ += size;
+}
+
+namespace {
+
+// The quantile between the two nearest of sorted values (Hyndman and Fan's definition 7, as NumPy's default).
+double quantile(std::span<const double> sorted, double share) {
+  const double position = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const double rest = position - static_cast<double>(below);
+  if (rest == 0) return sorted[below];
+  if (std::isinf(sorted[below])) return sorted[below];
+  return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
+}
+
+ScoreSpread spread_of(std::span<const std::uint64_t> living, std::span<const Individual> individuals,
+                      std::size_t objective) {
+  std::vector<double> scores;
+  for (const std::uint64_t id : living) {
+    const std::vector<double>& all = individuals[id].assessment.scores;
+    scores.push_back(all.empty() ? worst_score : all[objective]);
+  }
+  if (scores.empty()) return {};
+  std::ranges::sort(scores);
+  return {quantile(scores, 0.25), quantile(scores, 0.5), quantile(scores, 0.75), scores.back()};
+}
+
+}  // namespace
+
+GenerationSummary summary_of(int number, GenerationTimes times, std::span<const Individual> born,
+                             std::span<const std::uint64_t> living, std::span<const Individual> individuals,
+                             std::size_t objectives) {
+  GenerationSummary summary{.number = number, .born = born.size(), .living = living.size()};
+  for (const Individual& individual : born) {
+    const Fate fate = individual.assessment.fate;
+    summary.exploded += fate == Fate::exploded;
+    summary.overstretched += fate == Fate::overstretched;
+    summary.stopped += fate == Fate::stopped;
+    summary.failed += fate == Fate::failed;
+  }
+  if (!living.empty()) {
+    summary.best = living.front();
+    summary.best_scores = individuals[living.front()].assessment.scores;
+  }
+  for (std::size_t i = 0; i < objectives; ++i) summary.scores.push_back(spread_of(living, individuals, i));
+  summary.median_score = summary.scores.empty() ? worst_score : summary.scores.front().median;
+  summary.times = std::move(times);
+  return summary;
+}
+
+namespace {
+
+std::filesystem::path checked(const std::filesystem::path& folder) {
+  check_run_folder(folder);
+  return folder;
+}
+
+}  // namespace
+
+void check_run_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder, error)) throw InputError(folder.string(), "No such file or directory");
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder.string(), "is not a folder");
+  const bool is_run = std::filesystem::exists(folder / run_file_name, error);
+  if (error) fail(folder, error.value());
+  if (!is_run) throw InputError(folder.string(), "is not the folder of a run: it has no " + std::string(run_file_name));
+}
+
+RunHistory::Parts::Parts(const std::filesystem::path& run, GenomeSpaceMaker maker)
+    : folder(checked(run)), file(read_run_file(run)), make_space(std::move(maker)), journal(run / journal_name) {
+  if (journal.fingerprint() != file.fingerprint)
+    throw InputError((folder / run_file_name).string(),
+                     "differs from the settings that the run began with; only generations, device and threads may be "
+                     "changed");
+  for (const Quantity& quantity : quantities()) {
+    const auto found = std::ranges::find(file.quantities, quantity.name);
+    stored_quantity_.push_back(static_cast<std::size_t>(found - file.quantities.begin()));
+  }
+  for (std::size_t i = 0; i < stored_quantity_.size(); ++i) same_quantities_ &= stored_quantity_[i] == i;
+  same_quantities_ &= stored_quantity_.size() == file.quantities.size();
+  refresh();
+}
+
+bool RunHistory::Parts::refresh() {
+  const std::size_t before = generations.size();
+  while (std::optional<GenerationRecord> record = journal.next()) add(std::move(*record));
+  if (generations.size() == before) journal.check_not_replaced();
+  return generations.size() > before;
+}
+
+void RunHistory::Parts::use_known_quantities(Assessment& assessment) const {
+  if (same_quantities_ || assessment.values.empty()) return;
+  std::vector<double> values;
+  for (const std::size_t q : stored_quantity_)
+    values.push_back(q < assessment.values.size() ? assessment.values[q] : std::numeric_limits<double>::quiet_NaN());
+  assessment.values = std::move(values);
+}
+
+void RunHistory::Parts::add(GenerationRecord record) {
+  Generation& generation = record.generation;
+  const auto damaged = [&](const char* problem) {
+    throw InputError(journal.path().string(), "generation " + std::to_string(generation.number) + ": " + problem);
+  };
+  const std::size_t objectives = file.settings.evolution.objectives.size();
+  for (Individual& individual : generation.born) {
+    Assessment& assessment = individual.assessment;
+    if (assessment.scores.size() != objectives && !assessment.scores.empty())
+      damaged("an individual has another number of scores");
+    if (assessment.values.size() != file.quantities.size() && !assessment.values.empty())
+      damaged("an individual has another number of values");
+    use_known_quantities(assessment);
+  }
+  genomes.add(record.genomes);
+  std::ranges::move(generation.born, std::back_inserter(individuals));
+  died.resize(individuals.size(), alive);
+  note_deaths(generation);
+  living = std::move(generation.living);
+  generations.push_back(summary_of(generation.number, std::move(record.times),
+                                   std::span(individuals).subspan(record.first_id), living, individuals, objectives));
+}
+
+void RunHistory::Parts::note_deaths(const Generation& generation) {
+  std::vector<std::uint64_t> candidates = std::move(living);
+  for (std::uint64_t id = individuals.size() - generation.born.size(); id < individuals.size(); ++id)
+    candidates.push_back(id);
+  for (const std::uint64_t id : candidates) died[id] = generation.number;
+  for (const std::uint64_t id : generation.living) {
+    if (died[id] != generation.number)
+      throw InputError(journal.path().string(), "generation " + std::to_string(generation.number) +
+                                                    ": someone lives who was dead, or lives twice");
+    died[id] = alive;
+  }
+}
+
+const GenomeSpace& RunHistory::Parts::space() const {
+  std::call_once(space_made_, [&] { space_ = make_space(file.settings.space); });
+  return *space_;
+}
+
+void RunHistory::Parts::check(std::uint64_t id) const {
+  if (id < individuals.size()) return;
+  throw InputError(folder.string(), "there is no individual " + std::to_string(id) + "; the run has " +
+                                        std::to_string(individuals.size()));
+}
+
+GenomePointer RunHistory::Parts::genome(std::uint64_t id) const {
+  check(id);
+  const GenomeStore::Bytes bytes = genomes.bytes(id);
+  try {
+    return space().decode(*bytes);
+  } catch (const InputError& error) {
+    throw InputError(journal.path().string(), "individual " + std::to_string(id) + ": " + error.what());
+  }
+}
 
 RunHistory::RunHistory(const std::filesystem::path& folder, GenomeSpaceMaker make_space)
     : parts_(std::make_unique<Parts>(folder, std::move(make_space))) {}

@@ -9,8 +9,7 @@
 // individuals equal in age and score only the one of the lowest id counts as not dominated.
 #include <algorithm>
 
-#include "evolution/selection/order.h"
-#include "evolution/selection/pareto.h"
+#include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 
 namespace mercury {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evolution/selection/order.h"
+#include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 
 namespace mercury {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "evolution/selection/order.h"
+#include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "mercury/quantity.h"
 

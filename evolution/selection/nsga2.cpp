@@ -5,8 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "evolution/selection/order.h"
-#include "evolution/selection/pareto.h"
+#include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 
 namespace mercury {

@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/selection/registry.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "evolution/selection/ranking.h"
+#include "evolution/selection/registry.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
 
 namespace mercury {
 namespace {
 
-constexpr std::size_t largest_population = 1'000'000;
 constexpr int most_cells = 1'000'000;  // of a map
 
 void require(bool holds, const char* parameter, const std::string& problem) {
   if (!holds) throw ParameterError(parameter, problem);
-}
-
-void require_share(double value, const char* parameter) {
-  require(value >= 0 && value <= 1, parameter, std::to_string(value) + " is not accepted; give 0 to 1");
 }
 
 std::string names_of_quantities() {
@@ -43,12 +38,7 @@ void validate_axes(std::span<const MapAxis> axes) {
 }
 
 void validate(const AlgorithmSettings& settings) {
-  require(settings.population >= 1 && settings.population <= largest_population, "population",
-          std::to_string(settings.population) + " is not accepted; give 1 to " + std::to_string(largest_population));
-  require(settings.tournament >= 1, "tournament",
-          std::to_string(settings.tournament) + " is not accepted; give at least 1");
-  require_share(settings.elites, "elites");
-  require_share(settings.crossover, "crossover");
+  check_parameters(settings);
   validate_axes(settings.axes);
   require(settings.name != "map-elites" || !settings.axes.empty(), "axes",
           "map-elites needs one or more quantities, such as size and muscle_share");
@@ -71,6 +61,37 @@ std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {
     names += (names.empty() ? "" : ", ") + std::string(algorithm.name);
   }
   throw ParameterError("algorithm", "\"" + settings.name + "\" is not an algorithm; give one of " + names);
+}
+
+// Random search, the baseline: every robot is new, the best ones live on.
+namespace {
+
+class RandomSearch : public Algorithm {
+ public:
+  explicit RandomSearch(const AlgorithmSettings& settings) : settings_(settings) {}
+
+  std::vector<ChildPlan> plan(std::span<const Individual>, std::size_t children, Random&) const override {
+    return std::vector<ChildPlan>(children);
+  }
+
+  std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t) const override {
+    std::vector<std::size_t> order = best_first(pool);
+    order.resize(std::min(order.size(), settings_.population));
+    return order;
+  }
+
+ private:
+  const AlgorithmSettings settings_;
+};
+
+}  // namespace
+
+AlgorithmDescription random_search() {
+  return {.name = "random",
+          .help = "random search, the baseline: every robot is new",
+          .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
+            return std::make_unique<RandomSearch>(settings);
+          }};
 }
 
 }  // namespace mercury

@@ -10,6 +10,7 @@
 """
 
 from . import _mercury
+from ._mercury import *  # noqa: F403  random_voxel() and its siblings, one for each kind of robots
 from ._mercury import (
     Actuation,
     Array,
@@ -27,10 +28,6 @@ from ._mercury import (
     evaluate,
     export,
     load,
-    random_network,
-    random_painted,
-    random_shell,
-    random_voxel,
     voxel,
 )
 from ._pictures import Film, Look, Video, picture, render
@@ -59,10 +56,8 @@ __all__ = [
     "export",
     "load",
     "picture",
-    "random_network",
-    "random_painted",
-    "random_shell",
-    "random_voxel",
     "render",
     "voxel",
 ]
+
+__all__ += [name for name in dir(_mercury) if name.startswith("random_")]

@@ -166,15 +166,12 @@ std::string documentation_of(const Generator& generator) {
 }  // namespace
 
 void bind_generators(nb::module_& module) {
-  const std::pair<const char*, const char*> functions[] = {
-      {"random_voxel", "voxel"}, {"random_network", "nn"}, {"random_shell", "shell"}, {"random_painted", "cppn"}};
-  for (const auto& [function, kind] : functions) {
-    const Generator& generator = generator_named(kind);
+  for (const Generator& generator : generators()) {
+    const std::string function = "random_" + generator.word;
     const std::string signature = signature_of(function, generator), documentation = documentation_of(generator);
     module.def(
-        function,
-        [function = std::string(function), &generator](nb::handle count, nb::handle seed, nb::handle first,
-                                                       const nb::kwargs& values) {
+        function.c_str(),
+        [function, &generator](nb::handle count, nb::handle seed, nb::handle first, const nb::kwargs& values) {
           return random_robots(function, generator, count, seed, first, values);
         },
         nb::arg("count").none() = 1, nb::arg("seed").none() = 1, nb::arg("first").none() = 0, nb::arg("parameters"),

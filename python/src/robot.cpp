@@ -45,8 +45,8 @@ nb::object load(nb::handle given) {
     is_folder = std::filesystem::is_directory(path, ignored);
     if (is_folder)
       robots = load_robots(std::span(&path, 1));
-    else if (import_format_of(path))
-      robots = import_file(path).robots;
+    else if (const ImportFormat* format = import_format_of(path))
+      robots = import_file(path, *format).robots;
     else
       robots.push_back(load_robot(path));
   }
@@ -284,13 +284,14 @@ void bind_robot(nb::module_& module) {
           "__deepcopy__", [](nb::handle_t<SharedRobot> self, nb::handle) { return self; }, nb::arg("memo"))
       .def("__getstate__", &state)
       .def("__setstate__", &restore);
-  module.def(
-      "load", &load, nb::arg("path").none(), nb::sig("def load(path: str | os.PathLike[str]) -> typing.Any"),
+  const std::string documentation =
       "The Robot of a file (.json, .cbor), or a list of the robots of a folder, sorted by the names of the files. "
-      "Files of VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json) are imported "
-      "without "
-      "their worlds; one that holds several robots gives a list. "
-      "Raises InputError with the place: \"eel.json: /springs/7: mass 912 is out of range, the robot has 300\".");
+      "Files of " +
+      import_sources() +
+      " are imported without their worlds; one that holds several robots gives a list. "
+      "Raises InputError with the place: \"eel.json: /springs/7: mass 912 is out of range, the robot has 300\".";
+  module.def("load", &load, nb::arg("path").none(), nb::sig("def load(path: str | os.PathLike[str]) -> typing.Any"),
+             documentation.c_str());
 }
 
 }  // namespace mercury::python

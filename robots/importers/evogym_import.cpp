@@ -378,15 +378,22 @@ class EvogymImport {
   std::set<std::string> names_;
 };
 
-}  // namespace
-
+// What decides is in the beginning of the files that EvoGym writes.
 bool looks_like_evogym(std::string_view text) {
   const auto has = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
   return !has("mercury-robot") && (has("\"grid_width\"") || (has("\"objects\"") && has("\"indices\"")));
 }
 
-Import import_evogym(std::string_view text, const std::string& name, const ImportOptions& options) {
-  return EvogymImport(text, name, options).run();
+}  // namespace
+
+ImportFormat evogym_format() {
+  return {.name = "evogym",
+          .extensions = ".json",
+          .programs = "EvoGym",
+          .recognizes = looks_like_evogym,
+          .read = [](std::string_view text, std::string_view, const std::string& name, const ImportOptions& options) {
+            return EvogymImport(text, name, options).run();
+          }};
 }
 
 }  // namespace mercury

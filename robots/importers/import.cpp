@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/import.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <fstream>
+#include <utility>
 
 #include "mercury/error.h"
+#include "robots/file/whole_file.h"
 #include "robots/importers/report_builder.h"
-#include "robots/whole_file.h"
 
 namespace mercury {
+
+ImportFormat vxa_format();
+ImportFormat vxd_format();
+ImportFormat rsc_format();
+ImportFormat evogym_format();
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,14 +27,40 @@ std::string small_letters(std::string text) {
   return text;
 }
 
-// The base of a .vxd or .rsc: the one that was given, else base.vxa or env.rsc beside it. A .rsc needs none.
-fs::path base_of(const fs::path& path, ImportFormat format, const ImportOptions& options) {
+// All formats. Each is described beside its reader.
+const std::vector<ImportFormat>& formats() {
+  static const std::vector<ImportFormat> all{vxa_format(), vxd_format(), rsc_format(), evogym_format()};
+  return all;
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+std::string beginning_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(4096, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+// The base of a file: the one that was given, else the one beside it; empty = none.
+fs::path base_of(const fs::path& path, const ImportFormat& format, const ImportOptions& options) {
+  if (format.base_name.empty()) return {};
   if (!options.base.empty()) return options.base;
-  const fs::path beside = path.parent_path() / (format == ImportFormat::vxd ? "base.vxa" : "env.rsc");
+  const fs::path beside = path.parent_path() / format.base_name;
   std::error_code error;
   if (fs::exists(beside, error) && !fs::equivalent(beside, path, error)) return beside;
-  if (format == ImportFormat::rsc) return {};
-  throw InputError(path.string(), "a .vxd changes a base, and no base.vxa is beside it; name one with --base");
+  if (!format.needs_base) return {};
+  throw InputError(path.string(), fmt::format("a .{} changes a base, and no {} is beside it; name one with --base",
+                                              format.name, format.base_name));
 }
 
 }  // namespace
@@ -38,52 +71,65 @@ void validate(const ImportOptions& options) {
     throw ParameterError("materials", "give 8 to 255 materials");
 }
 
-std::optional<ImportFormat> import_format_of(const fs::path& path) {
-  const std::string extension = small_letters(path.extension().string());
-  if (extension == ".vxa" || extension == ".vxc") return ImportFormat::vxa;
-  if (extension == ".vxd") return ImportFormat::vxd;
-  if (extension == ".rsc") return ImportFormat::rsc;
-  std::error_code error;
-  if (extension != ".json" || !fs::is_regular_file(path, error)) return std::nullopt;
-  // What decides is in the beginning of the files that EvoGym writes.
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 4096> beginning{};
-  file.read(beginning.data(), beginning.size());
-  const std::string_view text(beginning.data(), static_cast<std::size_t>(file.gcount()));
-  return looks_like_evogym(text) ? std::optional(ImportFormat::evogym) : std::nullopt;
+std::string import_sources() {
+  struct Source {
+    std::string_view programs;
+    std::string extensions;
+  };
+  std::vector<Source> sources;
+  for (const ImportFormat& format : formats()) {
+    if (sources.empty() || sources.back().programs != format.programs) sources.push_back({format.programs, {}});
+    for (const std::string_view extension : words_of(format.extensions))
+      sources.back().extensions += (sources.back().extensions.empty() ? "" : ", ") + std::string(extension);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    text += fmt::format("{}{} ({})",
+                        i == 0                    ? ""
+                        : i + 1 == sources.size() ? " and "
+                                                  : ", ",
+                        sources[i].programs, sources[i].extensions);
+  return text;
 }
 
-Import import_text(std::string_view text, ImportFormat format, const std::string& name, const ImportOptions& options,
-                   std::string_view base) {
-  validate(options);
-  switch (format) {
-    case ImportFormat::vxa:
-      return import_vxa(text, name, options);
-    case ImportFormat::vxd:
-      return import_vxd(text, base, name, options);
-    case ImportFormat::rsc:
-      return import_rsc(text, base, name, options);
-    case ImportFormat::evogym:
-      break;
+const ImportFormat* import_format_of(const fs::path& path) {
+  const std::string extension = small_letters(path.extension().string());
+  for (const ImportFormat& format : formats()) {
+    if (std::ranges::count(words_of(format.extensions), extension) == 0) continue;
+    if (!format.recognizes) return &format;
+    std::error_code error;
+    if (fs::is_regular_file(path, error) && format.recognizes(beginning_of(path))) return &format;
   }
-  return import_evogym(text, name, options);
+  return nullptr;
+}
+
+bool is_import_base(const fs::path& path) {
+  return std::ranges::count(formats(), path.filename().string(), &ImportFormat::base_name) > 0;
+}
+
+Import import_text(std::string_view text, std::string_view format, const std::string& name,
+                   const ImportOptions& options, std::string_view base) {
+  validate(options);
+  const auto found = std::ranges::find(formats(), format, &ImportFormat::name);
+  if (found == formats().end()) throw ParameterError("format", fmt::format("\"{}\" is not accepted", format));
+  return found->read(text, base, name, options);
 }
 
 Import import_file(const fs::path& path, const ImportOptions& options) {
   std::error_code error;
   if (!fs::exists(path, error) && !error) throw InputError(path.string(), "No such file or directory");
-  const std::optional<ImportFormat> format = import_format_of(path);
-  if (!format)
-    throw InputError(path.string(),
-                     "not a file of VoxCAD, evosoro or voxcraft-sim (.vxa, .vxc, .vxd), of RISE (.rsc) or "
-                     "of EvoGym (.json)");
+  const ImportFormat* format = import_format_of(path);
+  if (!format) throw InputError(path.string(), "not a file of " + import_sources());
+  return import_file(path, *format, options);
+}
+
+Import import_file(const fs::path& path, const ImportFormat& format, const ImportOptions& options) {
+  validate(options);
   const std::string text = read_whole_file(path);
-  fs::path base;
-  std::string base_text;
-  if (*format == ImportFormat::vxd || *format == ImportFormat::rsc) base = base_of(path, *format, options);
-  if (!base.empty()) base_text = read_whole_file(base);
+  const fs::path base = base_of(path, format, options);
+  const std::string base_text = base.empty() ? std::string() : read_whole_file(base);
   try {
-    Import import = import_text(text, *format, path.stem().string(), options, base_text);
+    Import import = format.read(text, base_text, path.stem().string(), options);
     import.report.file = path.string();
     import.report.base = base.string();
     return import;
@@ -92,6 +138,61 @@ Import import_file(const fs::path& path, const ImportOptions& options) {
   } catch (const InputError& problem) {
     throw InputError(path.string(), problem.what());
   }
+}
+
+std::string to_toml(const ImportedSettings& settings, const ImportReport& report) {
+  std::string file;
+  for (const char letter : report.file) file += static_cast<unsigned char>(letter) < ' ' ? ' ' : letter;
+  std::string text = fmt::format("# World of {}, for mercury run, render and view --config.\n", file);
+  text += fmt::format("# 1 m of the file is {:.4g} m here, 1 s is {:.4g} s.\n", report.length_scale, report.time_scale);
+  text += fmt::format("environment = \"{}\"\ngravity = [0, 0, {:.9g}]\nstiffness-scale = {:.9g}\n",
+                      settings.environment, settings.gravity, settings.stiffness_scale);
+  if (settings.environment == "land") {
+    text += fmt::format("friction = {:.9g}\n", settings.friction);
+    if (settings.self_collision)
+      text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
+    else
+      text += "no-self-collision = true\n";
+  } else if (settings.environment == "ocean") {
+    text += fmt::format("drag-coefficient = {:.9g}\nlift-coefficient = {:.9g}\n", settings.drag_coefficient,
+                        settings.lift_coefficient);
+  } else {
+    text += "point-drag = 0\n";
+  }
+  text += fmt::format("dt = {:.9g}\ndamping = {:.9g}\n", settings.dt, settings.damping);
+  if (!settings.seconds && !settings.settle) return text;
+  text += "\n[run]\n";
+  if (settings.seconds) text += fmt::format("seconds = {:.9g}\n", *settings.seconds);
+  if (settings.settle) text += fmt::format("settle = {:.9g}\n", *settings.settle);
+  return text;
+}
+
+std::string_view name_of(ImportOutcome outcome) {
+  switch (outcome) {
+    case ImportOutcome::mapped:
+      return "mapped";
+    case ImportOutcome::approximated:
+      return "approximated";
+    case ImportOutcome::ignored:
+      break;
+  }
+  return "ignored";
+}
+
+void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
+                const ImportOptions& options, Import& import) {
+  const std::vector<VoxelBody> bodies = separate_bodies(grid);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::string own = i == 0 ? name : fmt::format("{}-{}", name, i + 1);
+    Rounding rounding;
+    import.robots.push_back(
+        voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding));
+    import.report.robots.push_back(own);
+    if (!rounding.is_exact()) import.report.notes.push_back(fmt::format("{}: {}", own, text_of(rounding)));
+  }
+  if (bodies.size() > 1)
+    import.report.notes.push_back(fmt::format(
+        "{} separate bodies became a robot each; robots of Mercury do not touch each other", bodies.size()));
 }
 
 }  // namespace mercury

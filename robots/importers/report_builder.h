@@ -21,14 +21,6 @@ void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance
 // The environment on the floor with this stiffness scale, as in water it is 1.
 inline constexpr double land_stiffness_scale = 200;
 
-Import import_vxa(std::string_view text, const std::string& name, const ImportOptions& options);
-Import import_vxd(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options);
-Import import_rsc(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options);
-Import import_evogym(std::string_view text, const std::string& name, const ImportOptions& options);
-
-// Whether the text is a JSON document with the parts of an EvoGym world.
-bool looks_like_evogym(std::string_view text);
-
 // Puts the parts of a VXD into the document of its base, as voxcraft-sim does: each child with an attribute "replace",
 // such as "VXA.VXC.Structure", takes the place of that element. Elements of the VXD itself that change nothing are
 // listed in `report`. Throws InputError for a path that names no element.

@@ -309,8 +309,13 @@ class RscImport {
 
 }  // namespace
 
-Import import_rsc(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options) {
-  return RscImport(text, base, name, options).run();
+ImportFormat rsc_format() {
+  return {.name = "rsc",
+          .extensions = ".rsc",
+          .programs = "RISE",
+          .base_name = "env.rsc",
+          .read = [](std::string_view text, std::string_view base, const std::string& name,
+                     const ImportOptions& options) { return RscImport(text, base, name, options).run(); }};
 }
 
 }  // namespace mercury

@@ -14,6 +14,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mercury/fnv.h"
+
 namespace mercury {
 namespace {
 
@@ -32,9 +34,9 @@ using Key = std::array<std::int64_t, 6>;
 
 struct KeyHash {
   std::size_t operator()(const Key& key) const {
-    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
-    for (const std::int64_t part : key) hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x100000001b3;
-    return static_cast<std::size_t>(hash ^ hash >> 32);
+    Fnv1a hash;
+    for (const std::int64_t part : key) hash.step(static_cast<std::uint64_t>(part));
+    return static_cast<std::size_t>(hash.value() ^ hash.value() >> 32);
   }
 };
 

@@ -14,7 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/voxel.h"
-#include "robots/document.h"
+#include "robots/file/document.h"
 
 namespace mercury {
 namespace {

@@ -182,9 +182,7 @@ class VxaImport {
   double stiffness_scale_ = 1;  // of the environment
 };
 
-}  // namespace
-
-Import import_vxa(std::string_view text, const std::string& name, const ImportOptions& options) {
+Import import_vxa(std::string_view text, std::string_view, const std::string& name, const ImportOptions& options) {
   XmlDocument document(text);
   return VxaImport(document, false, name, options).run();
 }
@@ -198,6 +196,23 @@ Import import_vxd(std::string_view text, std::string_view base, const std::strin
   import.report.format = "VXD of voxcraft-sim";
   import.report.elements.insert(import.report.elements.begin(), unused.begin(), unused.end());
   return import;
+}
+
+constexpr std::string_view programs = "VoxCAD, evosoro and voxcraft-sim";
+
+}  // namespace
+
+ImportFormat vxa_format() {
+  return {.name = "vxa", .extensions = ".vxa .vxc", .programs = programs, .read = import_vxa};
+}
+
+ImportFormat vxd_format() {
+  return {.name = "vxd",
+          .extensions = ".vxd",
+          .programs = programs,
+          .base_name = "base.vxa",
+          .needs_base = true,
+          .read = import_vxd};
 }
 
 }  // namespace mercury

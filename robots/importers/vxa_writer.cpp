@@ -12,11 +12,11 @@
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/origin.h"
+#include "robots/file/whole_file.h"
 #include "robots/importers/encodings.h"
 #include "robots/importers/report_builder.h"
 #include "robots/importers/scaling.h"
 #include "robots/importers/voxel_body.h"
-#include "robots/whole_file.h"
 
 namespace mercury {
 namespace {

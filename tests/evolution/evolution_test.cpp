@@ -227,6 +227,22 @@ TEST(Evolution, ASpaceOfOneGenomeIsSearchedInBoundedTime) {
   for (const Generation& generation : run(settings_of("ga"), One())) EXPECT_EQ(generation.born.size(), 32u);
 }
 
+// A try for a child unlike the others may find no genome at all; then the child that was there before lives.
+TEST(Evolution, AChildOutlivesALaterTryThatFails) {
+  class FailsLater : public VectorSpace {
+   public:
+    GenomePointer random(std::uint64_t, std::uint64_t) const override {
+      if (++made_ > 32) throw InputError("genome", "there is none");
+      return std::make_shared<VectorGenome>(std::vector<double>(8, 0.25));
+    }
+
+   private:
+    mutable std::atomic<int> made_ = 0;
+  };
+  const FailsLater space;
+  EXPECT_EQ(Evolution(settings_of("ga"), space).children().size(), 32u);
+}
+
 TEST(Evolution, AGenerationWithoutAnyGenomeIsReported) {
   const VectorSpace space(8, 1);  // none exists
   VectorAssessor assessor;

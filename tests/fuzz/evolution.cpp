@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "evolution/bytes.h"
 #include "evolution/run_folder/generation_record.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/run_file.h"
@@ -14,6 +13,7 @@
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/run_folder.h"
+#include "robots/bytes.h"
 #include "tests/fuzz/target.h"
 
 namespace mercury::fuzz {

@@ -52,17 +52,17 @@ const std::string rise =
 }  // namespace
 
 void check_vxa(std::string_view input) {
-  const Import import = import_text(input, ImportFormat::vxa, "fuzz");
+  const Import import = import_text(input, "vxa", "fuzz");
   check(import);
   // What is written of it can be read, and has the same body.
   const Robot& robot = import.robots.front();
-  const Import back = import_text(vxa_document(robot), ImportFormat::vxa, "fuzz");
+  const Import back = import_text(vxa_document(robot), "vxa", "fuzz");
   require(back.robots.size() == 1 && back.robots.front().masses == robot.masses, "the VXA does not read back");
 }
 
-void check_vxd(std::string_view input) { check(import_text(input, ImportFormat::vxd, "fuzz", {}, small_vxa())); }
-void check_rsc(std::string_view input) { check(import_text(input, ImportFormat::rsc, "fuzz")); }
-void check_evogym(std::string_view input) { check(import_text(input, ImportFormat::evogym, "fuzz", {.depth = 2})); }
+void check_vxd(std::string_view input) { check(import_text(input, "vxd", "fuzz", {}, small_vxa())); }
+void check_rsc(std::string_view input) { check(import_text(input, "rsc", "fuzz")); }
+void check_evogym(std::string_view input) { check(import_text(input, "evogym", "fuzz", {.depth = 2})); }
 
 std::vector<std::string> vxa_seeds() {
   return {small_vxa(), xml("<Layer>AQE=</Layer><Layer>AAE=</Layer>", "BASE64"),

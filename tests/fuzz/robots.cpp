@@ -4,7 +4,7 @@
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "robots/document.h"
+#include "robots/file/document.h"
 #include "tests/fuzz/target.h"
 
 namespace mercury::fuzz {

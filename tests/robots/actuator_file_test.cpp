@@ -7,7 +7,7 @@
 
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
-#include "robots/document.h"
+#include "robots/file/document.h"
 
 namespace mercury {
 namespace {

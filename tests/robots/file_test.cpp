@@ -17,7 +17,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 namespace {

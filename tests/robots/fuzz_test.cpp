@@ -9,7 +9,7 @@
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "robots/document.h"
+#include "robots/file/document.h"
 
 namespace mercury {
 namespace {

@@ -9,7 +9,7 @@
 #include "mercury/error.h"
 #include "mercury/network.h"
 #include "mercury/random.h"
-#include "robots/perceptron.h"
+#include "robots/nn/perceptron.h"
 
 namespace mercury {
 namespace {

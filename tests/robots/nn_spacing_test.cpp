@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/cloud_spacing.h"
+#include "robots/nn/cloud_spacing.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "robots/tetrahedra.h"
+#include "robots/nn/tetrahedra.h"
 
 namespace mercury {
 namespace {

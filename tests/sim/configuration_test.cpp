@@ -148,5 +148,17 @@ TEST(Configuration, NumbersOfThreadsAreLimitedByTheMachine) {
   EXPECT_EQ(message_of(Configuration{.device = {.threads = 1 << 20}}), "");  // of a file from a larger machine
 }
 
+TEST(Accepts, SaysWhatItTakes) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(Accepts::between(0, 1)(1) && !Accepts::between(0, 1)(1.5) && !Accepts::share_below_one()(1));
+  EXPECT_TRUE(Accepts::at_least_zero(0) && !Accepts::above_zero(0) && !Accepts::at_least_zero(infinity));
+  const Accepts limit{.lowest = 0, .above_lowest = true, .or_infinite = true};
+  EXPECT_TRUE(limit(infinity) && !limit(0) && !limit(std::nan("")));
+  EXPECT_EQ(Accepts::between(1, 1e6).text(true), "1 to 1000000");
+  EXPECT_EQ(Accepts::at_least(1).text(true), "1 or more");
+  EXPECT_EQ(Accepts::share_below_one().text(false), "at least 0 and below 1");
+  EXPECT_EQ(limit.text(false), "a number > 0");
+}
+
 }  // namespace
 }  // namespace mercury

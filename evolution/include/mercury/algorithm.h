@@ -8,9 +8,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "mercury/individual.h"
+#include "mercury/parameters.h"
 #include "mercury/random.h"
 
 namespace mercury {
@@ -31,6 +33,18 @@ struct AlgorithmSettings {
   double elites = 0.1;           // ga: share of the population that lives on unconditionally
   double crossover = 0.25;       // share of the children that have two parents
   std::vector<MapAxis> axes;     // map-elites: one or more
+
+  static constexpr std::tuple parameters{
+      Parameter("population", &AlgorithmSettings::population, "", Accepts::between(1, 1e6), {1, 4096, true},
+                "Robots that live on after each generation"),
+      Parameter("tournament", &AlgorithmSettings::tournament, "", Accepts::at_least(1), {1, 16},
+                "Robots among which the best becomes a parent"),
+      Parameter("elites", &AlgorithmSettings::elites, "", Accepts::between(0, 1), {0, 1},
+                "ga: share that lives on unconditionally")
+          .with_form("0..1"),
+      Parameter("crossover", &AlgorithmSettings::crossover, "", Accepts::between(0, 1), {0, 1},
+                "Share of the children with two parents")
+          .with_form("0..1")};
 };
 
 // What a child is made from: indices of its parents among the living. None = a new random genome.

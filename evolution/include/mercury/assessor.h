@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mercury/configuration.h"
@@ -28,6 +29,25 @@ struct TrialSettings {
   double strain_limit = 2;  // robots with a spring that was strained more get the worst score
   bool racing = false;      // stop robots that are clearly behind
   friend bool operator==(const TrialSettings&, const TrialSettings&) = default;
+
+  static constexpr std::tuple parameters{
+      Parameter("seconds", &TrialSettings::seconds, "s", Accepts::at_least_zero, {1, 60},
+                "Length of a trial, settling included"),
+      Parameter("settle", &TrialSettings::settle, "s", Accepts::at_least_zero, {0, 10},
+                "Measure from this time on, after robots have fallen"),
+      Parameter("trials", &TrialSettings::trials, "", Accepts::between(1, 1000), {1, 20},
+                "Trials per robot, started at different moments of its movement"),
+      Parameter("noise", &TrialSettings::noise, "", Accepts::at_least_zero, {0, 0.5f},
+                "Standard deviation of stiffness and amplitude between trials")
+          .with_form("0..1"),
+      Parameter("damage", &TrialSettings::damage, "", Accepts::share_below_one(), {0, 0.5f},
+                "Share of the voxels that are missing in a trial")
+          .with_form("0..1"),
+      Parameter("strain_limit", &TrialSettings::strain_limit, "",
+                Accepts{.lowest = 0, .above_lowest = true, .or_infinite = true}, {0.1f, 4},
+                "Robots with a spring strained more are overstretched: they rank behind all sound ones")
+          .with_default_note("default 2; inf = no limit"),
+      Parameter("racing", &TrialSettings::racing, "Stop robots early that are clearly behind")};
 };
 
 // Throws ParameterError for settings out of range. A trial of 0 s is accepted.

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mercury/algorithm.h"
@@ -22,6 +23,7 @@
 #include "mercury/configuration.h"
 #include "mercury/genome.h"
 #include "mercury/individual.h"
+#include "mercury/parameters.h"
 
 namespace mercury {
 
@@ -34,6 +36,16 @@ struct EvolutionSettings {
   int generations = 100;     // after generation 0, which is random
   double mutation = 1;       // strength
   std::uint64_t seed = 1;
+
+  static constexpr std::tuple parameters{
+      Parameter("generations", &EvolutionSettings::generations, "", Accepts::at_least_zero, {1, 1000, true},
+                "Generations after the first, random one"),
+      Parameter("children", &EvolutionSettings::children, "", Accepts::at_least_zero, {0, 4096},
+                "Robots born in a generation")
+          .with_default_note("default: --population"),
+      Parameter("mutation", &EvolutionSettings::mutation, "", Accepts::above_zero, {0.1f, 10, true},
+                "Strength of mutations"),
+      Parameter("seed", &EvolutionSettings::seed, "", Accepts::at_least_zero, {0, 100}, "Seed of the run")};
 };
 
 // Throws ParameterError for settings out of range or that do not go together.

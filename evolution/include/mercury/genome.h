@@ -55,15 +55,6 @@ class GenomeSpace {
   virtual GenomePointer decode(std::string_view bytes) const = 0;
 };
 
-// What may change in a body that has muscles.
-enum class Genes {
-  body,     // the form and where which material is; the muscle laws stay
-  muscles,  // amplitude, frequency and phase of each base muscle; the body stays
-  both
-};
-std::string_view name_of(Genes genes);     // "body", "muscles", "both"
-Genes genes_named(std::string_view name);  // throws ParameterError("genes", ...)
-
 // Which of Mercury's genome spaces.
 struct GenomeSpaceRequest {
   std::string kind = "voxel";  // of a generator; ignored if there are founders

@@ -70,8 +70,20 @@ struct MutationRequest {
 // Throws ParameterError("strength", ...) unless both strengths are finite and at least 0.
 void validate(const MutationRequest& request);
 
+// What may change in a body that has muscles.
+enum class Genes {
+  body,     // the form and where which material is; the muscle laws stay
+  muscles,  // amplitude, frequency and phase of each base muscle; the body stays
+  both
+};
+std::string_view name_of(Genes genes);     // "body", "muscles", "both"
+Genes genes_named(std::string_view name);  // throws ParameterError("genes", ...)
+
+struct GenesKind;  // robots/genes.h
+
 struct Generator {
   std::string kind;         // "voxel": names the generator in programs, and in the "kind" of its robots' origins
+  std::string word;         // "painted": in names of functions, random_painted() of Python
   std::string title;        // "Voxel robots", the heading above its parameters
   std::string noun;         // "a voxel robot"
   std::string help;         // "Random voxel robots", in some words
@@ -107,6 +119,7 @@ struct Generator {
   // cannot be mixed: sizes, environment, a table without base materials. Depends on the arguments alone. Throws
   // InputError as regrow and make, and for parents that are too different. Its origin names both.
   std::function<Robot(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name)> cross;
+  const GenesKind* genes = nullptr;  // what evolution changes; nullptr = these robots cannot be evolved
 };
 
 // All generators; the first one is the default.

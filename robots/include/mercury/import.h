@@ -47,19 +47,38 @@ struct Import {
   ImportReport report;
 };
 
-enum class ImportFormat { vxa, vxd, rsc, evogym };
+// A format that can be read. Each is described once, beside its reader in robots/importers; the list of import.cpp has
+// them all, and messages, help and Python derive from it.
+struct ImportFormat {
+  std::string_view name;        // "vxa"
+  std::string_view extensions;  // in small letters: ".vxa .vxc"
+  std::string_view programs;    // that write it: "VoxCAD, evosoro and voxcraft-sim"
+  // Of a format that builds on another file: the name of that file, beside the one that is read.
+  std::string_view base_name = {};
+  bool needs_base = false;
+  // Whether a file with such an extension is of this format, by its beginning; nullptr = the extension decides.
+  bool (*recognizes)(std::string_view beginning) = nullptr;
+  // `name` names the robots; `base` is the text of the base. Throws InputError.
+  Import (*read)(std::string_view text, std::string_view base, const std::string& name, const ImportOptions& options);
+};
 
-// The format of a file: by its extension (.vxa, .vxc, .vxd, .rsc, in small letters or capitals), for .json by its
-// content. Nothing for other files, and for those that cannot be read.
-std::optional<ImportFormat> import_format_of(const std::filesystem::path& path);
+// "VoxCAD, evosoro and voxcraft-sim (.vxa, .vxc, .vxd), RISE (.rsc) and EvoGym (.json)"
+std::string import_sources();
+
+// The format of a file: by its extension, in small letters or capitals, and where several programs share an extension
+// by its content. nullptr for other files, and for those that cannot be read.
+const ImportFormat* import_format_of(const std::filesystem::path& path);
+// Whether a file may be the base of others beside it.
+bool is_import_base(const std::filesystem::path& path);
 
 // Reads a file of another simulator. Throws InputError in one line that says where and why, for a file that cannot be
 // read or breaks a rule: "hopper.vxa: /VXA/VXC/Structure/X_Voxels: ...".
 Import import_file(const std::filesystem::path& path, const ImportOptions& options = {});
+// The same where the format is known.
+Import import_file(const std::filesystem::path& path, const ImportFormat& format, const ImportOptions& options = {});
 
-// The same for a text. `name` names the robots; `base` is the text of the base of a .vxd or .rsc. Memory follows what
-// the text holds, not the sizes that it claims.
-Import import_text(std::string_view text, ImportFormat format, const std::string& name,
+// The same for a text in the format of a name. Memory follows what the text holds, not the sizes that it claims.
+Import import_text(std::string_view text, std::string_view format, const std::string& name,
                    const ImportOptions& options = {}, std::string_view base = {});
 
 // A voxel robot, or one that was imported, as VXA: the grid and the materials of its origin. import_text() gives back

@@ -31,7 +31,7 @@ struct NnGenome {
 
 // The robot of a genome, bit for bit the same on every machine; its origin keeps the genome.
 // Places are centered and scaled into the unit sphere [m]. With a spacing, places nearer to each other than that are
-// thinned and the others pushed apart a little (robots/cloud_spacing.h says how and why). Masses are the places that
+// thinned and the others pushed apart a little (robots/nn/cloud_spacing.h says how and why). Masses are the places that
 // the body holds, ordered along a Z-curve so that neighbors in space are near in memory. Springs are the edges of the
 // body's tetrahedra, except those shorter than 0.001 m; their material combines the materials of their two masses.
 // Faces are the skin of the body. Throws InputError if the genome is not valid, or if its places are not finite, all

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/run_folder/byte_difference.h"
+#include "evolution/run_folder/generation_record.h"
 
 #include <gtest/gtest.h>
 
-#include "evolution/bytes.h"
 #include "mercury/random.h"
+#include "robots/bytes.h"
 
 namespace mercury {
 namespace {

@@ -5,8 +5,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include "evolution/bytes.h"
 #include "evolution/run_folder/generation_record.h"
+#include "robots/bytes.h"
 #include "tests/evolution/run_folder/test_run.h"
 
 namespace mercury {

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "evolution/run_folder/plot_axes.h"
+#include "evolution/run_folder/plot.h"
 #include "tests/evolution/run_folder/test_run.h"
 
 namespace mercury {

@@ -156,6 +156,24 @@ TEST(RunFile, GenerationsCanBeReplacedInTheText) {
   EXPECT_EQ(read.fingerprint, parse_run_file("RUN", texts).fingerprint);
 }
 
+TEST(RunFile, EarlierVersionsMayLackAParameter) {
+  RunFileTexts texts = run_file_texts(test_settings());
+  const std::size_t at = texts.run.find("\nstrain_limit");
+  texts.run.erase(at, texts.run.find('\n', at + 1) - at);
+  EXPECT_EQ(parse_run_file("RUN", texts).settings.evolution.trials.strain_limit, TrialSettings{}.strain_limit);
+}
+
+TEST(RunFile, HasEveryParameterOfTheTables) {
+  const std::string text = run_file_texts(test_settings()).run;
+  const auto is_there = [&](const auto& parameter, const auto&) {
+    EXPECT_THAT(text, HasSubstr("\n" + std::string(parameter.name) + " = ")) << parameter.name;
+  };
+  const EvolutionSettings settings;
+  for_each_parameter(settings, is_there);
+  for_each_parameter(settings.algorithm, is_there);
+  for_each_parameter(settings.trials, is_there);
+}
+
 // A line of the test run is replaced.
 std::string error_with(const std::string& line, const std::string& replacement) {
   RunFileTexts texts = run_file_texts(test_settings());
@@ -176,7 +194,7 @@ TEST(RunFile, ErrorsNameFileAndLine) {
   const auto place = [&](const std::string& line) { return at + std::to_string(line_of(line)) + ": "; };
   EXPECT_EQ(error_with("seed", "seed = -1"), place("seed") + "seed: expected a whole number of 0 or more");
   EXPECT_EQ(error_with("seed", "seed = 1.5"), place("seed") + "seed: expected a whole number of 0 or more");
-  EXPECT_EQ(error_with("seed", "sead = 1"), place("[evolution]") + "[evolution] lacks seed");
+  EXPECT_EQ(error_with("seed", "sead = 1"), place("seed") + "\"sead\" is not a key of [evolution]");
   EXPECT_EQ(error_with("seed", "seed = 1\nsalt = 2"),
             at + std::to_string(line_of("seed") + 1) + ": \"salt\" is not a key of [evolution]");
   EXPECT_EQ(error_with("racing", "racing = 1"), place("racing") + "racing: expected true or false");

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "evolution/run_folder/derived_files.h"
-#include "evolution/run_folder/journal_header.h"
+#include "evolution/run_folder/journal.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/evolution/run_folder/test_run.h"

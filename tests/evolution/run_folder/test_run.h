@@ -17,7 +17,7 @@
 #include "mercury/random.h"
 #include "mercury/run_folder.h"
 #include "mercury/voxel.h"
-#include "robots/whole_file.h"
+#include "robots/file/whole_file.h"
 
 namespace mercury {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "evolution/run_folder/checksum.h"
+#include "robots/bytes.h"
 #include "tests/evolution/run_folder/test_run.h"
 
 namespace mercury {

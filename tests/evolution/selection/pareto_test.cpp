@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fronts and crowding against what their definitions say, computed the long way.
-#include "evolution/selection/pareto.h"
+#include "evolution/selection/ranking.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,15 +8,14 @@
 namespace mercury {
 namespace {
 
-std::string refusal(const VxaParts& parts) { return refusal_of(parts.text(), ImportFormat::vxa); }
+std::string refusal(const VxaParts& parts) { return refusal_of(parts.text(), "vxa"); }
 
 TEST(BadVxa, TheValidFileIsAccepted) { EXPECT_EQ(refusal({}), "no error"); }
 
 TEST(BadVxa, NoXml) {
-  EXPECT_EQ(refusal_of("", ImportFormat::vxa), "holds no XML element");
-  EXPECT_EQ(refusal_of("<VXA>\n<VXC>", ImportFormat::vxa), "line 2: not valid XML: Start-end tags mismatch");
-  EXPECT_EQ(refusal_of("<robot/>", ImportFormat::vxa),
-            "/robot: a file of another kind; its outermost element must be VXA or VXC");
+  EXPECT_EQ(refusal_of("", "vxa"), "holds no XML element");
+  EXPECT_EQ(refusal_of("<VXA>\n<VXC>", "vxa"), "line 2: not valid XML: Start-end tags mismatch");
+  EXPECT_EQ(refusal_of("<robot/>", "vxa"), "/robot: a file of another kind; its outermost element must be VXA or VXC");
 }
 
 // Nine entities, each ten times the one before it: 10^9 words.
@@ -28,17 +27,17 @@ TEST(BadVxa, EntityBombs) {
     bomb += "\">";
   }
   bomb += "]><VXA>&a9;</VXA>";
-  EXPECT_EQ(refusal_of(bomb, ImportFormat::vxa), "a document type declaration is not accepted; robot files need none");
+  EXPECT_EQ(refusal_of(bomb, "vxa"), "a document type declaration is not accepted; robot files need none");
 }
 
 TEST(BadVxa, ElementsWithoutEnd) {
   std::string deep, wide = "<VXA>";
   for (int i = 0; i < 100'000; ++i) deep += "<VXA>";
-  EXPECT_NE(refusal_of(deep, ImportFormat::vxa).find("not valid XML"), std::string::npos);
+  EXPECT_NE(refusal_of(deep, "vxa").find("not valid XML"), std::string::npos);
   for (int i = 0; i < 100'000; ++i) deep += "</VXA>";
-  EXPECT_EQ(refusal_of(deep, ImportFormat::vxa), "nested deeper than 64 levels");
+  EXPECT_EQ(refusal_of(deep, "vxa"), "nested deeper than 64 levels");
   for (int i = 0; i < 100'000; ++i) wide += "<a/>";
-  EXPECT_EQ(refusal_of(wide + "</VXA>", ImportFormat::vxa), "more than 100000 elements");
+  EXPECT_EQ(refusal_of(wide + "</VXA>", "vxa"), "more than 100000 elements");
 }
 
 TEST(BadVxa, SizesThatCannotBe) {
@@ -130,7 +129,7 @@ TEST(BadVxa, BodiesTooLargeForARobot) {
 TEST(BadVxa, TruncatedFilesAreRefusedWhereverTheyEnd) {
   const std::string text = VxaParts{}.text();
   for (std::size_t end = 0; end < text.size() - 1; ++end)
-    ASSERT_NE(refusal_of(std::string_view(text).substr(0, end), ImportFormat::vxa), "no error") << end;
+    ASSERT_NE(refusal_of(std::string_view(text).substr(0, end), "vxa"), "no error") << end;
 }
 
 }  // namespace

@@ -51,10 +51,10 @@ inline std::string phases_along_x(int voxels) {
 }
 
 inline Import import_of(const VxaParts& parts, const ImportOptions& options = {}) {
-  return import_text(parts.text(), ImportFormat::vxa, "test", options);
+  return import_text(parts.text(), "vxa", "test", options);
 }
 
-inline std::string refusal_of(std::string_view text, ImportFormat format, std::string_view base = {}) {
+inline std::string refusal_of(std::string_view text, std::string_view format, std::string_view base = {}) {
   try {
     import_text(text, format, "test", {}, base);
   } catch (const InputError& error) {

@@ -17,7 +17,7 @@ const std::string world = R"({"grid_width": 8, "grid_height": 4, "objects": {
   "box": {"indices": [14], "types": [2], "neighbors": {"14": []}},
   "ground": {"indices": [0, 1, 2, 3, 4, 5, 6, 7], "types": [5, 5, 5, 5, 5, 5, 5, 5], "color": "green"}}})";
 
-Import evogym(const ImportOptions& options = {}) { return import_text(world, ImportFormat::evogym, "world", options); }
+Import evogym(const ImportOptions& options = {}) { return import_text(world, "evogym", "world", options); }
 
 TEST(Evogym, RobotsAndMovableObjectsBecomeRobots) {
   const Import import = evogym();
@@ -87,20 +87,20 @@ TEST(Evogym, DepthExtrudes) {
 TEST(Evogym, MissingConnectionsAreReported) {
   std::string text = world;
   text.replace(text.find("\"9\": [10, 17], \"10\": [9, 11]"), 28, "\"9\": [17], \"10\": [11]");
-  const Import import = import_text(text, ImportFormat::evogym, "world");
+  const Import import = import_text(text, "evogym", "world");
   EXPECT_EQ(element_at(import.report, "/objects/robot/neighbors")->outcome, ImportOutcome::approximated);
 }
 
 TEST(Evogym, TerrainAloneGivesNoRobot) {
   const Import import = import_text(R"({"grid_width": 2, "grid_height": 1, "objects": {
       "ground": {"indices": [0, 1], "types": [5, 5], "neighbors": {}}}})",
-                                    ImportFormat::evogym, "flat");
+                                    "evogym", "flat");
   EXPECT_TRUE(import.robots.empty());
   EXPECT_FALSE(import.report.notes.empty());
 }
 
 TEST(BadEvogym, IsRefusedWithItsPlace) {
-  const auto refusal = [](const std::string& text) { return refusal_of(text, ImportFormat::evogym); };
+  const auto refusal = [](const std::string& text) { return refusal_of(text, "evogym"); };
   const auto object = [&](const std::string& data) {
     return refusal(R"({"grid_width": 8, "grid_height": 4, "objects": {"a": )" + data + "}}");
   };

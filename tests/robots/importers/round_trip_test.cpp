@@ -17,7 +17,7 @@ namespace mercury {
 namespace {
 
 void expect_same_after_a_round_trip(const Robot& robot, const VoxelGrid& grid) {
-  const Import back = import_text(vxa_document(robot), ImportFormat::vxa, robot.name);
+  const Import back = import_text(vxa_document(robot), "vxa", robot.name);
   ASSERT_EQ(back.robots.size(), 1u);
   EXPECT_EQ(back.report.length_scale, 1);
   const auto grid_back = voxel_grid_of(back.robots.front());
@@ -65,7 +65,7 @@ TEST(VxaRoundTrip, KeepsImportedRobots) {
   const std::string phases = phases_along_x(40);
   parts.layers = "<PhaseOffset><Layer>" + phases + "</Layer></PhaseOffset>";
   const Robot robot = import_of(parts).robots.front();
-  const Robot back = import_text(vxa_document(robot), ImportFormat::vxa, "test").robots.front();
+  const Robot back = import_text(vxa_document(robot), "vxa", "test").robots.front();
   EXPECT_EQ(back.materials, robot.materials);
   EXPECT_EQ(back.springs, robot.springs);
 }

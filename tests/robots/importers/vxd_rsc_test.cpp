@@ -15,7 +15,7 @@ const std::string changes =
     "<TempPeriod>1</TempPeriod></Thermal><Remark>evolved</Remark></VXD>";
 
 TEST(Vxd, ReplacesPartsOfItsBase) {
-  const Import import = import_text(changes, ImportFormat::vxd, "test", {}, VxaParts{}.text());
+  const Import import = import_text(changes, "vxd", "test", {}, VxaParts{}.text());
   const Robot& robot = import.robots.front();
   EXPECT_EQ(voxel_grid_of(robot)->cells, (std::vector<MaterialId>{1, 2, 1}));
   EXPECT_FLOAT_EQ(robot.materials[1].amplitude, 0.1f);
@@ -29,20 +29,19 @@ TEST(Vxd, ReplacesPartsOfItsBase) {
 TEST(Vxd, WithoutChangesIsItsBase) {
   VxaParts voxcraft;
   voxcraft.simulator += "<EnableExpansion>0</EnableExpansion>";
-  EXPECT_EQ(import_text("<VXD/>", ImportFormat::vxd, "test", {}, voxcraft.text()).robots, import_of(voxcraft).robots);
+  EXPECT_EQ(import_text("<VXD/>", "vxd", "test", {}, voxcraft.text()).robots, import_of(voxcraft).robots);
 }
 
 TEST(Vxd, BadPathsAreRefused) {
   const std::string base = VxaParts{}.text();
-  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXC.Structure\"/></VXD>", ImportFormat::vxd, base),
+  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXC.Structure\"/></VXD>", "vxd", base),
             "/VXD/a: replace=\"VXC.Structure\" names no part of the base, whose outermost element is VXA");
-  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXA..b\"/></VXD>", ImportFormat::vxd, base),
+  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXA..b\"/></VXD>", "vxd", base),
             "/VXD/a: replace=\"VXA..b\" is not a path such as VXA.VXC.Structure");
-  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXA\"/></VXD>", ImportFormat::vxd, base),
+  EXPECT_EQ(refusal_of("<VXD><a replace=\"VXA\"/></VXD>", "vxd", base),
             "/VXD/a: replaces the whole base; give a VXA instead");
-  EXPECT_EQ(refusal_of(base, ImportFormat::vxd, base),
-            "/VXA: a file of another kind; its outermost element must be VXD");
-  EXPECT_EQ(refusal_of("<VXD/>", ImportFormat::vxd, "<VXA>").substr(0, 6), "base: ");
+  EXPECT_EQ(refusal_of(base, "vxd", base), "/VXA: a file of another kind; its outermost element must be VXD");
+  EXPECT_EQ(refusal_of("<VXD/>", "vxd", "<VXA>").substr(0, 6), "base: ");
 }
 
 const std::string rise_world =
@@ -62,7 +61,7 @@ const std::string rise_robot =
     "<Constraints><Constraint><Type>HINGE_JOINT</Type></Constraint></Constraints></Structure></RSC>";
 
 TEST(Rsc, BodiesBecomeRobotsWithThePaletteOfTheWorld) {
-  const Import import = import_text(rise_robot, ImportFormat::rsc, "test", {}, rise_world);
+  const Import import = import_text(rise_robot, "rsc", "test", {}, rise_world);
   ASSERT_EQ(import.robots.size(), 2u);
   const auto grid = voxel_grid_of(import.robots[0]);
   ASSERT_TRUE(grid);
@@ -83,18 +82,18 @@ TEST(Rsc, BodiesBecomeRobotsWithThePaletteOfTheWorld) {
 }
 
 TEST(Rsc, AFileMayHoldWorldAndRobot) {
-  const Import both = import_text(rise_world + rise_robot, ImportFormat::rsc, "test");
-  EXPECT_EQ(both.robots, import_text(rise_robot, ImportFormat::rsc, "test", {}, rise_world).robots);
+  const Import both = import_text(rise_world + rise_robot, "rsc", "test");
+  EXPECT_EQ(both.robots, import_text(rise_robot, "rsc", "test", {}, rise_world).robots);
 }
 
 TEST(Rsc, BadFilesAreRefused) {
-  EXPECT_EQ(refusal_of(rise_robot, ImportFormat::rsc),
+  EXPECT_EQ(refusal_of(rise_robot, "rsc"),
             "/RSC: has no element Voxel with the palette, and no base has one; name the file of the world with --base");
-  EXPECT_EQ(refusal_of(rise_world, ImportFormat::rsc), "/RSC: has no element Structure, which holds the bodies");
+  EXPECT_EQ(refusal_of(rise_world, "rsc"), "/RSC: has no element Structure, which holds the bodies");
   const auto with = [&](const std::string& old, const std::string& other) {
     std::string text = rise_robot;
     text.replace(text.find(old), old.size(), other);
-    return refusal_of(text, ImportFormat::rsc, rise_world);
+    return refusal_of(text, "rsc", rise_world);
   };
   EXPECT_EQ(with("<Layer>4,4,4</Layer>", "<Layer>4,4</Layer>"),
             "/RSC/Structure/Bodies/Body[1]/MaterialID/Layer[1]: has 2 values, X_Voxels times Y_Voxels is 3");

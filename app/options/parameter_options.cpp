@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/options/parameter_options.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+namespace mercury {
+namespace {
+
+constexpr const char* trials_group = "Trials";
+
+bool is_of_every_measurement(std::string_view name) { return name == "settle" || name == "strain_limit"; }
+
+}  // namespace
+
+std::string text_of(double value) { return fmt::format("{}", value); }
+std::string text_of(float value) { return fmt::format("{}", value); }
+std::string text_of(int value) { return fmt::format("{}", value); }
+std::string text_of(std::uint64_t value) { return fmt::format("{}", value); }
+std::string text_of(Vec3 value) { return fmt::format("{},{},{}", value.x, value.y, value.z); }
+std::string text_of(bool value) { return value ? "on" : "off"; }
+
+std::string form_of(std::string_view unit, bool whole) {
+  std::string form(!unit.empty() ? unit : whole ? "N" : "X");
+  for (char& letter : form) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return form;
+}
+
+void add_trial_options(const Command& command, TrialSettings& trials) {
+  add_parameters(command, trials, trials_group, is_of_every_measurement);
+}
+
+void add_evolution_trial_options(const Command& command, TrialSettings& trials) {
+  // --seconds is an option of the simulation.
+  add_parameters(command, trials, trials_group,
+                 [](std::string_view name) { return name != "seconds" && !is_of_every_measurement(name); });
+}
+
+}  // namespace mercury

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of a struct that describes its parameters (mercury/parameters.h), and those of every command that
+// measures robots.
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include "app/options/command.h"
+#include "app/options/option_values.h"
+#include "mercury/assessor.h"
+#include "mercury/parameters.h"
+
+namespace mercury {
+
+// The text of a value as help gives defaults: "0.1", "1,0,0", "on".
+std::string text_of(double value);
+std::string text_of(float value);
+std::string text_of(int value);
+std::string text_of(std::uint64_t value);
+std::string text_of(Vec3 value);
+std::string text_of(bool value);
+
+// How help shows a value: "KG/M3", or "X" for a number without unit, "N" for a whole one.
+std::string form_of(std::string_view unit, bool whole = false);
+
+// Adds an option for each parameter that `is_wanted(name)` accepts. It writes into the member of `values`, which must
+// outlive the command.
+template <class Struct, class Wanted>
+void add_parameters(const Command& command, Struct& values, const char* group, Wanted is_wanted) {
+  for_each_parameter(values, [&]<class Value>(const auto& parameter, Value& value) {
+    if (!is_wanted(parameter.name)) return;
+    const std::string help(parameter.help), note(parameter.default_note);
+    if constexpr (std::is_same_v<Value, bool>) {
+      command.add_flag(option_of(parameter.name), value, help).in_group(group);
+    } else {
+      const std::string usual = note.empty() ? "default " + text_of(parameter.default_value()) : note;
+      const std::string form =
+          parameter.form.empty() ? form_of(parameter.unit, std::is_integral_v<Value>) : std::string(parameter.form);
+      add_number(command, option_of(parameter.name), value, help + " (" + usual + ")", form).in_group(group);
+    }
+  });
+}
+template <class Struct>
+void add_parameters(const Command& command, Struct& values, const char* group) {
+  add_parameters(command, values, group, [](std::string_view) { return true; });
+}
+
+// --settle and --strain-limit: what counts, and from when on. They mean the same everywhere.
+void add_trial_options(const Command& command, TrialSettings& trials);
+// The other parameters of trials, which only evolution has.
+void add_evolution_trial_options(const Command& command, TrialSettings& trials);
+
+}  // namespace mercury

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// A robot as a document: the one description of the file format (docs/formats.md), for JSON and CBOR alike.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mercury/robot.h"
+#include "robots/file/document.h"
+
+namespace mercury {
+
+// The actuators of a robot's document: {"name": "left", "materials": [1, 5]} or {"name": "tail", "springs": [0, 1]}.
+
+// Each actuator has at least one material that no other has, and none has air.
+inline constexpr std::size_t max_actuators = max_materials - 1;
+
+// Takes the events within the list "actuators". An event that breaks a rule throws InputError, with its place as a JSON
+// pointer. Keys that the format does not know are ignored.
+class ActuatorReader : public DocumentEvents {
+ public:
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view key_name) override;
+  void end_object() override;
+
+  // Gives the actuators to a robot that has none, once its document has ended: keys stand in any order. Springs get
+  // materials of their own (add_actuator()). The rest of the robot is valid. Throws InputError if they do not fit the
+  // robot.
+  void give_to(Robot& robot) const;
+
+ private:
+  enum Field : unsigned { name, materials, springs, unknown };
+  static constexpr std::string_view field_names[] = {"name", "materials", "springs"};
+  struct Entry {
+    std::string name;
+    std::vector<MaterialId> materials;
+    std::vector<std::uint64_t> springs;
+    unsigned seen = 0;  // a bit for each field
+    bool has(Field field) const { return (seen >> field & 1) != 0; }
+  };
+
+  bool passes_by(int change_of_depth);
+  [[noreturn]] void refuse(const std::string& what) const;
+  [[noreturn]] void wrong_type(const std::string& given) const;
+  void check_springs(const Robot& robot) const;
+
+  std::vector<Entry> entries_;
+  Field field_ = unknown;
+  int depth_ = 0;  // of arrays and objects open: 1 = an actuator, 2 = a list of it
+  std::array<bool, max_materials> taken_{};
+};
+
+// Sends the robot's document. Throws InputError("/origin: ...") if its origin is no JSON object.
+void write_robot(const Robot& robot, DocumentEvents& events);
+
+// Builds a robot from the events of its document. Keys that the format does not know are ignored.
+// An event that breaks a rule throws InputError, with its place as a JSON pointer.
+class RobotReader : public DocumentEvents {
+ public:
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view key_name) override;
+  void end_object() override;
+
+  // The robot, once the document has ended. Throws InputError if a part is missing or validate() refuses it.
+  Robot take();
+
+ private:
+  enum Section : unsigned { format, version, name, materials, masses, springs, faces, actuators, origin, unknown };
+  static constexpr std::string_view section_names[] = {"format",  "version", "name",      "materials", "masses",
+                                                       "springs", "faces",   "actuators", "origin"};
+  struct MaterialEntry {
+    Material material;
+    std::string name;
+    unsigned seen = 0;  // a bit for each key
+  };
+
+  bool has(Section section) const { return (seen_ >> section & 1) != 0; }
+  std::string place() const;
+  [[noreturn]] void refuse(const std::string& what) const;
+  [[noreturn]] void wrong_type(const std::string& given) const;
+  bool passes_by(int change_of_depth);
+  DocumentEvents* part(int change_of_depth);
+  void begin_list(std::size_t announced);
+  void begin_row(bool is_array);
+  float finite(const Number& value) const;
+  std::uint16_t mass_index(const Number& value) const;
+  void row_number(const Number& value);
+  void end_row();
+  void material_key(std::string_view key_name);
+  void end_material();
+
+  Robot robot_;
+  unsigned seen_ = 0;  // a bit for each section
+  Section section_ = unknown;
+  int depth_ = 0;           // of arrays and objects open: 1 = the document, 2 = a list, 3 = a row of it
+  std::size_t row_ = 0;     // which row of the list
+  std::size_t column_ = 0;  // how many elements of the row are read
+  Vec3 position_;
+  Spring spring_;
+  Face face_;
+  MaterialEntry entry_;
+  unsigned field_ = 0;  // the key of a material being read
+  bool materials_have_names_ = false;
+  ActuatorReader actuators_;
+  JsonWriter origin_{robot_.origin};
+};
+
+}  // namespace mercury

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mercury/error.h"
+#include "robots/file/robot_document.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::string_view material_keys[] = {"name", "stiffness", "amplitude", "frequency", "phase", "half_wave"};
+constexpr unsigned half_wave_key = 5, unknown_key = 6;
+
+// Hostile files may have keys of any length; messages show the beginning.
+std::string shown(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  std::string start(text.substr(0, longest));
+  for (char& c : start)
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+  return start + (text.size() > longest ? "..." : "");
+}
+
+}  // namespace
+
+std::string RobotReader::place() const {
+  if (depth_ == 0 || section_ == unknown) return "";
+  std::string place("/");
+  place += section_names[section_];
+  if (section_ == origin || depth_ < 3) return place;
+  place.append("/").append(std::to_string(row_));
+  if (section_ == materials && field_ < unknown_key) place.append("/").append(material_keys[field_]);
+  return place;
+}
+
+void RobotReader::refuse(const std::string& what) const {
+  const std::string where = place();
+  throw where.empty() ? InputError(what) : InputError(where, what);
+}
+
+void RobotReader::wrong_type(const std::string& given) const {
+  if (depth_ == 0) refuse("not a Mercury robot: the document must be an object");
+  if (depth_ == 1) {
+    if (section_ == format || section_ == name) refuse("must be a text, not " + given);
+    if (section_ == version) refuse("must be a whole number, not " + given);
+    refuse(std::string(section_ == origin ? "must be an object" : "must be an array") + ", not " + given);
+  }
+  if (depth_ == 2)
+    refuse("holds " + given + " at " + std::to_string(row_) + ", not " +
+           (section_ == materials ? "an object" : "an array"));
+  if (section_ == materials) {
+    refuse(std::string(field_ == 0               ? "must be a text"
+                       : field_ == half_wave_key ? "must be true or false"
+                                                 : "must be a number") +
+           ", not " + given);
+  }
+  if (section_ == springs && column_ == 3)
+    refuse("the rest length must be a number, not " + given + "; leave it out for the distance at rest");
+  refuse("must hold numbers, not " + given);
+}
+
+// True where an event is not part of the robot: within the origin, which is copied, or under an unknown key.
+// `change_of_depth` is 1 for an event that opens, -1 for one that closes.
+bool RobotReader::passes_by(int change_of_depth) {
+  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
+  const bool in_unknown = section_ == unknown && inside >= 1;
+  const bool in_material_extra = section_ == materials && field_ == unknown_key && inside >= 3;
+  if (!in_unknown && !in_material_extra) return false;
+  depth_ += change_of_depth;
+  return true;
+}
+
+// What takes an event within the origin, or within the list of actuators; nullptr for others. Follows the depth.
+DocumentEvents* RobotReader::part(int change_of_depth) {
+  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
+  DocumentEvents* const part = section_ == origin && depth_ >= 2      ? static_cast<DocumentEvents*>(&origin_)
+                               : section_ == actuators && inside >= 2 ? &actuators_
+                                                                      : nullptr;
+  if (part) depth_ += change_of_depth;
+  return part;
+}
+
+void RobotReader::null() {
+  if (passes_by(0)) return;
+  if (DocumentEvents* const to = part(0)) return to->null();
+  wrong_type("null");
+}
+
+void RobotReader::boolean(bool value) {
+  if (passes_by(0)) return;
+  if (DocumentEvents* const to = part(0)) return to->boolean(value);
+  if (depth_ == 3 && section_ == materials && field_ == half_wave_key) {
+    entry_.material.half_wave = value;
+    return;
+  }
+  wrong_type(value ? "true" : "false");
+}
+
+void RobotReader::bytes(std::string_view value) {
+  if (passes_by(0)) return;
+  if (section_ == origin && depth_ >= 2) refuse("holds a byte string, which JSON cannot hold");
+  if (DocumentEvents* const to = part(0)) return to->bytes(value);
+  wrong_type("a byte string");
+}
+
+void RobotReader::text(std::string_view value) {
+  if (passes_by(0)) return;
+  if (DocumentEvents* const to = part(0)) return to->text(value);
+  if (depth_ == 1 && section_ == format) {
+    if (value != "mercury-robot")
+      refuse(std::string("\"").append(shown(value)).append("\" is not known; give \"mercury-robot\""));
+  } else if (depth_ == 1 && section_ == name) {
+    robot_.name = value;
+    json_text(value);
+  } else if (depth_ == 3 && section_ == materials && field_ == 0) {
+    entry_.name = value;
+    json_text(value);
+  } else {
+    wrong_type("a text");
+  }
+}
+
+float RobotReader::finite(const Number& value) const {
+  const auto number = to_float(value);
+  if (!number) refuse((value.text.empty() ? "a number" : shown(value.text)) + " is not a finite 32-bit number");
+  return *number;
+}
+
+void RobotReader::number(const Number& value) {
+  if (passes_by(0)) return;
+  if (section_ == origin && depth_ >= 2 && !std::isfinite(value.real)) refuse("a number is not finite");
+  if (DocumentEvents* const to = part(0)) return to->number(value);
+  if (depth_ == 1 && section_ == version) {
+    if (value.kind != Number::Kind::natural || value.natural != 1)
+      refuse(std::isfinite(value.real) ? shown(to_text(value)) + " is not known; this program reads version 1"
+                                       : "is not known; this program reads version 1");
+  } else if (depth_ == 3 && section_ == materials && field_ > 0 && field_ < half_wave_key) {
+    float* const fields[] = {&entry_.material.stiffness, &entry_.material.amplitude, &entry_.material.frequency,
+                             &entry_.material.phase};
+    *fields[field_ - 1] = finite(value);
+  } else if (depth_ == 3 && section_ >= masses && section_ <= faces) {
+    row_number(value);
+  } else {
+    wrong_type("a number");
+  }
+}
+
+std::uint16_t RobotReader::mass_index(const Number& value) const {
+  if (value.kind == Number::Kind::real) refuse("a mass is given by a whole number");
+  if (value.kind == Number::Kind::natural && value.natural < max_masses)
+    return static_cast<std::uint16_t>(value.natural);  // validate() compares it with the number of masses
+  refuse("mass " + to_text(value) + " is out of range, " +
+         (has(masses) ? "the robot has " + std::to_string(robot_.masses.size()) : "a robot has at most 65535"));
+}
+
+void RobotReader::row_number(const Number& value) {
+  const std::size_t column = column_++;
+  if (section_ == masses) {
+    if (column > 2) refuse("a mass has three coordinates [x, y, z]");
+    (column == 0 ? position_.x : column == 1 ? position_.y : position_.z) = finite(value);
+  } else if (section_ == faces) {
+    if (column > 2) refuse("a face has three masses [a, b, c]");
+    (column == 0 ? face_.a : column == 1 ? face_.b : face_.c) = mass_index(value);
+  } else if (column < 2) {
+    (column == 0 ? spring_.a : spring_.b) = mass_index(value);
+  } else if (column == 2) {
+    if (value.kind == Number::Kind::real) refuse("a material is given by a whole number");
+    if (value.kind == Number::Kind::negative || value.natural >= max_materials)
+      refuse("material " + to_text(value) + " is out of range, the table has " +
+             std::to_string(materials_of(robot_).size()));
+    spring_.material = static_cast<MaterialId>(value.natural);
+  } else if (column == 3) {
+    spring_.rest_length = finite(value);
+  } else {
+    refuse("a spring is [a, b, material] or [a, b, material, rest_length]");
+  }
+}
+
+void RobotReader::begin_list(std::size_t announced) {
+  row_ = 0;
+  const std::size_t limit = section_ == masses      ? max_masses
+                            : section_ == materials ? std::size_t{max_materials}
+                            : section_ == actuators ? max_actuators
+                                                    : unknown_length;
+  if (announced != unknown_length && announced > limit)
+    refuse(std::to_string(announced) + " " + std::string(section_names[section_]) + ", at most " +
+           std::to_string(limit) + " are accepted");
+  ++depth_;
+}
+
+void RobotReader::begin_row(bool is_array) {
+  if (is_array == (section_ == materials)) wrong_type(is_array ? "an array" : "an object");
+  if (section_ == masses && row_ == max_masses) refuse("more than 65535 masses, at most 65535 are accepted");
+  if (section_ == materials && row_ == max_materials) refuse("more than 256 materials, at most 256 are accepted");
+  column_ = 0;
+  spring_.rest_length = std::numeric_limits<float>::quiet_NaN();
+  entry_ = {};
+  field_ = unknown_key;
+  ++depth_;
+}
+
+void RobotReader::begin_array(std::size_t announced) {
+  if (passes_by(1)) return;
+  if (DocumentEvents* const to = part(1)) return to->begin_array(announced);
+  if (depth_ == 1 && section_ >= materials && section_ <= actuators) return begin_list(announced);
+  if (depth_ == 2) return begin_row(true);
+  wrong_type("an array");
+}
+
+void RobotReader::begin_object(std::size_t announced) {
+  if (depth_ == 0) {
+    depth_ = 1;
+    return;
+  }
+  if (passes_by(1)) return;
+  if (section_ == origin && depth_ == 1) {
+    ++depth_;
+    return origin_.begin_object(announced);
+  }
+  if (DocumentEvents* const to = part(1)) return to->begin_object(announced);
+  if (depth_ == 2) return begin_row(false);
+  wrong_type("an object");
+}
+
+void RobotReader::key(std::string_view key_name) {
+  if (depth_ == 1) {
+    const auto* const found = std::find(std::begin(section_names), std::end(section_names), key_name);
+    section_ = static_cast<Section>(found - std::begin(section_names));
+    if (section_ == unknown) return;
+    if (has(section_)) refuse("appears twice");
+    seen_ |= 1u << section_;
+  } else if (DocumentEvents* const to = part(0)) {
+    to->key(key_name);
+  } else if (section_ == materials && depth_ == 3) {
+    material_key(key_name);
+  }
+}
+
+void RobotReader::material_key(std::string_view key_name) {
+  const auto* const found = std::find(std::begin(material_keys), std::end(material_keys), key_name);
+  field_ = static_cast<unsigned>(found - std::begin(material_keys));
+  if (field_ == unknown_key) return;
+  if ((entry_.seen >> field_ & 1) != 0) refuse("appears twice");
+  entry_.seen |= 1u << field_;
+}
+
+void RobotReader::end_material() {
+  field_ = unknown_key;
+  if ((entry_.seen >> 1 & 1) == 0) refuse("stiffness is missing");
+  robot_.materials.push_back(entry_.material);
+  robot_.material_names.push_back(std::move(entry_.name));
+  materials_have_names_ = materials_have_names_ || (entry_.seen & 1) != 0;
+}
+
+void RobotReader::end_row() {
+  if (section_ == masses) {
+    if (column_ != 3) refuse("a mass has three coordinates [x, y, z]");
+    robot_.masses.push_back(position_);
+  } else if (section_ == springs) {
+    if (column_ < 3) refuse("a spring is [a, b, material] or [a, b, material, rest_length]");
+    robot_.springs.push_back(spring_);
+  } else if (section_ == faces) {
+    if (column_ != 3) refuse("a face has three masses [a, b, c]");
+    robot_.faces.push_back(face_);
+  } else {
+    end_material();
+  }
+  --depth_;
+  ++row_;
+}
+
+void RobotReader::end_array() {
+  if (passes_by(-1)) return;
+  if (DocumentEvents* const to = part(-1)) return to->end_array();
+  if (depth_ == 3) return end_row();
+  if (section_ == materials && row_ == 0) refuse("an empty table; leave it out for the 254 defaults");
+  --depth_;
+}
+
+void RobotReader::end_object() {
+  if (depth_ == 1) {
+    depth_ = 0;
+    return;
+  }
+  if (passes_by(-1)) return;
+  if (DocumentEvents* const to = part(-1)) return to->end_object();
+  end_row();
+}
+
+Robot RobotReader::take() {
+  if (!has(format)) throw InputError("not a Mercury robot: \"format\": \"mercury-robot\" is missing");
+  for (const Section section : {version, masses, springs, faces})
+    if (!has(section)) throw InputError(std::string("/").append(section_names[section]), "is missing");
+  if (!materials_have_names_) robot_.material_names.clear();
+  for (Spring& spring : robot_.springs)
+    if (std::isnan(spring.rest_length) && spring.a < robot_.masses.size() && spring.b < robot_.masses.size())
+      spring.rest_length = rest_distance(robot_, spring.a, spring.b);
+  validate(robot_);
+  actuators_.give_to(robot_);
+  return std::move(robot_);
+}
+
+}  // namespace mercury

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+
+#include "mercury/error.h"
+#include "robots/file/robot_document.h"
+
+namespace mercury {
+namespace {
+
+// Copies an origin into the robot's document.
+class Copy : public DocumentEvents {
+ public:
+  explicit Copy(DocumentEvents& to) : to_(to) {}
+  void null() override { to(false).null(); }
+  void boolean(bool value) override { to(false).boolean(value); }
+  void number(const Number& value) override {
+    if (!std::isfinite(value.real)) throw InputError("a number is too large");
+    to(false).number(value);
+  }
+  void text(std::string_view value) override { to(false).text(value); }
+  void bytes(std::string_view value) override { to(false).bytes(value); }
+  void begin_array(std::size_t announced) override { deeper(to(false)).begin_array(announced); }
+  void end_array() override { shallower().end_array(); }
+  void begin_object(std::size_t announced) override { deeper(to(true)).begin_object(announced); }
+  void key(std::string_view name) override { to_.key(name); }
+  void end_object() override { shallower().end_object(); }
+
+ private:
+  DocumentEvents& to(bool is_object) {
+    if (depth_ == 0 && !is_object) throw InputError("must be an object");
+    return to_;
+  }
+  DocumentEvents& deeper(DocumentEvents& events) {
+    if (++depth_ == max_depth) throw InputError("nested deeper than " + std::to_string(max_depth - 1) + " levels");
+    return events;
+  }
+  DocumentEvents& shallower() {
+    --depth_;
+    return to_;
+  }
+
+  DocumentEvents& to_;
+  int depth_ = 0;
+};
+
+class RobotWriter {
+ public:
+  RobotWriter(const Robot& robot, DocumentEvents& events) : robot_(robot), events_(events) {}
+
+  void run() {
+    const bool has_materials = !robot_.materials.empty(), has_actuators = !robot_.actuators.empty(),
+               has_origin = !robot_.origin.empty();
+    events_.begin_object(6u + has_materials + has_actuators + has_origin);
+    field("format", "mercury-robot");
+    field("version", 1u);
+    field("name", robot_.name);
+    if (has_materials) write_materials();
+    write_list("masses", robot_.masses, [&](const Vec3& x) {
+      events_.begin_array(3);
+      real(x.x), real(x.y), real(x.z);
+    });
+    // Lengths are written for all springs or for none; a mixture would confuse readers of the file.
+    bool at_rest = true;
+    for (const Spring& spring : robot_.springs)
+      at_rest = at_rest && spring.rest_length == rest_distance(robot_, spring.a, spring.b);
+    write_list("springs", robot_.springs, [&](const Spring& spring) {
+      events_.begin_array(at_rest ? 3 : 4);
+      natural(spring.a), natural(spring.b), natural(spring.material);
+      if (!at_rest) real(spring.rest_length);
+    });
+    write_list("faces", robot_.faces, [&](const Face& face) {
+      events_.begin_array(3);
+      natural(face.a), natural(face.b), natural(face.c);
+    });
+    if (has_actuators) write_actuators();
+    if (has_origin) write_origin();
+    events_.end_object();
+  }
+
+ private:
+  void natural(std::uint64_t value) { events_.number(natural_number(value)); }
+  void real(float value) { events_.number(real_number(value, room_)); }
+  void field(std::string_view key, std::string_view value) { events_.key(key), events_.text(value); }
+  void field(std::string_view key, unsigned value) { events_.key(key), natural(value); }
+  void field(std::string_view key, float value) { events_.key(key), real(value); }
+
+  template <class List, class Begin>
+  void write_list(std::string_view key, const List& list, Begin begin) {
+    events_.key(key);
+    events_.begin_array(list.size());
+    for (const auto& row : list) {
+      begin(row);
+      events_.end_array();
+    }
+    events_.end_array();
+  }
+
+  void write_materials() {
+    events_.key("materials");
+    events_.begin_array(robot_.materials.size());
+    const bool has_names = !robot_.material_names.empty();
+    for (std::size_t i = 0; i < robot_.materials.size(); ++i) {
+      const Material& material = robot_.materials[i];
+      events_.begin_object(4u + has_names + material.half_wave);
+      if (has_names) field("name", robot_.material_names[i]);
+      field("stiffness", material.stiffness);
+      field("amplitude", material.amplitude);
+      field("frequency", material.frequency);
+      field("phase", material.phase);
+      if (material.half_wave) events_.key("half_wave"), events_.boolean(true);
+      events_.end_object();
+    }
+    events_.end_array();
+  }
+
+  void write_actuators() {
+    events_.key("actuators");
+    events_.begin_array(robot_.actuators.size());
+    for (const Actuator& actuator : robot_.actuators) {
+      events_.begin_object(2);
+      field("name", actuator.name);
+      events_.key("materials");
+      events_.begin_array(actuator.materials.size());
+      for (const MaterialId id : actuator.materials) natural(id);
+      events_.end_array();
+      events_.end_object();
+    }
+    events_.end_array();
+  }
+
+  void write_origin() {
+    events_.key("origin");
+    try {
+      Copy copy(events_);
+      read_json(robot_.origin, copy);
+    } catch (const InputError& error) {
+      throw InputError("/origin", error.what());
+    }
+  }
+
+  const Robot& robot_;
+  DocumentEvents& events_;
+  std::array<char, 32> room_{};
+};
+
+}  // namespace
+
+void write_robot(const Robot& robot, DocumentEvents& events) { RobotWriter(robot, events).run(); }
+
+}  // namespace mercury

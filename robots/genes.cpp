@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/genes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mercury/error.h"
+#include "mercury/muscle_laws.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::array<std::string_view, 3> genes_names{"body", "muscles", "both"};
+
+MaterialGenes filled_in(const MaterialGenes& genes) { return genes.empty() ? base_materials_of(Robot{}) : genes; }
+
+}  // namespace
+
+MaterialGenes material_genes_of(const Robot& robot) {
+  return robot.materials.empty() ? MaterialGenes{} : base_materials_of(robot);
+}
+
+std::vector<Material> table_of(const MaterialGenes& genes) {
+  std::vector<Material> table;
+  if (genes.size() == base_material_count) {
+    table = material_table(std::span(genes).first<base_material_count>());
+    if (std::ranges::equal(table, default_materials())) table.clear();
+  } else if (!genes.empty()) {
+    table.push_back({});
+    table.insert(table.end(), genes.begin(), genes.end());
+  }
+  return table;
+}
+
+MaterialGenes mutated(const MaterialGenes& genes, double strength, std::uint64_t seed,
+                      const std::vector<bool>& in_use) {
+  return mutate_muscle_laws(filled_in(genes), strength, seed, in_use);
+}
+
+MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint64_t seed) {
+  if (a == b) return a;
+  const MaterialGenes of_a = filled_in(a), of_b = filled_in(b);
+  return of_a.size() == of_b.size() ? cross_muscle_laws(of_a, of_b, seed) : a;
+}
+
+// A stiffness has no sign, so its sign says that the material moves by half waves. Genomes without such materials have
+// the bytes that they had before there were any.
+void write(ByteWriter& writer, const MaterialGenes& genes) {
+  writer.add(static_cast<std::uint8_t>(genes.size()));
+  for (const Material& gene : genes) {
+    const float stiffness = std::copysign(gene.stiffness, gene.half_wave ? -1.f : 1.f);
+    for (const float number : {stiffness, gene.amplitude, gene.frequency, gene.phase}) writer.add(number);
+  }
+}
+
+MaterialGenes read_material_genes(ByteReader& reader) {
+  const auto count = reader.read<std::uint8_t>();
+  reader.expect(count, 4 * sizeof(float));
+  MaterialGenes genes(count);
+  for (std::size_t i = 0; i < genes.size(); ++i) {
+    for (float* number : {&genes[i].stiffness, &genes[i].amplitude, &genes[i].frequency, &genes[i].phase})
+      *number = reader.read<float>();
+    genes[i].half_wave = std::signbit(genes[i].stiffness);
+    genes[i].stiffness = std::abs(genes[i].stiffness);
+    validate(genes[i], "genome: base material " + std::to_string(i + 1));
+  }
+  return genes;
+}
+
+void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vector<bool>& in_use) {
+  const MaterialGenes all = filled_in(genes);
+  const bool only_used = all.size() == base_material_count && !in_use.empty();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (only_used && !in_use[i]) continue;
+    for (const float number : {all[i].stiffness, all[i].amplitude, all[i].frequency, all[i].phase}) hash.add(number);
+    if (all[i].half_wave) hash.add(std::uint8_t{1});
+  }
+}
+
+std::string_view name_of(Genes genes) { return genes_names[static_cast<std::size_t>(genes)]; }
+
+Genes genes_named(std::string_view name) {
+  for (std::size_t i = 0; i < genes_names.size(); ++i)
+    if (genes_names[i] == name) return static_cast<Genes>(i);
+  throw ParameterError("genes", std::string("\"").append(name) + "\" is not accepted; give body, muscles or both");
+}
+
+Changes changes_of(Genes genes, std::uint64_t seed) {
+  const std::uint64_t choice = Random(seed_of(seed, 1)).below(3);
+  return {.body = genes == Genes::body || (genes == Genes::both && choice != 0),
+          .muscles = genes == Genes::muscles || (genes == Genes::both && choice != 1)};
+}
+
+}  // namespace mercury

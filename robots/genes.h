@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What evolution changes in robots of a kind. A kind describes its genes in a struct of its own, with
+//
+//   tag                     the first byte of its encoding
+//   of(robot)               the genes of a robot, from its origin; throws InputError if it has none
+//   mutated, crossed        children; `genes` says what may change
+//   grown                   the robot
+//   write, read             the encoding without its head; read() throws InputError
+//   add_identity            what makes the robot what it is
+//
+// and names genes_kind<its struct>() in its entry of the registry (Generator::genes). Nothing else knows it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mercury/fnv.h"
+#include "mercury/generator.h"
+#include "mercury/material.h"
+#include "mercury/random.h"
+#include "mercury/robot.h"
+#include "robots/bytes.h"
+
+namespace mercury {
+
+// Adds up what makes a genome's robot what it is.
+class IdentityHash : public Fnv1a {
+ public:
+  std::uint64_t value() const { return seed_of(Fnv1a::value(), 0); }
+};
+
+class BodyGenes {
+ public:
+  virtual ~BodyGenes() = default;
+  virtual std::shared_ptr<const BodyGenes> mutated(Genes genes, double strength, std::uint64_t seed) const = 0;
+  // With genes of the same kind.
+  virtual std::shared_ptr<const BodyGenes> crossed(const BodyGenes& other, Genes genes, std::uint64_t seed) const = 0;
+  virtual Robot grown(const std::string& name, const std::string& environment) const = 0;
+  virtual void write(ByteWriter& writer) const = 0;
+  virtual void add_identity(IdentityHash& hash) const = 0;
+};
+
+struct GenesKind {
+  std::uint8_t tag;
+  std::shared_ptr<const BodyGenes> (*of)(const Robot& robot);
+  std::shared_ptr<const BodyGenes> (*read)(ByteReader& reader);
+};
+
+template <class Values>
+class GenesOf : public BodyGenes {
+ public:
+  explicit GenesOf(Values values) : values_(std::move(values)) {}
+  std::shared_ptr<const BodyGenes> mutated(Genes genes, double strength, std::uint64_t seed) const override {
+    return std::make_shared<GenesOf>(values_.mutated(genes, strength, seed));
+  }
+  std::shared_ptr<const BodyGenes> crossed(const BodyGenes& other, Genes genes, std::uint64_t seed) const override {
+    return std::make_shared<GenesOf>(values_.crossed(static_cast<const GenesOf&>(other).values_, genes, seed));
+  }
+  Robot grown(const std::string& name, const std::string& environment) const override {
+    return values_.grown(name, environment);
+  }
+  void write(ByteWriter& writer) const override { values_.write(writer); }
+  void add_identity(IdentityHash& hash) const override { values_.add_identity(hash); }
+
+ private:
+  Values values_;
+};
+
+template <class Values>
+constexpr GenesKind genes_kind() {
+  return {.tag = Values::tag,
+          .of = [](const Robot& robot) -> std::shared_ptr<const BodyGenes> {
+            return std::make_shared<GenesOf<Values>>(Values::of(robot));
+          },
+          .read = [](ByteReader& reader) -> std::shared_ptr<const BodyGenes> {
+            return std::make_shared<GenesOf<Values>>(Values::read(reader));
+          }};
+}
+
+// Which of the genes a mutation changes. With Genes::both it is the body, the muscle laws, or both, a third each.
+struct Changes {
+  bool body = false, muscles = false;
+};
+Changes changes_of(Genes genes, std::uint64_t seed);
+
+// The materials of a robot as genes are its base materials (muscle_laws.h).
+// Base materials from id 1 on: 22 whose pairs follow from them, or a whole table without air. Empty = the defaults.
+using MaterialGenes = std::vector<Material>;
+
+MaterialGenes material_genes_of(const Robot& robot);
+// The table for Robot::materials; empty for the defaults.
+std::vector<Material> table_of(const MaterialGenes& genes);
+
+// As mutate_muscle_laws and cross_muscle_laws. Genes of different numbers of materials are not mixed: the child has
+// a's.
+MaterialGenes mutated(const MaterialGenes& genes, double strength, std::uint64_t seed, const std::vector<bool>& in_use);
+MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint64_t seed);
+
+void write(ByteWriter& writer, const MaterialGenes& genes);
+// Throws InputError for materials that are not valid.
+MaterialGenes read_material_genes(ByteReader& reader);
+
+// Adds the materials in use; all with an empty list or in a whole table, whose pairs are materials of their own.
+void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vector<bool>& in_use);
+
+}  // namespace mercury

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/number_text.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace mercury {
+
+std::string shortest_text(double value) {
+  if (std::isnan(value)) return "nan";
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string shortest_text(float value) {
+  if (std::isnan(value)) return "nan";
+  char text[40];
+  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+  double number = 0;
+  std::from_chars(text, end, number);
+  return static_cast<float>(number) == value ? std::string(text, end) : shortest_text(static_cast<double>(value));
+}
+
+std::string fixed_text(double value, int digits) {
+  char text[400];
+  const auto result = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits);
+  return {text, result.ptr};
+}
+
+}  // namespace mercury
