@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury info: describes robot files, recordings and runs of evolutions, or what this machine can do.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
