@@ -37,7 +37,7 @@ void for_each_change(const Test& test) {
     Configuration configuration{.environment = usual};
     for_each_parameter_pair(configuration.environment, usual,
                             [&](const auto& parameter, auto& part, const auto& usual_part) {
-                              SCOPED_TRACE(std::string(name) + " " + std::string(parameter.name));
+                              SCOPED_TRACE(std::string(name).append(1, ' ').append(parameter.name));
                               const auto& value = usual_part.*parameter.member;
                               part.*parameter.member = other(parameter, value);
                               EXPECT_NE(configuration.environment, usual) << "the default would pass for it";
@@ -95,7 +95,7 @@ TEST(ParameterTables, TheFileFormatsPageNamesEveryParameter) {
   std::ifstream file(MERCURY_DOCS "/formats.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   const auto expect_named = [&](const auto& parameter, const auto&) {
-    EXPECT_THAT(page, testing::HasSubstr("`" + std::string(parameter.name) + "`"));
+    EXPECT_THAT(page, testing::HasSubstr(std::string(1, '`').append(parameter.name).append("`")));
   };
   const Configuration configuration;
   for_each_parameter(configuration, expect_named);
