@@ -23,8 +23,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
     compliance_[id] = static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / scale_.correction;
     phases_[id] = muscle_phase(materials[id], clock);
   }
-  if (const Land* land = std::get_if<Land>(&configuration.environment))
-    contact_stiffness_ = contact_stiffness_of(*land, configuration.solver, configuration.dt);
+  contact_stiffness_ = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt);
   constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
                 static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
   const std::size_t masses = robot.masses.size();
@@ -167,7 +166,7 @@ template <class EnvironmentModel>
 bool PlainLoop::add_environment(const EnvironmentModel& model) {
   add_perturbations();
   if constexpr (EnvironmentModel::has_contacts) add_contacts();
-  if constexpr (EnvironmentModel::has_faces) return add_face_forces(model);
+  if constexpr (EnvironmentModel::has_faces) return !model.acts_on_faces() || add_face_forces(model);
   return true;
 }
 
@@ -227,13 +226,13 @@ bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
 }
 
 void PlainLoop::step(std::int64_t steps) {
-  const auto step_once = [&](const auto& kind) {
-    const auto model = model_of(kind);
+  const AnyEnvironmentModel any_model = solver_model_of(configuration_.environment);
+  const auto step_once = [&](const auto& model) {
     return configuration_.solver == Solver::force ? step_force(model) : step_xpbd(model);
   };
   for (std::int64_t n = 0; n < steps && exploded_step_ < 0; ++n, ++now_) {
     update_muscles();
-    if (!std::visit(step_once, configuration_.environment)) exploded_step_ = now_;
+    if (!std::visit(step_once, any_model)) exploded_step_ = now_;
   }
 }
 

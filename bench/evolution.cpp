@@ -120,7 +120,7 @@ EvolutionSettings settings_of(const Task& task, const Options& options) {
   if (task.algorithm == "nsga2") settings.objectives = {"distance", "efficiency"};
   settings.configuration.environment = environment_named(task.environment);
   settings.configuration.device = device_named(options.device);
-  const bool on_land = std::holds_alternative<Land>(settings.configuration.environment);
+  const bool on_land = has_ground(settings.configuration.environment);
   settings.configuration.dt = on_land ? options.land.dt : options.ocean.dt;
   settings.trials.seconds = on_land ? options.land.seconds : options.ocean.seconds;
   settings.generations = static_cast<int>(options.evaluations / options.population) - 1;

@@ -30,6 +30,7 @@ class GlName {
   }
   GLuint get() const { return name_; }
   explicit operator bool() const { return name_ != 0; }
+  GLuint release() { return std::exchange(name_, 0); }  // the caller owns the object
 
  private:
   GLuint name_ = 0;

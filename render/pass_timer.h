@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/gl_objects.h"
+#include "render/renderer.h"
 
 namespace mercury::render {
 
@@ -13,11 +14,6 @@ struct ReleaseQuery {
   void operator()(GLuint name) const { glDeleteQueries(1, &name); }
 };
 using Query = GlName<ReleaseQuery>;
-
-struct PassTime {
-  std::string name;  // "shadows"
-  double milliseconds = 0;
-};
 
 class PassTimer {
  public:

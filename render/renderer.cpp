@@ -102,4 +102,15 @@ void Renderer::present(unsigned framebuffer, int x, int y, int width, int height
                          x + width, y + height, GL_COLOR_BUFFER_BIT, filter);
 }
 
+KeptFrame::KeptFrame(const Renderer& renderer, int width, int height) {
+  Texture texture = make_texture(GL_RGBA8, width, height);
+  const Framebuffer target = make_framebuffer({texture.get()});
+  renderer.present(target.get(), 0, 0, width, height);
+  name_ = texture.release();
+}
+
+KeptFrame::~KeptFrame() {
+  if (name_) glDeleteTextures(1, &name_);
+}
+
 }  // namespace mercury::render

@@ -6,12 +6,12 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/body_data.h"
 #include "render/camera.h"
 #include "render/context.h"
-#include "render/pass_timer.h"
 #include "render/scene.h"
 
 namespace mercury::render {
@@ -28,6 +28,12 @@ struct RendererOptions {
   int width = 1280, height = 720;  // pixels
   Quality quality = Quality::automatic;
   float text_size = 0;  // height of a line of text in pixels; 0 = from the picture's height
+};
+
+// The GPU time of a part of a frame.
+struct PassTime {
+  std::string name;  // "shadows"
+  double milliseconds = 0;
 };
 
 // Every member, the destructor included, needs the context of the constructor to be current.
@@ -78,6 +84,23 @@ class Renderer {
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+};
+
+// A texture that keeps a frame. Not an sRGB texture, which would look darker when a user interface samples it.
+class KeptFrame {
+ public:
+  // Copies what was drawn last, scaled.
+  KeptFrame(const Renderer& renderer, int width, int height);
+  KeptFrame(KeptFrame&& other) noexcept : name_(std::exchange(other.name_, 0u)) {}
+  KeptFrame& operator=(KeptFrame&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~KeptFrame();
+  unsigned name() const { return name_; }  // of OpenGL
+
+ private:
+  unsigned name_ = 0;
 };
 
 }  // namespace mercury::render

@@ -41,9 +41,7 @@ struct Vector3 {
   const float* data() const { return &x; }
 
   constexpr float dot(const Vector3& b) const { return x * b.x + y * b.y + z * b.z; }
-  constexpr Vector3 cross(const Vector3& b) const {
-    return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x};
-  }
+  constexpr Vector3 cross(const Vector3& b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
   float norm() const { return std::sqrt(dot(*this)); }
   constexpr float squared_norm() const { return dot(*this); }
   // Without length, it stays as it is.

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <optional>
 #include <thread>
-#include <type_traits>
-#include <vector>
 
 #include "mercury/error.h"
 #include "mercury/threads.h"
@@ -14,10 +11,6 @@
 namespace mercury {
 
 std::string_view name_of(Solver solver) { return solver == Solver::force ? "force" : "xpbd"; }
-
-std::string_view name_of(const Environment& environment) {
-  return std::visit([](const auto& kind) { return std::decay_t<decltype(kind)>::name; }, environment);
-}
 
 std::string name_of(const Device& device) {
   switch (device.kind) {
@@ -32,29 +25,10 @@ std::string name_of(const Device& device) {
   return device.index == 0 ? "cuda" : "cuda:" + std::to_string(device.index);
 }
 
-std::vector<std::string_view> environment_names() {
-  std::vector<std::string_view> names;
-  for_each_environment([&](const auto& kind) { names.push_back(kind.name); });
-  return names;
-}
-
 Solver solver_named(std::string_view name) {
   if (name == "force") return Solver::force;
   if (name == "xpbd") return Solver::xpbd;
   throw ParameterError("solver", "\"" + std::string(name) + "\" is not a solver; give force or xpbd");
-}
-
-Environment environment_named(std::string_view name) {
-  std::optional<Environment> found;
-  for_each_environment([&](const auto& kind) {
-    if (kind.name == name) found = kind;
-  });
-  if (found) return *found;
-  const std::vector<std::string_view> names = environment_names();
-  std::string accepted;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    accepted.append(i == 0 ? "" : i + 1 < names.size() ? ", " : " or ").append(names[i]);
-  throw ParameterError("environment", "\"" + std::string(name) + "\" is not an environment; give " + accepted);
 }
 
 Device device_named(std::string_view name) {
@@ -83,18 +57,10 @@ void require_possible_threads(const Device& device) {
                                       std::to_string(max_threads()));
 }
 
-Vec3 gravity_of(const Environment& environment) {
-  return std::visit([](const auto& kind) { return kind.gravity; }, environment);
-}
-
-float stiffness_scale_of(const Environment& environment) {
-  return std::visit([](const auto& kind) { return kind.stiffness_scale; }, environment);
-}
-
 void validate(const Configuration& configuration) {
   check_parameters(configuration);
   check_parameters(configuration.device);
-  std::visit([](const auto& kind) { check_parameters(kind); }, configuration.environment);
+  check_parameters(configuration.environment);
 }
 
 }  // namespace mercury

@@ -5,14 +5,14 @@
 //       ^                       └──> worker, worker, ... of device 1 ──┘                         |
 //       └────────────────────── memory of robots that were yielded ──────────────────────────────┘
 //
-// 1. One thread makes pieces of consecutive robots, each on all cores. A piece is complete when it is as large as
-// usual,
-//    when a device has too little to do, or when its share of the memory is used up.
+// 1. One thread makes pieces of consecutive robots, each on all cores unless the source is serial. A piece is complete
+//    when it has as many robots as usual (fewer towards the end if there are several devices), when a device has too
+//    little to do and the piece is not tiny, or when its share of the memory is used up.
 // 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
-//    another are loaded. A worker takes several pieces as one portion (evaluator_policy.cpp).
+//    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
 //    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
-// 4. `end` is the index behind the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
+// 4. `end` is the index after the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
 //    its first robot, and whoever works on robots from there on gives up.
 #pragma once
 
@@ -28,7 +28,6 @@
 
 #include "mercury/evaluator.h"
 #include "mercury/simulation.h"
-#include "sim/evaluator_clock.h"
 #include "sim/evaluator_portion.h"
 #include "sim/evaluator_trial.h"
 

@@ -57,12 +57,10 @@ std::vector<std::shared_ptr<const Robot>> copies_of(std::span<const Robot> robot
   return copies;
 }
 
-bool is_land(const Environment& environment) { return std::holds_alternative<Land>(environment); }
-
 }  // namespace
 
 float lift_to_floor(std::span<const Vec3> positions, const Environment& environment) {
-  return is_land(environment) ? -std::ranges::min(positions, {}, &Vec3::z).z : 0;
+  return has_ground(environment) ? -std::ranges::min(positions, {}, &Vec3::z).z : 0;
 }
 
 void require_clock(const Clock& clock, const Configuration& configuration) {
@@ -101,7 +99,7 @@ std::span<const float> Simulation::Parts::rest_lifts() {
   if (lifts.size() == size()) return lifts;
   const std::size_t known = std::min(lifts.size(), size());
   lifts.resize(size());
-  if (is_land(configuration.environment))
+  if (has_ground(configuration.environment))
     oneapi::tbb::parallel_for(
         known, size(), [&](std::size_t i) { lifts[i] = lift_to_floor(robots[i]->masses, configuration.environment); });
   return lifts;
@@ -135,7 +133,7 @@ Simulation::Parts::Parts(const Configuration& initial, std::unique_ptr<Backend> 
   append(first_robots, watch);
   if (watch) backend->set_watch(watch);
   backend->load(pointers, configuration);
-  if (is_land(configuration.environment)) put_at_rest(0);
+  if (has_ground(configuration.environment)) put_at_rest(0);
 }
 
 Simulation::~Simulation() = default;
@@ -155,7 +153,7 @@ std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots
     parts_->shared_actuation.attach(*parts_->backend);
     throw;
   }
-  if (is_land(parts_->configuration.environment)) parts_->put_at_rest(first);
+  if (has_ground(parts_->configuration.environment)) parts_->put_at_rest(first);
   std::vector<std::size_t> kept(first);
   std::iota(kept.begin(), kept.end(), std::size_t{0});
   parts_->after_exchange(kept);
@@ -297,11 +295,11 @@ void Simulation::configure(const Configuration& configuration) {
     parts_->change_clock(
         {.dt = configuration.dt, .base_time = time_of(clock), .base_step = clock.step, .step = clock.step});
   }
-  const bool comes_to_land = is_land(configuration.environment) && !is_land(parts_->configuration.environment);
+  const bool comes_to_ground = has_ground(configuration.environment) && !has_ground(parts_->configuration.environment);
   parts_->configuration = configuration;
   parts_->lifts.clear();
   parts_->backend->configure(configuration);
-  if (!comes_to_land) return;
+  if (!comes_to_ground) return;
   for (std::size_t i = 0; i < size(); ++i) {
     State now = parts_->state(i);
     const Vec3 up{0, 0, lift_to_floor(now.positions, configuration.environment)};

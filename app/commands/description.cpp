@@ -2,6 +2,7 @@
 #include "app/commands/description.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/base/messages.h"
 #include "app/recording/configuration_json.h"

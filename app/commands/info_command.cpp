@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury info: describes robot files, recordings and runs of evolutions, or what this machine can do.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -83,18 +84,18 @@ std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", stati
 void describe_fit(const Robot& robot) {
   constexpr std::size_t smallest = 48 * 1024;  // every CUDA device has at least this per block
   Configuration configuration;
-  if (environment_of(robot) == Land::name) configuration.environment = Land{};
+  if (const std::string name = environment_of(robot); is_environment(name))
+    configuration.environment = environment_named(name);
   const std::size_t bytes = chip_bytes(robot, configuration);
   print_line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
-                                      environment_of(robot) == Land::name ? "on land" : "in water",
+                                      has_ground(configuration.environment) ? "on land" : "in water",
                                       bytes <= smallest ? "fits every CUDA device, which has 48 kB or more"
                                                         : "more than the 48 kB of the smallest CUDA devices"));
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
     const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
-                        : !fit.contacts_on_chip && std::holds_alternative<Land>(configuration.environment)
-                            ? "fits but for its contacts"
-                            : "fits";
+                        : !fit.contacts_on_chip && has_contacts(configuration.environment) ? "fits but for its contacts"
+                                                                                           : "fits";
     print_line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
                                kilobytes(fit.most_bytes), where, fit.robots_at_once));
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -44,7 +45,8 @@ Json json_of(const MaterialUse& use) {
 // Whether GPUs can step it in the fast memory of a block, see docs/performance.md.
 Json chip_of(const Robot& robot) {
   Configuration configuration;
-  if (environment_of(robot) == Land::name) configuration.environment = Land{};
+  if (const std::string name = environment_of(robot); is_environment(name))
+    configuration.environment = environment_named(name);
   Json devices = Json::array();
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);

@@ -2,6 +2,7 @@
 #include "app/commands/robot_results.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>

@@ -39,16 +39,26 @@ class Options {
   OptionValues values_;
 };
 
+template <class Parameter, class Value>
+void add_parameter(Options& options, const Parameter& parameter, const Value& value, const Value& defaults) {
+  if constexpr (std::is_same_v<Value, bool>)
+    options.flag(switch_of(parameter.name, defaults), value != defaults);
+  else if constexpr (std::is_same_v<Value, Vec3>)
+    options.vector(option_of(parameter.name), value, defaults);
+  else
+    options.number(option_of(parameter.name), value, defaults);
+}
+
 template <class Struct>
 void add_parameters(Options& options, const Struct& values) {
-  for_each_parameter(values, [&]<class Value>(const auto& parameter, const Value& value) {
-    const Value defaults = parameter.default_value();
-    if constexpr (std::is_same_v<Value, bool>)
-      options.flag(switch_of(parameter.name, defaults), value != defaults);
-    else if constexpr (std::is_same_v<Value, Vec3>)
-      options.vector(option_of(parameter.name), value, defaults);
-    else
-      options.number(option_of(parameter.name), value, defaults);
+  for_each_parameter(values, [&](const auto& parameter, const auto& value) {
+    add_parameter(options, parameter, value, parameter.default_value());
+  });
+}
+void add_parameters(Options& options, const Environment& environment) {
+  const Environment usual = environment_named(name_of(environment));
+  for_each_parameter_pair(environment, usual, [&](const auto& parameter, const auto& part, const auto& usual_part) {
+    add_parameter(options, parameter, part.*parameter.member, usual_part.*parameter.member);
   });
 }
 

@@ -32,7 +32,9 @@ void require_comparable(const Configuration& own, const Configuration& first) {
         "dt", fmt::format("{:g} s is less than 1/{:g} of the {:g} s that the robots have", own.dt, most, first.dt));
 }
 
-bool is_land(const Configuration& configuration) { return std::holds_alternative<Land>(configuration.environment); }
+bool comes_to_ground(const Configuration& before, const Configuration& after) {
+  return has_ground(after.environment) && !has_ground(before.environment);
+}
 
 }  // namespace
 
@@ -71,11 +73,11 @@ void Companion::copy(const CompanionRobots& wanted, const Leader& leader) {
         simulation_.set_state(i, first.state(*partner));
     }
   }
-  const bool to_land = is_land(wanted.configuration) && !is_land(first.configuration());
+  const bool to_ground = comes_to_ground(first.configuration(), wanted.configuration);
   simulation_.configure(wanted.configuration);
   if (first.steps() == 0)
     simulation_.reset();
-  else if (to_land)
+  else if (to_ground)
     population_.settle();
   perturbations_ = wanted.perturbations;
   simulation_.set_perturbations(population_.perturbations_of(perturbations_));
@@ -87,13 +89,13 @@ void Companion::copy(const CompanionRobots& wanted, const Leader& leader) {
 void Companion::follow(const CompanionRobots& wanted, const Leader& leader) {
   require_comparable(wanted.configuration, leader.simulation.configuration());
   const Configuration& now = simulation_.configuration();
-  const bool to_land = is_land(wanted.configuration) && !is_land(now);
+  const bool to_ground = comes_to_ground(now, wanted.configuration);
   const bool moved = leader.surroundings != surroundings_, tuned = wanted.configuration != now;
   if (moved) population_.keep_surroundings(surroundings_);
   simulation_.set_perturbations({});
   if (tuned) simulation_.configure(wanted.configuration);
   const bool others = !same_list(wanted.robots, population_.robots()->robots) && population_.follow(wanted.robots);
-  if (moved && !population_.restore_surroundings(leader.surroundings) && to_land) population_.settle();
+  if (moved && !population_.restore_surroundings(leader.surroundings) && to_ground) population_.settle();
   surroundings_ = leader.surroundings;
   perturbations_ = wanted.perturbations;
   simulation_.set_perturbations(population_.perturbations_of(perturbations_));

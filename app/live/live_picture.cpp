@@ -115,7 +115,7 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   const std::shared_ptr<const Snapshot> before = std::exchange(parts.snapshot, snapshot);
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
   const bool others = !before || before->robots->revision != snapshot->robots->revision;
-  const bool moved = before && before->configuration.environment.index() != snapshot->configuration.environment.index();
+  const bool moved = before && !same_parts(before->configuration.environment, snapshot->configuration.environment);
   // The timeline jumps, too, but trails know where the robots were.
   const bool restarted =
       before && before->resets != snapshot->resets && !before->timeline.viewing && !snapshot->timeline.viewing;

@@ -61,7 +61,7 @@ void LiveScene::frame(float aspect) {
   if (parts.from_above) shown.camera.mode = *parts.from_above ? CameraMode::top : CameraMode::group;
   if (parts.facing) {
     constexpr float flattest = 0.35f;  // a view of the ground in which rows are apart [rad]
-    const bool land = std::holds_alternative<Land>(parts.document.configuration.environment);
+    const bool land = has_ground(parts.document.configuration.environment);
     shown.camera.azimuth = parts.facing->azimuth;
     shown.camera.elevation = land ? std::max(flattest, parts.facing->elevation) : parts.facing->elevation;
   }

@@ -30,10 +30,10 @@ std::optional<Vec3> position_of(const Snapshot& snapshot, RobotId robot, std::ui
   return snapshot.positions_of(*index)[mass];
 }
 
-// Where a mass of a robot is at the start: on land, robots are set down with their lowest mass at z = 0.
+// Where a mass of a robot is at the start: on the ground, robots are set down with their lowest mass at z = 0.
 Vec3 start_of(const Robot& robot, std::uint16_t mass, const Environment& environment) {
   Vec3 start = robot.masses[mass];
-  if (std::holds_alternative<Land>(environment)) start.z -= std::ranges::min(robot.masses, {}, &Vec3::z).z;
+  if (has_ground(environment)) start.z -= std::ranges::min(robot.masses, {}, &Vec3::z).z;
   return start;
 }
 

@@ -23,7 +23,7 @@ const LivePicture& LiveScene::pointed_picture() const { return parts_->pointed_p
 
 // Both sides have the same layout, colors and scale, so that what differs is the robots.
 void LiveScene::Parts::update_second_picture(ViewSettings shown, const std::optional<RobotId>& held) {
-  const auto on_land = [](const Snapshot& one) { return std::holds_alternative<Land>(one.configuration.environment); };
+  const auto on_land = [](const Snapshot& one) { return has_ground(one.configuration.environment); };
   if (!snapshot->second) {
     second_picture.reset();
     return;

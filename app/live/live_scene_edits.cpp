@@ -156,7 +156,7 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
     parts_->report(Severity::warning, error.what());
     return false;
   }
-  if (wanted.environment.index() != parts_->document.configuration.environment.index()) {
+  if (!same_parts(wanted.environment, parts_->document.configuration.environment)) {
     parts_->edit(fmt::format("move to {}", name_of(wanted.environment)));
     parts_->document.surroundings = ++parts_->last_surroundings;
   } else {

@@ -27,8 +27,8 @@
 // 2. Commands replace each other. A slider sends a value per picture; only the latest counts. Commands that must not be
 //    lost, such as step(), add up.
 // 3. A snapshot is made only after newest() was called. Reading positions from a GPU interrupts the steps, so physics
-//    reads them as often as the window draws and no more. At unlimited speed snapshots take at most a fifth of the
-//    time.
+//    reads them as often as the window draws and no more. At unlimited speed snapshots take at most a
+//    twentieth of the time.
 // 4. Commands take effect between slices and in a fixed order: scene, view, reset, perturbations, speed, steps. The
 //    results depend on the steps and not on how they fall into slices.
 #pragma once

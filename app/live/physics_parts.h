@@ -101,6 +101,7 @@ struct Physics::Parts {
   Timeline timeline;
   bool viewing = false;                         // shows an earlier moment of the timeline, or a recording
   std::optional<std::int64_t> seek_target;      // the step on the way to which the robots are
+  bool seek_is_near = false;                    // its last keyframe is kept, or not worth it
   std::uint64_t next_event = 0, era = 0;        // of the moment that is shown
   std::int64_t head_step = 0;                   // of the present, while `viewing`
   std::uint64_t head_era = 0;                   // the same
@@ -133,7 +134,7 @@ struct Physics::Parts {
   void run();
   bool wait_for_commands(PendingCommands& taken);
   void carry_out(PendingCommands& taken);
-  void guarded(auto work);
+  bool guarded(auto work);
   bool set_scene(const PendingCommands::Scene& scene);
   void enter_surroundings(std::uint64_t next, bool to_land);
   void start_over();
@@ -145,6 +146,7 @@ struct Physics::Parts {
   void carry_out_seek(const PendingCommands& taken);
   void seek(double time);
   void restart_timeline();
+  void clear_timeline();
   void keep_keyframe();
   void keep_due_keyframe();
   void follow_changes(bool robots_changed);

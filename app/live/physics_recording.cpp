@@ -24,8 +24,7 @@ void Physics::Parts::begin_recording(std::shared_ptr<TrajectoryReader> reader) {
   steps_left = 0;
   exploded.clear();
   replay_log.restart();
-  restart_timeline();
-  timeline.clear();
+  clear_timeline();
   viewing = true;
   show_recording(recording->time(0));
   measurements.restart(*population.robots(), simulation.time(), simulation.steps(), simulation.configuration(),

@@ -54,10 +54,11 @@ bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
   return !taken.quit;
 }
 
-// A failure of physics must not end the window: reports the error and pauses.
-void Physics::Parts::guarded(auto task) {
+// A failure of physics must not end the window: reports the error, pauses, and returns false.
+bool Physics::Parts::guarded(auto task) {
   try {
     task();
+    return true;
   } catch (const std::exception& error) {
     messages.add(Severity::error, error.what());
     playing = false;
@@ -65,6 +66,7 @@ void Physics::Parts::guarded(auto task) {
     seek_target.reset();
     ++stops;
   }
+  return false;
 }
 
 void Physics::Parts::carry_out(PendingCommands& taken) {
@@ -73,7 +75,14 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
   prepare_changes(taken);
   const bool dt_changed = taken.scene && taken.scene->configuration.dt != simulation.configuration().dt;
-  const bool robots_changed = taken.scene && set_scene(*taken.scene);
+  bool robots_changed = false;
+  const bool scene_changed = taken.scene.has_value();
+  if (taken.scene && !guarded([&] { robots_changed = set_scene(*taken.scene); })) {
+    // The scene is empty now, and paused. What was taken with it holds for the next one.
+    robots_changed = true;
+    taken.scene.reset();
+    taken.playing.reset();
+  }
   if (taken.view) view = *taken.view;
   if (taken.view || robots_changed) observe_details();
   take_comparison(taken);
@@ -84,10 +93,10 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
   else if (taken.reset || (taken.scene && replayed_repro))
     restart();
   if (taken.perturbations) perturbations = std::move(*taken.perturbations);
-  if (taken.perturbations || taken.scene) simulation.set_perturbations(population.perturbations_of(perturbations));
-  if (taken.perturbations || taken.scene) follow_companions();
+  if (taken.perturbations || scene_changed) simulation.set_perturbations(population.perturbations_of(perturbations));
+  if (taken.perturbations || scene_changed) follow_companions();
   begin_companions();
-  if ((taken.perturbations || taken.scene || taken.reset) && !viewing) follow_changes(robots_changed);
+  if ((taken.perturbations || scene_changed || taken.reset) && !viewing) follow_changes(robots_changed);
   if (taken.bridge) bridge = std::move(*taken.bridge);
   if (robots_changed) step_seconds = 0;
   if (taken.speed) speed = *taken.speed;
@@ -126,8 +135,9 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
   replayed_repro = repro;
   const bool first = simulation.size() == 0 && simulation.steps() == 0;
   const bool dt_changed = configuration.dt != simulation.configuration().dt;
-  const bool moved = configuration.environment.index() != simulation.configuration().environment.index();
-  const bool to_land = moved && std::holds_alternative<Land>(configuration.environment);
+  const Environment& before = simulation.configuration().environment;
+  const bool moved = !same_parts(before, configuration.environment);
+  const bool to_land = has_ground(configuration.environment) && !has_ground(before);
   if (next_surroundings != surroundings) population.keep_surroundings(surroundings);
   if (configuration != simulation.configuration()) simulation.configure(configuration);
   simulation.set_perturbations({});

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/live/physics_parts.h"
 
@@ -44,13 +45,17 @@ void Physics::Parts::seek(double time) { recording ? show_recording(time) : begi
 
 // Time starts again, or the past cannot be reached any more.
 void Physics::Parts::restart_timeline() {
+  clear_timeline();
+  keep_keyframe();
+}
+
+void Physics::Parts::clear_timeline() {
   timeline.clear();
   viewing = false;
   seek_target.reset();
   loop.reset();
   next_event = era = 0;
   work = keyframe_work = 0;
-  keep_keyframe();
 }
 
 void Physics::Parts::keep_keyframe() {
@@ -105,6 +110,7 @@ void Physics::Parts::begin_seek(std::int64_t step) {
   const bool is_ahead = simulation.steps() <= target && keyframe.step() <= simulation.steps() && keyframe.era <= era;
   if (!is_ahead) show_keyframe(keyframe);
   seek_target = target;
+  seek_is_near = false;
 }
 
 void Physics::Parts::show_keyframe(const Keyframe& keyframe, bool jumps) {
@@ -131,8 +137,10 @@ void Physics::Parts::advance_seek() {
   const auto steps_in = [&](double seconds) {
     return step_seconds > 0 ? static_cast<std::int64_t>(std::clamp(seconds / step_seconds, 1.0, 1e6)) : 1;
   };
+  // `near` moves with the mean that it is made of, so the keyframe is kept where the target is near for the first time.
   const std::int64_t left = *seek_target - simulation.steps(), near = steps_in(near_target_seconds);
-  if (left == near && left > 1 && keyframe_seconds < near_target_seconds) keep_keyframe();
+  if (left <= near && !std::exchange(seek_is_near, true) && left > 1 && keyframe_seconds < near_target_seconds)
+    keep_keyframe();
   if (left > 0) take_steps(std::min(left > near ? left - near : left, std::max(near / 4, std::int64_t{1})));
   if (simulation.steps() < *seek_target) return;
   seek_target.reset();

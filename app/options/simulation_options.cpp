@@ -32,14 +32,13 @@ std::string joined(const std::vector<std::string_view>& names, const char* last_
 // The environments that have a parameter, by its default there.
 std::vector<std::pair<std::string, std::vector<std::string_view>>> environments_by_default(std::string_view name) {
   std::vector<std::pair<std::string, std::vector<std::string_view>>> groups;
-  for_each_environment([&](const auto& kind) {
-    for_each_parameter(kind, [&](const auto& parameter, const auto& value) {
+  for (const EnvironmentPreset& preset : environment_presets)
+    for_each_parameter(preset.environment, [&](const auto& parameter, const auto& value) {
       if (parameter.name != name) return;
       auto group = std::ranges::find(groups, text_of(value), &decltype(groups)::value_type::first);
       if (group == groups.end()) group = groups.insert(groups.end(), {text_of(value), {}});
-      group->second.push_back(kind.name);
+      group->second.push_back(preset.name);
     });
-  });
   return groups;
 }
 
@@ -84,7 +83,8 @@ void SimulationOptions::add_to(const Command& command) {
       "auto|cpu|cuda[:N]"));
   add_parameters(command, given_.device, simulation_group);
   add(add_value(
-      command, "--environment", environment_, "Where the robots live (default: what they are made for, else ocean)",
+      command, "--environment", environment_,
+      "Where the robots live; + adds parts, as in ocean+ground+contacts (default: what they are made for, else ocean)",
       fmt::format("{}", fmt::join(environment_names(), "|")),
       [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }));
   add(add_value(command, "--solver", given_.solver, "Solver (default force)", "force|xpbd",
@@ -121,7 +121,7 @@ void SimulationOptions::add_environment_parameters(const Command& command) {
     }
     option->in_group(environment_group);
   };
-  for_each_environment([&](const auto& kind) { for_each_parameter(kind, add); });
+  for (const EnvironmentPreset& preset : environment_presets) for_each_parameter(preset.environment, add);
 }
 
 void SimulationOptions::set_parameters(Environment& environment) const {
@@ -174,10 +174,9 @@ Configuration SimulationOptions::configuration(std::span<const Robot> robots, st
 Configuration SimulationOptions::configuration(std::span<const std::string> environments,
                                                std::vector<std::string>& notes) const {
   if (environment_) return configuration();
-  const auto names = environment_names();
   std::set<std::string> wanted;
   for (const std::string& environment : environments)
-    if (std::ranges::count(names, environment) > 0) wanted.insert(environment);
+    if (is_environment(environment)) wanted.insert(environment);
   if (wanted.size() == 1) return configuration_in(*wanted.begin());
   if (wanted.size() > 1)
     notes.push_back(fmt::format("the robots are made for {}; all are put into ocean, --environment chooses",

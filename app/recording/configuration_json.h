@@ -2,7 +2,7 @@
 // A configuration as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "mercury/configuration.h"
 

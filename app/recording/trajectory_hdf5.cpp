@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <type_traits>
 
 namespace mercury::hdf5 {
 namespace {
@@ -70,6 +71,16 @@ hid_t checked(hid_t result) {
   if (result < 0) fail();
   return result;
 }
+
+static_assert(std::is_same_v<Id, hid_t>);
+
+Handle::Handle(Id id) : id_(checked(id)) {}
+
+Handle::~Handle() {
+  if (id_ >= 0) H5Idec_ref(id_);
+}
+
+void Handle::close() { checked(H5Idec_ref(std::exchange(id_, none))); }
 
 template <>
 NumberType number_type<float>() {

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "app/recording/hdf5_handle.h"
 #include "mercury/material.h"
 
 namespace mercury::hdf5 {
@@ -31,27 +31,6 @@ void prepare();
 
 // Returns the result of a call. Throws Error with the library's message if the result is negative.
 hid_t checked(hid_t result);
-
-// Owns one object of the library: file, group, dataset, dataspace, type or property list.
-class Handle {
- public:
-  Handle() = default;
-  explicit Handle(hid_t id) : id_(checked(id)) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    return *this;
-  }
-  ~Handle() {
-    if (id_ >= 0) H5Idec_ref(id_);
-  }
-  operator hid_t() const { return id_; }
-  // Closes the object now. Throws Error, unlike the destructor.
-  void close() { checked(H5Idec_ref(std::exchange(id_, H5I_INVALID_HID))); }
-
- private:
-  hid_t id_ = H5I_INVALID_HID;
-};
 
 using Extent = std::vector<hsize_t>;
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/recording/trajectory_hdf5.h"
+#include "app/recording/hdf5_handle.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
@@ -79,12 +79,12 @@ class TrajectoryReader {
   static constexpr std::size_t all_robots = static_cast<std::size_t>(-1);
 
   void read_parameters();
-  void read_base(hid_t parameters);
-  void read_unfinished_times(hid_t parameters);
-  void require_chunks(hid_t dataset, std::size_t first, std::size_t count) const;
+  void read_base(hdf5::Id parameters);
+  void read_unfinished_times(hdf5::Id parameters);
+  void require_chunks(hdf5::Id dataset, std::size_t first, std::size_t count) const;
   void read_robots();
-  RecordedRobot read_robot(const std::string& group, hid_t particles) const;
-  void require_frames(hid_t robot, std::size_t masses) const;
+  RecordedRobot read_robot(const std::string& group, hdf5::Id particles) const;
+  void require_frames(hdf5::Id robot, std::size_t masses) const;
   static Block& of_robot(Block& block, std::size_t robot);
   std::size_t mass_count(const Block& block) const;  // of a frame
   std::size_t length_of(const Block& block) const;   // frames

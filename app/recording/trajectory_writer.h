@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/base/interrupt.h"
-#include "app/recording/trajectory_hdf5.h"
+#include "app/recording/hdf5_handle.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
@@ -25,15 +25,15 @@ double wall_clock();
 // Everything in a trajectory except robots and frames.
 struct TrajectoryHeader {
   Configuration configuration;
-  std::string device_name;               // for people
-  std::optional<std::uint64_t> seed;     // of the random robots, if any
-  std::int64_t every = 1;                // steps per frame
-  std::int64_t expected_frames = 0;      // 0 = unknown
-  Clock time;                            // of the simulation: its base, from which times count
-  int deflate = 0;                       // compression of the frames: 0 = none, 1 (fast) .. 9
-  double flush_period = 5;               // [s] of wall time from one flush to the next; 0 = flush each frame
-  double (*clock)() = wall_clock;        // [s]; tests set their own
-  std::function<void(hid_t file)> more;  // writes what else the file has, before the frames; throws hdf5::Error
+  std::string device_name;                  // for people
+  std::optional<std::uint64_t> seed;        // of the random robots, if any
+  std::int64_t every = 1;                   // steps per frame
+  std::int64_t expected_frames = 0;         // 0 = unknown
+  Clock time;                               // of the simulation: its base, from which times count
+  int deflate = 0;                          // compression of the frames: 0 = none, 1 (fast) .. 9
+  double flush_period = 5;                  // [s] of wall time from one flush to the next; 0 = flush each frame
+  double (*clock)() = wall_clock;           // [s]; tests set their own
+  std::function<void(hdf5::Id file)> more;  // writes what else the file has, before the frames; throws hdf5::Error
 };
 
 // Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.
@@ -83,13 +83,13 @@ class TrajectoryWriter {
 
  private:
   void write_header(const TrajectoryHeader& header);
-  void write_configuration(hid_t parameters, const Configuration& configuration);
+  void write_configuration(hdf5::Id parameters, const Configuration& configuration);
   void write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials);
-  void write_connectivity(const std::string& group, const Robot& robot, hid_t particles);
-  void write_materials(hid_t particles, const Robot& robot, std::span<const Material> materials);
-  void write_actuators(hid_t particles, const Robot& robot);
+  void write_connectivity(const std::string& group, const Robot& robot, hdf5::Id particles);
+  void write_materials(hdf5::Id particles, const Robot& robot, std::span<const Material> materials);
+  void write_actuators(hdf5::Id particles, const Robot& robot);
   void start_frames();
-  void create_frames(hid_t particles, std::size_t masses);
+  void create_frames(hdf5::Id particles, std::size_t masses);
   void write_block();
   void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
   bool survives_kill() const;  // otherwise the file can be read only once it is complete

@@ -68,8 +68,8 @@ float mean_size(const Simulation& simulation) {
 Arrows::Arrows(const Simulation& simulation, ArrowKinds kinds)
     : simulation_(simulation), kinds_(kinds), longest_(0.5f * kinds.length * mean_size(simulation)) {
   const Environment& environment = simulation.configuration().environment;
-  if (kinds.contact && !std::holds_alternative<Land>(environment))
-    throw ParameterError("show", fmt::format("contact: {} has no floor; it applies to land", name_of(environment)));
+  if (kinds.contact && !has_ground(environment))
+    throw ParameterError("show", fmt::format("contact: {} has no ground; it applies to land", name_of(environment)));
   if ((kinds.drag || kinds.lift) && !has_face_forces(environment))
     throw ParameterError("show", fmt::format("{}: {} has no drag on faces; it applies to ocean",
                                              kinds.drag ? "drag" : "lift", name_of(environment)));

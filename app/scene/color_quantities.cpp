@@ -151,11 +151,8 @@ const ColorQuantity& color_quantity(std::string_view key) {
 std::string environments_of(const ColorQuantity& quantity) {
   if (!quantity.has) return "";
   std::vector<std::string_view> names;
-  const auto add = [&](const Environment& environment) {
-    if (quantity.exists_in(environment)) names.push_back(name_of(environment));
-  };
-  [&]<std::size_t... kind>(std::index_sequence<kind...>) { (add(Environment(std::in_place_index<kind>)), ...); }
-  (std::make_index_sequence<std::variant_size_v<Environment>>{});
+  for (const EnvironmentPreset& preset : environment_presets)
+    if (quantity.exists_in(preset.environment)) names.push_back(preset.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

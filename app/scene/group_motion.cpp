@@ -17,7 +17,7 @@ Layout motion_of(const ViewSettings& settings) { return settings.board ? Layout:
 std::vector<Vector3> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
                                    const ViewSettings& settings, const Environment& environment, float aspect) {
   if (boxes.empty()) return {};
-  const bool land = std::holds_alternative<Land>(environment);
+  const bool land = has_ground(environment);
   const bool race = settings.layout == Layout::race;
   // From straight above, and in lanes, robots that swim are laid out as if on the ground.
   const bool flat = land || race || settings.camera.mode == CameraMode::top;
@@ -36,7 +36,7 @@ std::vector<Vector3> group_offsets(std::span<const render::Bounds> boxes, std::s
 void GroupMotion::set(Layout layout, const Environment& environment, const Vector3& along) {
   layout_ = layout;
   environment_ = environment;
-  on_land_ = std::holds_alternative<Land>(environment);
+  on_land_ = has_ground(environment);
   along_ = along;
 }
 

@@ -17,18 +17,7 @@ namespace {
 constexpr float room_to_deform = 1.2f;
 
 render::Surroundings surroundings_of(const Environment& environment) {
-  return std::holds_alternative<Land>(environment) ? render::Surroundings::land : render::Surroundings::water;
-}
-
-Vec3 flow_of(const Environment& environment) {
-  return std::visit(
-      []<class Kind>(const Kind& kind) {
-        if constexpr (requires { kind.flow; })
-          return kind.flow;
-        else
-          return Vec3{};
-      },
-      environment);
+  return has_ground(environment) && !has_water(environment) ? render::Surroundings::land : render::Surroundings::water;
 }
 
 // The height of the sand below a swimming group: lower than the group by half its height plus twice its tallest robot.
@@ -101,14 +90,12 @@ GroupScene::GroupScene(const Group& given, std::vector<render::Vector3> offsets,
   place_floor();
 }
 
-void GroupScene::place_floor() {
-  scene_.floor = scene_.surroundings == render::Surroundings::land ? 0 : sand_below(bounds_);
-}
+void GroupScene::place_floor() { scene_.floor = has_ground(environment_) ? 0 : sand_below(bounds_); }
 
 // The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {
   const bool plain = settings_.plain || !tiles_.empty();
-  const bool land = std::holds_alternative<Land>(environment_);
+  const bool land = has_ground(environment_);
   motion_.set(motion_of(settings_), environment_, picture_axes(direction_of(settings_.camera, land)).right);
   scene_.surroundings = plain ? render::Surroundings::none : surroundings_of(environment_);
   scene_.flow = render::Vector3(flow_of(environment_));
@@ -133,7 +120,7 @@ void GroupScene::set_settings(const ViewSettings& settings) {
 }
 
 void GroupScene::set_environment(const Environment& environment) {
-  const bool moved = environment_.index() != environment.index();
+  const bool moved = !same_parts(environment_, environment);
   environment_ = environment;
   show_surroundings();
   if (moved) place_floor();

@@ -11,7 +11,7 @@ ViewSettings known_in(const ViewSettings& settings, const Environment& environme
   ViewSettings known = settings;
   if (!known.color->exists_in(environment)) known.color = &material_color();
   if (!has_face_forces(environment)) known.shown.arrows.drag = known.shown.arrows.lift = false;
-  if (!std::holds_alternative<Land>(environment)) known.shown.arrows.contact = false;
+  if (!has_ground(environment)) known.shown.arrows.contact = false;
   return known;
 }
 

@@ -70,7 +70,7 @@ std::string known_names() {
   };
   Configuration usual;
   for_each_parameter(usual, add);
-  for_each_environment([&](auto kind) { for_each_parameter(kind, add); });
+  for (const EnvironmentPreset& preset : environment_presets) for_each_parameter(preset.environment, add);
   return names;
 }
 
@@ -82,11 +82,11 @@ void check(const std::string& name, const std::string& value) {
     Configuration one;
     bool known = set_parameter(one, name, value);
     validate(one);
-    for_each_environment([&](const auto& kind) {
-      one.environment = kind;
+    for (const EnvironmentPreset& preset : environment_presets) {
+      one.environment = preset.environment;
       known = set_parameter(one.environment, name, value) || known;
       validate(one);
-    });
+    }
     if (!known) refuse(fmt::format("\"{}\" is not a setting; give some of {}", name, known_names()));
   } catch (const ParameterError& error) {
     if (error.parameter() == "compare") throw;
@@ -107,15 +107,12 @@ struct Texts {
   }
 };
 
-template <class Struct>
-void compare_parameters(const Struct& a, const Struct& b, Texts& texts) {
-  for_each_parameter(a, [&](const auto& parameter, const auto& value) {
-    const auto& other = b.*parameter.member;
-    if (value == other) return;
-    std::string label(parameter.name), unit(parameter.unit.empty() ? "" : fmt::format(" {}", parameter.unit));
-    std::ranges::replace(label, '_', ' ');
-    texts.add(fmt::format("{} {}{}", label, shown(value), unit), fmt::format("{} {}{}", label, shown(other), unit));
-  });
+template <class Parameter, class Value>
+void compare(const Parameter& parameter, const Value& value, const Value& other, Texts& texts) {
+  if (value == other) return;
+  std::string label(parameter.name), unit(parameter.unit.empty() ? "" : fmt::format(" {}", parameter.unit));
+  std::ranges::replace(label, '_', ' ');
+  texts.add(fmt::format("{} {}{}", label, shown(value), unit), fmt::format("{} {}{}", label, shown(other), unit));
 }
 
 }  // namespace
@@ -169,14 +166,17 @@ std::string SideDifference::text() const {
 std::pair<std::string, std::string> differences(const Configuration& first, const Configuration& second) {
   Texts texts;
   const auto solver_text = [](Solver solver) { return solver == Solver::xpbd ? "XPBD" : "force solver"; };
-  if (first.environment.index() != second.environment.index())
-    texts.add(std::string(name_of(first.environment)), std::string(name_of(second.environment)));
+  const bool alike = same_parts(first.environment, second.environment);
+  if (!alike) texts.add(std::string(name_of(first.environment)), std::string(name_of(second.environment)));
   if (first.solver != second.solver) texts.add(solver_text(first.solver), solver_text(second.solver));
-  compare_parameters(first, second, texts);
-  if (first.environment.index() == second.environment.index())
-    std::visit(
-        [&]<class Kind>(const Kind& kind) { compare_parameters(kind, std::get<Kind>(second.environment), texts); },
-        first.environment);
+  for_each_parameter(first, [&](const auto& parameter, const auto& value) {
+    compare(parameter, value, second.*parameter.member, texts);
+  });
+  if (alike)
+    for_each_parameter_pair(first.environment, second.environment,
+                            [&](const auto& parameter, const auto& a, const auto& b) {
+                              compare(parameter, a.*parameter.member, b.*parameter.member, texts);
+                            });
   return texts.of;
 }
 

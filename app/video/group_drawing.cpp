@@ -10,9 +10,7 @@
 namespace mercury {
 namespace {
 
-bool on_land(const Simulation& simulation) {
-  return std::holds_alternative<Land>(simulation.configuration().environment);
-}
+bool on_land(const Simulation& simulation) { return has_ground(simulation.configuration().environment); }
 
 std::vector<std::string> names_of(const Simulation& simulation) {
   std::vector<std::string> names;

@@ -23,7 +23,7 @@ float aspect_of(const render::Renderer& renderer) {
 // What the sides of a comparison are, above each: its own settings where they differ.
 using SideSettings = std::array<ViewSettings, 2>;
 SideSettings settings_of_sides(const ViewSettings& settings, const Configuration& first, const Configuration& second) {
-  const auto on_land = [](const Configuration& one) { return std::holds_alternative<Land>(one.environment); };
+  const auto on_land = [](const Configuration& one) { return has_ground(one.environment); };
   SideSettings sides{settings, known_in(settings, second.environment)};
   const auto [title, second_title] = differences(first, second);
   for (const auto& [side, text] : {std::pair(&sides[0], &title), std::pair(&sides[1], &second_title)})

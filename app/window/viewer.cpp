@@ -319,7 +319,7 @@ void Viewer::update_renderer() {
     plan.mode = camera_.mode();  // unless the user has changed it, that of the scene
     const auto robot = followed(plan);
     camera_.set_mode(CameraMode::still);
-    camera_.set_orbit(direction_of(plan, std::holds_alternative<Land>(scene_.configuration().environment)));
+    camera_.set_orbit(direction_of(plan, has_ground(scene_.configuration().environment)));
     camera_.start(live.camera_boxes(), area_.aspect());
     camera_.begin(plan, robot ? robot : camera_.followed());
     camera_placed_ = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include "evolution/run_folder/run_file.h"
 #include "evolution/run_folder/run_file_layout.h"

@@ -34,7 +34,7 @@ constexpr const char* init_description =
     R"(Loads robots onto a device.
 
 robots: a Robot, or a sequence of them; none is also accepted.
-environment: Ocean, OceanSimple or Land, or the name of one; None = Ocean().
+environment: Ocean, OceanSimple, Land or Environment, or the name of one; None = Ocean().
 solver: "force" (Algorithm 1 of the paper) or "xpbd" (Algorithm 2, stable at longer time steps).
 dt: time step [s]. damping: velocities shrink by exp(-damping dt) per step [1/s].
 device: "auto" (CUDA if there is a device), "cpu", "cuda", "cuda:1", "cuda:all".
@@ -182,9 +182,8 @@ void bind_properties(nb::class_<Batch>& batch) {
       .def_prop_ro(
           "environment",
           [](const Batch& self) {
-            const Environment environment =
-                self.use([](const Simulation& simulation) { return simulation.configuration().environment; });
-            return std::visit([](const auto& kind) { return nb::cast(kind); }, environment);
+            return object_of(
+                self.use([](const Simulation& simulation) { return simulation.configuration().environment; }));
           },
           "A copy of the environment.")
       .def_prop_ro("device", &Batch::device, "What steps the robots: 'cpu', 'cuda:0', or 'cuda:all' if several do.")

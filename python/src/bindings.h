@@ -25,8 +25,10 @@ using SharedRobots = std::vector<std::shared_ptr<const Robot>>;
 // The robots of a Robot, or of a sequence of them. Throws TypeError.
 SharedRobots robots_of(nb::handle robots);
 
-// The environment of an Ocean, OceanSimple or Land, or of a name; None = Ocean(). Throws TypeError, InputError.
+// The environment of an Environment, or of a name; None = Ocean(). Throws TypeError, InputError.
 Environment environment_of(nb::handle environment);
+// The reverse: of the class of the preset, or an Environment.
+nb::object object_of(const Environment& environment);
 
 // What Batch and evaluate() are given. `device` = a name, or anything whose str() is one. Throws TypeError, InputError.
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,

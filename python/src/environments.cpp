@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ocean, OceanSimple and Land, from the parameter tables of mercury/configuration.h.
+// Environment and a class per preset, from the tables of mercury/environment.h.
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <cctype>
 #include <charconv>
 
 #include "mercury/configuration.h"
+#include "mercury/environment.h"
 #include "mercury/error.h"
 #include "python/src/bindings.h"
 #include "python/src/values.h"
@@ -47,17 +49,50 @@ void set(const std::string& name, const auto& parameter, Vec3& to, nb::handle va
   to = {numbers[0], numbers[1], numbers[2]};
 }
 
-template <class Kind>
-std::vector<std::string> parameter_names() {
+// What Python has. Each preset is a class of its own, which never changes its parts.
+struct Combination {
+  Environment environment;
+};
+template <std::size_t preset>
+struct Preset : Combination {};
+
+using Presets = std::make_index_sequence<environment_presets.size()>;
+
+// "ocean-simple" -> "OceanSimple"
+const char* class_name(std::size_t preset) {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> made;
+    for (const EnvironmentPreset& named : environment_presets) {
+      std::string name;
+      bool begins = true;
+      for (const char letter : named.name) {
+        if (letter != '-')
+          name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
+        begins = letter == '-';
+      }
+      made.push_back(name);
+    }
+    return made;
+  }();
+  return names[preset].c_str();
+}
+
+// The class of an environment, or "Environment" for a combination that no preset has.
+std::string class_of(const Environment& environment) {
+  for (std::size_t i = 0; i < environment_presets.size(); ++i)
+    if (same_parts(environment_presets[i].environment, environment)) return class_name(i);
+  return "Environment";
+}
+
+std::vector<std::string> parameter_names(const Environment& environment) {
   std::vector<std::string> names;
-  const Kind defaults;
-  for_each_parameter(defaults, [&](const auto& parameter, const auto&) { names.emplace_back(parameter.name); });
+  for_each_parameter(environment, [&](const auto& parameter, const auto&) { names.emplace_back(parameter.name); });
   return names;
 }
 
-// Errors name the environment and the parameter: "Ocean: density: must be a number, not str".
-template <class Kind>
-Kind changed(const std::string& kind, Kind environment, const nb::kwargs& values) {
+// Errors name the class and the parameter: "Ocean: density: must be a number, not str".
+Environment changed(Environment environment, const nb::kwargs& values) {
+  const std::string kind = class_of(environment);
   for (const auto [key, value] : values) {
     const std::string name = text_from(kind, key);
     bool known = false;
@@ -67,7 +102,8 @@ Kind changed(const std::string& kind, Kind environment, const nb::kwargs& values
       known = true;
     });
     if (!known)
-      throw nb::type_error((kind + " has no parameter " + name + suggestion(name, parameter_names<Kind>())).c_str());
+      throw nb::type_error(
+          (kind + " has no parameter " + name + suggestion(name, parameter_names(environment))).c_str());
   }
   try {
     validate({.environment = environment});
@@ -76,9 +112,11 @@ Kind changed(const std::string& kind, Kind environment, const nb::kwargs& values
   }
   return environment;
 }
+Environment changed(const Environment& environment, const nb::dict& values) {
+  return changed(environment, nb::steal<nb::kwargs>(PyDict_Copy(values.ptr())));
+}
 
-template <class Kind>
-nb::dict values_of(const Kind& environment) {
+nb::dict values_of(const Environment& environment) {
   nb::dict values;
   for_each_parameter(environment, [&](const auto& parameter, const auto& member) {
     values[std::string(parameter.name).c_str()] = to_python(member);
@@ -86,9 +124,11 @@ nb::dict values_of(const Kind& environment) {
   return values;
 }
 
-template <class Kind>
-nb::str repr(const std::string& kind, const Kind& environment) {
+// Ocean(density=1000.0, ...), or Environment('ocean+ground', density=1000.0, ...)
+nb::str repr(const Environment& environment) {
+  const std::string kind = class_of(environment);
   std::string text = kind + "(";
+  if (kind == "Environment") text += "'" + std::string(name_of(environment)) + "'";
   for (const auto [key, value] : values_of(environment))
     text +=
         (text.ends_with('(') ? "" : ", ") + nb::cast<std::string>(key) + "=" + nb::cast<std::string>(nb::repr(value));
@@ -101,10 +141,8 @@ std::string type_hint(const Value&) {
 }
 
 // "density: float = 1000.0, ..."; of a copy, "density: float = ..."
-template <class Kind>
-std::string parameter_list(bool with_defaults) {
+std::string parameter_list(const Environment& defaults, bool with_defaults) {
   std::string text;
-  const Kind defaults;
   for_each_parameter(defaults, [&]<class Value>(const auto& parameter, const Value& value) {
     std::string hint = std::is_same_v<Value, Vec3> ? "collections.abc.Iterable[float]" : type_hint(value);
     if (parameter.takes_downward_magnitude) hint = "float | " + hint;
@@ -121,75 +159,138 @@ std::string documentation_of(const Parameter& parameter) {
   return text;
 }
 
-template <class Kind>
-void bind(nb::module_& module, const char* name) {
+template <std::size_t preset>
+void bind_preset(nb::module_& module) {
+  using Kind = Preset<preset>;
+  const EnvironmentPreset& named = environment_presets[preset];
+  const Environment& defaults = named.environment;
   std::string documentation =
-      "An environment: " + std::string(Kind::help) + ". It never changes; replace() makes copies.\n\n";
-  const Kind defaults;
+      "An environment: " + std::string(named.help) + ". It never changes; replace() makes copies.\n\n";
   for_each_parameter(defaults, [&](const auto& parameter, const auto& value) {
     documentation += std::string(parameter.name) + ": " + documentation_of(parameter) + " (default " +
                      nb::cast<std::string>(nb::repr(to_python(value))) +
                      (parameter.takes_downward_magnitude ? "; one number g stands for (0, 0, -g))\n" : ")\n");
   });
-  const std::string init = "def __init__(self, *" + parameter_list<Kind>(true) + ") -> None";
-  const auto replaced = [name](const Kind& self, const nb::kwargs& values) { return changed(name, self, values); };
+  const std::string init = "def __init__(self, *" + parameter_list(defaults, true) + ") -> None";
 
-  nb::class_<Kind> kind(module, name, documentation.c_str());
+  nb::class_<Kind, Combination> kind(module, class_name(preset), documentation.c_str());
   kind.def(
-          "__init__", [name](Kind* self, const nb::kwargs& values) { new (self) Kind(changed(name, Kind{}, values)); },
-          nb::arg("parameters"), nb::sig(init.c_str()))
-      .def("__repr__", [name](const Kind& self) { return repr(name, self); })
-      .def(
-          "__eq__",
-          [](const Kind& self, nb::handle other) -> nb::object {
-            Kind second;
-            if (!nb::try_cast(other, second)) return nb::borrow(nb::handle(Py_NotImplemented));
-            return nb::bool_(self == second);
+          "__init__",
+          [](Kind* self, const nb::kwargs& values) {
+            new (self) Kind{changed(environment_presets[preset].environment, values)};
           },
-          nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
-      .def("__hash__", [name](const Kind& self) { return nb::hash(repr(name, self)); })
-      .def("__getstate__", &values_of<Kind>, nb::sig("def __getstate__(self) -> dict[str, typing.Any]"))
+          nb::arg("parameters"), nb::sig(init.c_str()))
+      .def(
+          "__getstate__", [](const Kind& self) { return values_of(self.environment); },
+          nb::sig("def __getstate__(self) -> dict[str, typing.Any]"))
       .def(
           "__setstate__",
-          [name](Kind& self, const nb::dict& values) {
-            new (&self) Kind(changed(name, Kind{}, nb::steal<nb::kwargs>(PyDict_Copy(values.ptr()))));
+          [](Kind& self, const nb::dict& values) {
+            new (&self) Kind{changed(environment_presets[preset].environment, values)};
           },
           nb::arg("state"), nb::sig("def __setstate__(self, state: dict[str, typing.Any], /) -> None"));
   for (const char* method : {"replace", "__replace__"}) {
     const std::string signature =
-        "def " + std::string(method) + "(self, *" + parameter_list<Kind>(false) + ") -> " + name;
-    kind.def(method, replaced, nb::arg("parameters"), nb::sig(signature.c_str()), "A copy with other values.");
+        "def " + std::string(method) + "(self, *" + parameter_list(defaults, false) + ") -> " + class_name(preset);
+    kind.def(
+        method, [](const Kind& self, const nb::kwargs& values) { return Kind{changed(self.environment, values)}; },
+        nb::arg("parameters"), nb::sig(signature.c_str()), "A copy with other values.");
   }
   for_each_parameter(defaults, [&](const auto& parameter, const auto& value) {
     const std::string property(parameter.name),
         property_signature = "def " + property + "(self) -> " + type_hint(value);
     kind.def_prop_ro(
-        property.c_str(), [member = parameter.member](const Kind& self) { return to_python(self.*member); },
+        property.c_str(),
+        [property](const Kind& self) -> nb::object { return values_of(self.environment)[property.c_str()]; },
         nb::sig(property_signature.c_str()), documentation_of(parameter).c_str());
   });
+}
+
+void bind_combination(nb::module_& module) {
+  nb::class_<Combination> kind(module, "Environment",
+                               R"(An environment of any parts. It never changes; replace() makes copies.
+
+    pool = mercurysim.Environment("ocean+ground+contacts", gravity=2, friction=0.5)
+
+name: a preset (ocean, ocean-simple, land) or space, followed by +ground or +contacts or both.
+parameters: those of the parts, as Ocean, OceanSimple and Land have them.)");
+  kind.def(
+          "__init__",
+          [](Combination* self, const std::string& name, const nb::kwargs& values) {
+            new (self) Combination{changed(environment_named(name), values)};
+          },
+          nb::arg("name"), nb::arg("parameters"),
+          nb::sig("def __init__(self, name: str, **parameters: typing.Any) -> None"))
+      .def_prop_ro(
+          "name", [](const Combination& self) { return std::string(name_of(self.environment)); }, "Its parts.")
+      .def("__repr__", [](const Combination& self) { return repr(self.environment); })
+      .def(
+          "__eq__",
+          [](const Combination& self, nb::handle other) -> nb::object {
+            if (!nb::isinstance<Combination>(other)) return nb::borrow(nb::handle(Py_NotImplemented));
+            return nb::bool_(self.environment == nb::cast<const Combination&>(other).environment);
+          },
+          nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+      .def("__hash__", [](const Combination& self) { return nb::hash(repr(self.environment)); })
+      .def(
+          "__getattr__",
+          [](const Combination& self, const std::string& name) -> nb::object {
+            const nb::dict values = values_of(self.environment);
+            if (!values.contains(name.c_str()))
+              throw nb::attribute_error((class_of(self.environment) + " has no parameter " + name).c_str());
+            return values[name.c_str()];
+          },
+          nb::arg("name"), nb::sig("def __getattr__(self, name: str, /) -> typing.Any"))
+      .def(
+          "__getstate__",
+          [](const Combination& self) {
+            return nb::make_tuple(std::string(name_of(self.environment)), values_of(self.environment));
+          },
+          nb::sig("def __getstate__(self) -> tuple[str, dict[str, typing.Any]]"))
+      .def(
+          "__setstate__",
+          [](Combination& self, const nb::tuple& state) {
+            new (&self)
+                Combination{changed(environment_named(nb::cast<std::string>(state[0])), nb::cast<nb::dict>(state[1]))};
+          },
+          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple[str, dict[str, typing.Any]], /) -> None"));
+  for (const char* method : {"replace", "__replace__"}) {
+    const std::string signature = "def " + std::string(method) + "(self, **parameters: typing.Any) -> Environment";
+    kind.def(
+        method,
+        [](const Combination& self, const nb::kwargs& values) {
+          return Combination{changed(self.environment, values)};
+        },
+        nb::arg("parameters"), nb::sig(signature.c_str()), "A copy with other values.");
+  }
 }
 
 }  // namespace
 
 Environment environment_of(nb::handle environment) {
-  if (environment.is_none()) return Ocean{};
+  if (environment.is_none()) return environment_presets.front().environment;
   if (nb::isinstance<nb::str>(environment)) return environment_named(text_from("environment", environment));
-  Environment result;
-  bool known = false;
-  for_each_environment([&]<class Kind>(const Kind&) {
-    Kind of_this_kind;
-    if (!nb::try_cast(environment, of_this_kind)) return;
-    result = of_this_kind;
-    known = true;
-  });
-  if (!known) refuse_type("environment", "an Ocean, OceanSimple or Land, or one of their names", environment);
-  return result;
+  if (nb::isinstance<Combination>(environment)) return nb::cast<const Combination&>(environment).environment;
+  refuse_type("environment", "an Environment such as Ocean or Land, or the name of one", environment);
+}
+
+nb::object object_of(const Environment& environment) {
+  nb::object object;
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    const auto use = [&]<std::size_t preset>() {
+      if (!object.is_valid() && same_parts(environment_presets[preset].environment, environment))
+        object = nb::cast(Preset<preset>{environment});
+    };
+    (use.template operator()<i>(), ...);
+  }
+  (Presets{});
+  return object.is_valid() ? object : nb::cast(Combination{environment});
 }
 
 void bind_environments(nb::module_& module) {
-  bind<Ocean>(module, "Ocean");
-  bind<OceanSimple>(module, "OceanSimple");
-  bind<Land>(module, "Land");
+  bind_combination(module);
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (bind_preset<i>(module), ...); }
+  (Presets{});
 }
 
 }  // namespace mercury::python

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mercurysim
-from mercurysim import InputError, Land, Ocean, OceanSimple
+from mercurysim import Environment, InputError, Land, Ocean, OceanSimple
 
 KINDS = [Ocean, OceanSimple, Land]
 OTHERS = {
@@ -113,3 +113,28 @@ def test_trajectories_are_those_of_the_program(mercury, kind):
     batch = mercurysim.Batch(mercurysim.random_voxel(3, seed=8), environment=kind(**values), device="cpu")
     batch.step(250)
     assert [int(robot["hash"], 16) for robot in report["robots"]] == [batch.hash(i) for i in range(3)]
+
+
+def test_an_environment_has_any_parts(mercury):
+    pool = Environment("ocean+contacts+ground", gravity=2, friction=0.5)
+    assert pool.name == "ocean+ground+contacts" and (pool.gravity, pool.friction) == ((0, 0, -2), 0.5)
+    assert pool == eval(repr(pool)) == pickle.loads(pickle.dumps(pool)) == copy.deepcopy(pool) == pool.__replace__()
+    assert hash(pool) == hash(Environment(pool.name, gravity=2, friction=0.5)) and pool != pool.replace(friction=0.6)
+    assert Environment("space+ground").gravity == (0, 0, 0)
+    assert Environment("land", friction=0.3) == Land(friction=0.3) and isinstance(Ocean(), Environment)
+    with pytest.raises(AttributeError, match="^Environment has no parameter point_drag$"):
+        pool.point_drag
+    with pytest.raises(TypeError, match=r"^Environment has no parameter frictoin; did you mean friction\?$"):
+        Environment("ocean+ground", frictoin=1)
+    with pytest.raises(InputError, match="is not an environment; give ocean, ocean-simple, land or space, followed by"):
+        Environment("ocean+lava")
+    batch = mercurysim.Batch(mercurysim.random_voxel(2, seed=8), environment=pool, device="cpu")
+    assert batch.environment == pool and type(batch.environment) is Environment
+    batch.configure(environment=Land())
+    assert type(batch.environment) is Land
+    batch.configure(environment=pool)
+    batch.reset()
+    batch.step(250)
+    report = json.loads(mercury("run", "--random", "voxel:2", "--seed", 8, "--seconds", "0.25", "--environment", pool.name,
+                                "--gravity", 2, "--friction", 0.5, "--device", "cpu", "--json", "--quiet"))
+    assert [int(robot["hash"], 16) for robot in report["robots"]] == [batch.hash(i) for i in range(2)]

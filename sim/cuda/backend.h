@@ -141,7 +141,7 @@ class CudaBackend final : public Backend {
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;
   Configuration configuration_;
-  AnyEnvironmentModel model_ = OceanModel(Ocean{});
+  AnyEnvironmentModel model_ = solver_model_of(Ocean{});
   StepConstants constants_;
   double busy_seconds_ = 0;
   LoadTimes load_times_;

@@ -13,7 +13,7 @@
 //   | one, or one per | one per  | one table    | one list | of the first    | of the second   |
 //   | robot; copies   | robot    | per robot    | per robot| robot           | robot           |
 //   +-----------------+----------+--------------+----------+-----------------+-----------------+
-//                                  if records    on land     working memory (tile.h)
+//                                  if records    if any      working memory (tile.h)
 //                                  have one word
 //
 // 1. A launch carries its robots through many steps. Masses stay in shared memory all the while; only spring records
@@ -29,7 +29,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "mercury/configuration.h"
@@ -65,10 +64,9 @@ struct BlockLayout {
 // Pairs of near masses that are listed. If there are more, every step searches the cell grid.
 inline constexpr std::uint32_t contact_list_size = 1023;
 
-// Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without self-collision.
+// Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without contacts.
 inline std::uint32_t contact_buckets(const Environment& environment, std::uint32_t tiles) {
-  const Land* land = std::get_if<Land>(&environment);
-  return land && land->self_collision && land->contact_stiffness > 0 ? std::bit_ceil(tiles * lanes) : 0;
+  return has_contacts(environment) ? std::bit_ceil(tiles * lanes) : 0;
 }
 
 // Bytes of ContactMemory (contacts.cuh).

@@ -13,7 +13,7 @@
 // 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row
 //    share a bank. The owners of a row stand in the 32 lanes of one tile, so they never do.
 // 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colors of an edge
-//    coloring (edge_coloring.h), which needs as many as the busiest lane or bank has springs. Owners are chosen to
+//    coloring (schedule.cpp), which needs as many as the busiest lane or bank has springs. Owners are chosen to
 //    keep that number small (spring_owners.h).
 // 3. A lane's own mass stays in registers for all its rows. Only the partner's position and sum go through shared
 //    memory.
@@ -25,9 +25,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/cuda/edge_coloring.h"
+#include "sim/cuda/spring_owners.h"
 
 namespace mercury::cuda {
+
+// ScheduledSpring::spring of an unused entry.
+inline constexpr std::uint32_t padding = 0xffffffffu;
+
+// An entry of the schedule. Its owner is the slot of its lane.
+struct ScheduledSpring {
+  std::uint32_t spring = padding;  // its number
+  std::uint16_t partner = 0;       // slot
+};
 
 struct Schedule {
   // Rows of tile t are [row_start[t], row_start[t + 1]); row r has the entries [32 r, 32 r + 32).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which of its two masses owns each spring. The owner's lane computes the spring.
 //
-// A tile needs as many rows as its busiest lane or bank has springs (edge_coloring.h). A spring loads two counters:
+// A tile needs as many rows as its busiest lane or bank has springs (schedule.cpp). A spring loads two counters:
 // the lane of its owner, and in the owner's tile the bank of its partner. If the other mass owns it, it loads two
 // others:
 //

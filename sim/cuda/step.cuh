@@ -65,7 +65,8 @@ class RobotStepper {
   __device__ void add_environment(std::uint32_t step) {
     if (failure_->before(step, phase_environment)) return;
     if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
-    if constexpr (EnvironmentModel::has_faces) faces_.add(robot_, model_, step, *failure_);
+    if constexpr (EnvironmentModel::has_faces)
+      if (model_.acts_on_faces()) faces_.add(robot_, model_, step, *failure_);
     if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
   }
 

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // The equations of the environments. Solvers are compiled once per environment model, so what a model does not have
-// costs nothing. A new environment is one struct in mercury/configuration.h, listed in Environment there, one model
-// here, and its model_of(). Both backends compile their kernels for every environment that Environment lists. A model
-// has
+// costs nothing. The combinations that the presets use have models of their own; GeneralModel has all parts and asks at
+// run time which of them are there. A model has
 //
-//   has_faces, has_contacts, has_floor    which of the parts below a step contains
+//   has_faces, has_contacts, has_ground   which of the parts below a step contains
 //   still_water                           on_mass() is zero, so a step leaves it out
 //   on_mass(v)                            force on a mass of 1 kg that has velocity v [N]
+//   acts_on_faces()                       whether on_face() may be other than zero, if has_faces
 //   on_face(area_normal, v)               force on a face, if has_faces [N]
 //   on_face(normal, u, u.u, coefficients) the same with fewer multiplications, see OceanModel::of_sums()
-//   floor(x, displacement)                contact with the floor at the end of a step, if has_floor
+//   acts_on_ground()                      whether there is ground, if has_ground
+//   touch_ground(x, displacement)         contact with the ground at the end of a step, if has_ground
+//
+// Contacts are the same in all models: repulsion() below, with the stiffness of contact_stiffness_of().
 //
 // Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/kernels/lanes.h).
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 #include <variant>
 
 #include "mercury/configuration.h"
@@ -53,20 +55,22 @@ struct FaceCoefficients {
 //    square of its own speed: the independence principle of flow past yawed cylinders, as in models of swimmers.
 // 4. Hence F . u = rho A / 2 (C_D (u . n) |u|^2 + C_T |u_t|^3) >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
-  static constexpr bool has_faces = true, has_contacts = false, has_floor = false, still_water = false;
+  static constexpr bool has_faces = true, has_contacts = false, has_ground = false, still_water = false;
   static constexpr bool has_tangential_drag = true;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
-  explicit OceanModel(const Ocean& ocean)
-      : gravity(ocean.gravity), flow(ocean.flow), thrice_flow(3.0f * ocean.flow), half_density(ocean.density / 2),
-        drag_minus_lift(ocean.drag_coefficient - ocean.lift_coefficient), lift(ocean.lift_coefficient),
-        tangential(ocean.drag_tangential) {}
+  OceanModel(const FaceDrag& water, Vec3 gravity_)
+      : gravity(gravity_), flow(water.flow), thrice_flow(3.0f * water.flow), half_density(water.density / 2),
+        drag_minus_lift(water.drag_coefficient - water.lift_coefficient), lift(water.lift_coefficient),
+        tangential(water.drag_tangential) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
     return {gravity.x, gravity.y, gravity.z};
   }
+
+  MERCURY_HOST_DEVICE bool acts_on_faces() const { return true; }
 
   // `area_normal` is A n. Both orientations give the same force.
   template <class Vector>
@@ -150,12 +154,12 @@ struct StillWaterOceanModel : FrictionlessOceanModel {
 
 // Drag on each mass, F = drag (flow - v) (paper, II.E).
 struct OceanSimpleModel {
-  static constexpr bool has_faces = false, has_contacts = false, has_floor = false, still_water = false;
+  static constexpr bool has_faces = false, has_contacts = false, has_ground = false, still_water = false;
   Vec3 gravity, flow;
   float drag = 0;
 
-  explicit OceanSimpleModel(const OceanSimple& ocean)
-      : gravity(ocean.gravity), flow(ocean.flow), drag(ocean.point_drag) {}
+  OceanSimpleModel(const PointDrag& water, Vec3 gravity_)
+      : gravity(gravity_), flow(water.flow), drag(water.point_drag) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector v) const {
@@ -164,70 +168,100 @@ struct OceanSimpleModel {
   }
 };
 
-// A floor at z = 0 with Coulomb friction, resolved on positions at the end of a step:
+// Ground at z = 0 with Coulomb friction, resolved on positions at the end of a step:
 //
-//        o x            x is the start of the step, x' its end without the floor.
+//        o x            x is the start of the step, x' its end without the ground.
 //         .
 //   -------.-+------    z = 0
 //           .| depth    The mass is put back to z = 0. Friction shortens its tangential displacement by at most
 //            o x'       friction * depth, because a deeper contact means a larger normal force.
+//
+// `x` is the position at the end of the step and `displacement` the way the mass moved in it. Corrects both. Returns
+// whether the mass touched the ground.
+template <class Vector>
+MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float friction) {
+  const auto depth = -x.z;
+  const auto touched = depth > 0.0f;
+  const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
+  const auto held = friction * depth;
+  const auto undone = select(moved > held, held / moved, 1.0f);
+  x = select(touched, Vector{fnma(undone, displacement.x, x.x), fnma(undone, displacement.y, x.y), 0.0f}, x);
+  displacement = select(touched,
+                        Vector{fnma(undone, displacement.x, displacement.x),
+                               fnma(undone, displacement.y, displacement.y), displacement.z + depth},
+                        displacement);
+  return touched;
+}
+
+// Ground and contacts without water.
 struct LandModel {
-  static constexpr bool has_faces = false, has_contacts = true, has_floor = true, still_water = false;
+  static constexpr bool has_faces = false, has_contacts = true, has_ground = true, still_water = false;
   Vec3 gravity;
   float friction = 0;
 
-  explicit LandModel(const Land& land) : gravity(land.gravity), friction(land.friction) {}
+  LandModel(const Plane& ground, Vec3 gravity_) : gravity(gravity_), friction(ground.friction) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
     return {gravity.x, gravity.y, gravity.z};
   }
-
-  // `x` is the position at the end of the step and `displacement` the way the mass moved in it. Corrects both. Returns
-  // whether the mass touched the floor.
+  MERCURY_HOST_DEVICE bool acts_on_ground() const { return true; }
   template <class Vector>
-  MERCURY_HOST_DEVICE auto floor(Vector& x, Vector& displacement) const {
-    const auto depth = -x.z;
-    const auto touched = depth > 0.0f;
-    const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
-    const auto held = friction * depth;
-    const auto undone = select(moved > held, held / moved, 1.0f);
-    x = select(touched, Vector{fnma(undone, displacement.x, x.x), fnma(undone, displacement.y, x.y), 0.0f}, x);
-    displacement = select(touched,
-                          Vector{fnma(undone, displacement.x, displacement.x),
-                                 fnma(undone, displacement.y, displacement.y), displacement.z + depth},
-                          displacement);
-    return touched;
+  MERCURY_HOST_DEVICE auto touch_ground(Vector& x, Vector& displacement) const {
+    return touch_plane(x, displacement, friction);
   }
 };
 
-inline OceanModel model_of(const Ocean& ocean) { return OceanModel(ocean); }
-inline OceanSimpleModel model_of(const OceanSimple& ocean) { return OceanSimpleModel(ocean); }
-inline LandModel model_of(const Land& land) { return LandModel(land); }
+// Any combination. Parts that are not there are skipped or have coefficients of zero.
+struct GeneralModel : OceanModel {
+  static constexpr bool has_contacts = true, has_ground = true;
+  float drag = 0, friction = 0;
+  bool face_drag = false, ground = false;
+
+  explicit GeneralModel(const Environment& environment)
+      : OceanModel(face_drag_of(environment), environment.gravity), face_drag(has_face_forces(environment)),
+        ground(mercury::has_ground(environment)) {
+    flow = flow_of(environment);
+    if (const auto* water = std::get_if<PointDrag>(&environment.water)) drag = water->point_drag;
+    if (const auto* plane = std::get_if<Plane>(&environment.ground)) friction = plane->friction;
+  }
+
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector v) const {
+    return {multiply_add(drag, flow.x - v.x, gravity.x), multiply_add(drag, flow.y - v.y, gravity.y),
+            multiply_add(drag, flow.z - v.z, gravity.z)};
+  }
+  MERCURY_HOST_DEVICE bool acts_on_faces() const { return face_drag; }
+  MERCURY_HOST_DEVICE bool acts_on_ground() const { return ground; }
+  template <class Vector>
+  MERCURY_HOST_DEVICE auto touch_ground(Vector& x, Vector& displacement) const {
+    return touch_plane(x, displacement, friction);
+  }
+
+ private:
+  static FaceDrag face_drag_of(const Environment& environment) {
+    const auto* water = std::get_if<FaceDrag>(&environment.water);
+    return water ? *water : FaceDrag{.density = 0};
+  }
+};
 
 // The models that both backends compile their kernels for.
-using AnyEnvironmentModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel>;
+using AnyEnvironmentModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, GeneralModel>;
 
 // The fastest model that describes an environment.
 inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
-  return std::visit(
-      [](const auto& kind) -> AnyEnvironmentModel {
-        const auto model = model_of(kind);
-        if constexpr (std::is_same_v<decltype(model), const OceanModel>)
-          if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
-        return model;
-      },
-      environment);
-}
-
-inline bool has_faces(const Environment& environment) {
-  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_faces; }, environment);
-}
-inline bool has_contacts(const Environment& environment) {
-  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_contacts; }, environment);
-}
-inline bool has_floor(const Environment& environment) {
-  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_floor; }, environment);
+  const Vec3 gravity = environment.gravity;
+  const auto* plane = std::get_if<Plane>(&environment.ground);
+  if (!has_water(environment) && plane) return LandModel(*plane, gravity);
+  if (has_ground(environment) || has_contacts(environment)) return GeneralModel(environment);
+  if (const auto* water = std::get_if<FaceDrag>(&environment.water)) {
+    const OceanModel model(*water, gravity);
+    if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
+    return model;
+  }
+  if (const auto* water = std::get_if<PointDrag>(&environment.water)) return OceanSimpleModel(*water, gravity);
+  if (!has_water(environment)) return OceanSimpleModel(PointDrag{.point_drag = 0}, gravity);
+  return GeneralModel(environment);
 }
 
 // Repulsion of two masses that no spring joins, F = k_c (distance - |d|) away from each other; zero at and beyond the
@@ -236,12 +270,13 @@ MERCURY_HOST_DEVICE float repulsion(float squared, float distance, float stiffne
   return squared < distance * distance ? stiffness * multiply_add(-distance, inverse_sqrt(squared), 1.0f) : 0.0f;
 }
 
-// k_c in a step [N/m]. Repulsion is an explicit force, which can be unstable at long time steps, while XPBD is stable
-// at any. So with XPBD a contact moves a mass by at most 1/8 of the missing distance per step: k_c dt^2 <= 1/8. That is
-// stable with up to 16 contacts per mass. With the default parameters it changes nothing below dt = 2.5e-3 s.
-inline float contact_stiffness_of(const Land& land, Solver solver, double dt) {
-  if (!land.self_collision) return 0;
-  const float stiffness = land.contact_stiffness * land.stiffness_scale;
+// k_c in a step [N/m], 0 without contacts. Repulsion is an explicit force, which can be unstable at long time steps,
+// while XPBD is stable at any. So with XPBD a contact moves a mass by at most 1/8 of the missing distance per step: k_c
+// dt^2 <= 1/8. That is stable with up to 16 contacts per mass. With the default parameters it changes nothing below dt
+// = 2.5e-3 s.
+inline float contact_stiffness_of(const Environment& environment, Solver solver, double dt) {
+  if (!has_contacts(environment)) return 0;
+  const float stiffness = environment.contacts->contact_stiffness * environment.stiffness_scale;
   return solver == Solver::xpbd ? std::fmin(stiffness, static_cast<float>(0.125 / (dt * dt))) : stiffness;
 }
 

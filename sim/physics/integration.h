@@ -11,11 +11,11 @@
 //   x'   = x + dt w                                 x'   = p + c
 //   v'   = zeta w                                   v'   = zeta w                         end_step()
 //
-// zeta = exp(-damping dt). Where the floor resolves a contact, x' and w change together.
+// zeta = exp(-damping dt). Where the ground resolves a contact, x' and w change together.
 //
 // The velocity w is a sum of its own. Algorithms 1 and 2 compute it as (x' - x) / dt, but the difference of two float
 // positions loses most digits: 1 m from the origin floats are 6e-8 m apart, so at dt = 1 ms each step would add noise
-// of 3e-5 m/s. For the same reason the floor reports the displacement it leaves.
+// of 3e-5 m/s. For the same reason the ground reports the displacement it leaves.
 #pragma once
 
 #include "sim/physics/springs.h"
@@ -47,15 +47,16 @@ MERCURY_HOST_DEVICE Vector accelerated(Vector velocity, Vector force, const Step
   return multiply_add(step.dt, force, velocity);
 }
 
-// Contact with the floor, then damping. On entry x is the position at the end of the step, and v the velocity w that
+// Contact with the ground, then damping. On entry x is the position at the end of the step, and v the velocity w that
 // led there.
 template <class Vector, class EnvironmentModel>
 MERCURY_HOST_DEVICE void end_step(Vector& x, Vector& v, const EnvironmentModel& model, const StepConstants& step) {
-  if constexpr (EnvironmentModel::has_floor) {
-    Vector displacement = step.dt * v;
-    const auto touched = model.floor(x, displacement);
-    v = select(touched, step.inverse_dt * displacement, v);
-  }
+  if constexpr (EnvironmentModel::has_ground)
+    if (model.acts_on_ground()) {
+      Vector displacement = step.dt * v;
+      const auto touched = model.touch_ground(x, displacement);
+      v = select(touched, step.inverse_dt * displacement, v);
+    }
   v = step.zeta * v;
 }
 

@@ -49,8 +49,8 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
   const float stiffness = std::max(stiffest * scale, 1e-6f);
   constexpr float least_range = 16;  // [N]
   float range = std::max(least_range, stiffness * reach * measures.longest);
-  if (const Land* land = std::get_if<Land>(&configuration.environment))
-    range = std::max(range, land->contact_stiffness * scale * measures.contact_distance());
+  if (const auto& contacts = configuration.environment.contacts)
+    range = std::max(range, contacts->contact_stiffness * scale * measures.contact_distance());
   const float compliance =
       static_cast<float>(1 / (static_cast<double>(stiffness) * configuration.dt * configuration.dt));
   const float longest = std::max(measures.longest, min_rest_length);

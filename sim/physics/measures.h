@@ -18,7 +18,7 @@ struct RobotMeasures {
   float longest = 0;                                       // longest rest length [m]; 0 without springs
   float shortest = 0;                                      // shortest rest length [m]
   std::array<bool, max_materials> used{};                  // by material: whether a spring has it
-  float contact_distance() const { return shortest / 2; }  // [m], on land
+  float contact_distance() const { return shortest / 2; }  // [m]
   // No spring's |d|^2 may exceed this [m2].
   float squared_stretch_limit() const { return stretch_limit * longest * stretch_limit * longest; }
 };
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> valences(const Robot& robot);
 //   force       2^22 units >= 18 L_max k_max             |d| <= 16 L_max, and L lies in [0, 2 L_max]
 //   correction  2^22 units >= 18 L_max / (2 + 1 / (k_max dt^2))
 //
-// Land's contacts and a minimum of 16 N extend the range of forces.
+// Contacts and a minimum of 16 N extend the range of forces.
 FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const Material> materials,
                                   const Configuration& configuration);
 

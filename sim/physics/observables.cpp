@@ -51,10 +51,6 @@ std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow>
   return forces;
 }
 
-bool has_face_forces(const Environment& environment) {
-  return std::visit([](const auto& kind) { return decltype(model_of(kind))::has_faces; }, environment);
-}
-
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
                      std::span<const Vec3> velocities) {
   const Vec3 a = positions[face.a], b = positions[face.b], c = positions[face.c];
@@ -62,35 +58,30 @@ FaceForce face_force(const Environment& environment, const Face& face, std::span
   const float third = 1.0f / 3;
   const Vec3 velocity = third * (velocities[face.a] + velocities[face.b] + velocities[face.c]);
   FaceForce result{.center = third * (a + b + c), .area = length(area_normal), .drag = {}, .lift = {}};
-  std::visit(
-      [&](const auto& kind) {
-        const auto model = model_of(kind);
-        if constexpr (decltype(model)::has_faces) {
-          const Vec3 force = model.on_face(area_normal, velocity);
-          const Vec3 flow = kind.flow - velocity;
-          const float squared = dot(flow, flow);
-          result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};
-          result.lift = force - result.drag;
-        }
-      },
-      environment);
+  if (const auto* water = std::get_if<FaceDrag>(&environment.water)) {
+    const Vec3 force = OceanModel(*water, {}).on_face(area_normal, velocity);
+    const Vec3 flow = water->flow - velocity;
+    const float squared = dot(flow, flow);
+    result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};
+    result.lift = force - result.drag;
+  }
   return result;
 }
 
 std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& configuration,
                                      std::span<const MaterialNow> materials, std::span<const Vec3> positions,
                                      std::span<const Vec3> velocities) {
-  const auto* land = std::get_if<Land>(&configuration.environment);
-  if (!land) return {};
+  const auto* plane = std::get_if<Plane>(&configuration.environment.ground);
+  if (!plane) return {};
   const std::vector<Vec3> springs = spring_forces(robot, materials, positions);
   const auto inverse_dt = static_cast<float>(1 / configuration.dt);
   std::vector<FloorForce> forces;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (positions[i].z > 0) continue;
     // The force that leaves a mass of 1 kg where it is.
-    const Vec3 hold = -(springs[i] + land->gravity + inverse_dt * velocities[i]);
+    const Vec3 hold = -(springs[i] + configuration.environment.gravity + inverse_dt * velocities[i]);
     if (!(hold.z > 0)) continue;
-    const float along = std::hypot(hold.x, hold.y), most = land->friction * hold.z;
+    const float along = std::hypot(hold.x, hold.y), most = plane->friction * hold.z;
     const float share = along > most ? most / along : 1;
     forces.push_back({static_cast<std::uint32_t>(i), {share * hold.x, share * hold.y, hold.z}});
   }

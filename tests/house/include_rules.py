@@ -69,6 +69,10 @@ SUBJECTS = {
 }
 FREE = {"tests", "examples"}  # top folders that may use any library, and may name neighbors without their folder
 
+# Libraries whose headers cost seconds to compile. A header that another folder includes does not bring them along.
+HEAVY = re.compile(r"(Eigen|CLI|GLFW|epoxy)/|nlohmann/json\.hpp|hdf5\.h|H5")
+MEASURING = ("tests/", "bench/", "examples/")  # folders that may look inside others
+
 # The only file that may ask whether nvcc is compiling.
 CUDACC_HOME = "sim/include/mercury/host_device.h"
 
@@ -128,6 +132,13 @@ class Tree:
             for number, line in enumerate(text.splitlines(), start=1)
             if (match := INCLUDE.match(line))
         ]
+        self.by_path = {}
+        for include in self.includes:
+            self.by_path.setdefault(include.path, []).append(include)
+
+    def of(self, path):
+        """The includes of a file."""
+        return self.by_path.get(path, [])
 
     def arrows(self):
         """{(folder, folder): number of includes} between different folders."""
@@ -139,6 +150,30 @@ class Tree:
                     found[arrow] = found.get(arrow, 0) + 1
         return found
 
+    def heavy_way(self, path, seen):
+        """The includes by which a header brings a heavy library along, or None."""
+        for include in self.of(path):
+            if not include.target and HEAVY.match(include.header):
+                return [include.header]
+            if include.target and include.target not in seen:
+                seen.add(include.target)
+                way = self.heavy_way(include.target, seen)
+                if way:
+                    return [include.target, *way]
+        return None
+
+    def heavy_headers(self):
+        """(path, line, what is wrong) of each header that other folders include with a heavy library in it."""
+        reported = set()
+        for include in self.includes:
+            crosses = include.target and folder_of(include.path) != folder_of(include.target)
+            if not crosses or include.path.startswith(MEASURING) or include.target in reported:
+                continue
+            way = self.heavy_way(include.target, {include.target})
+            if way:
+                reported.add(include.target)
+                yield include.target, 1, f"{include.path} gets {' > '.join(way)} through it: hide the library in a source"
+
     def problems(self):
         """(path, line, what is wrong)."""
         for include in self.includes:
@@ -148,6 +183,7 @@ class Tree:
             for number, line in enumerate(text.splitlines(), start=1):
                 if "__CUDACC__" in line and path != CUDACC_HOME:
                     yield path, number, f"only {CUDACC_HOME} asks for __CUDACC__"
+        yield from self.heavy_headers()
         graph = {}
         for include in self.includes:
             graph.setdefault(include.path, []).append(include.target)

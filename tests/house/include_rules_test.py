@@ -48,6 +48,17 @@ class IncludeRules(unittest.TestCase):
             "examples/a/main.cpp": "#include <mercury/simulation.h>\n",
         }), [])
 
+    def test_a_header_of_another_folder_brings_no_heavy_library(self):
+        tree = {"app/base/a.h": '#include "app/base/b.h"\n', "app/base/b.h": "#include <nlohmann/json.hpp>\n",
+                "app/base/own.cpp": '#include "app/base/a.h"\n'}
+        self.assertEqual(problems(tree), [])
+        tree["app/scene/c.cpp"] = '#include "app/base/a.h"\n'
+        self.assertEqual(problems(tree), [
+            "app/base/a.h:1: app/scene/c.cpp gets app/base/b.h > nlohmann/json.hpp through it: "
+            "hide the library in a source"])
+        tree["app/base/b.h"] = "#include <nlohmann/json_fwd.hpp>\n"
+        self.assertEqual(problems(tree), [])
+
     def test_breaches_are_reported_with_file_and_line(self):
         self.assertEqual(
             problems({"sim/step.cpp": '#include <vector>\n#include "app/scene/view.h"\n', "app/scene/view.h": ""}),

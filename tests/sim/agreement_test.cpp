@@ -34,8 +34,8 @@ double deviation_over_a_second(const Configuration& configuration, const Robot& 
 
 class Agreement : public EveryPair {
  protected:
-  bool on_land() const { return std::get<std::string_view>(GetParam()) == Land::name; }
-  double tolerance() const { return on_land() ? 1e-3 : 1e-4; }  // [m]
+  bool on_ground() const { return has_ground(configuration().environment); }
+  double tolerance() const { return on_ground() ? 1e-3 : 1e-4; }  // [m]
 };
 
 TEST_P(Agreement, RandomVoxelRobotFollowsTheReferenceFromRest) {
@@ -56,15 +56,15 @@ TEST_P(Agreement, ShakenRobotFollowsTheReference) {
 
 TEST_P(Agreement, TiltedRobotInACurrentOrDroppedFollowsTheReference) {
   Configuration setting = configuration();
-  if (auto* ocean = std::get_if<Ocean>(&setting.environment))
-    *ocean = {.lift_coefficient = 0.5f, .flow = {0.3f, -0.2f, 0.1f}};
-  if (auto* simple = std::get_if<OceanSimple>(&setting.environment))
+  if (auto* water = std::get_if<FaceDrag>(&setting.environment.water))
+    *water = {.lift_coefficient = 0.5f, .flow = {0.3f, -0.2f, 0.1f}};
+  if (auto* simple = std::get_if<PointDrag>(&setting.environment.water))
     *simple = {.point_drag = 3, .flow = {0.3f, -0.2f, 0.1f}};
   setting.damping = 0.5;
   Robot robot = bodies::random_voxels({.x = 3, .y = 4, .z = 5}, 4);
   bodies::rotate(robot, bodies::random_rotation(5));
   State start = bodies::moving(robot, {0.5f, 0, -0.5f});
-  if (on_land()) {
+  if (on_ground()) {
     float lowest = 0;
     for (const Vec3 x : start.positions) lowest = std::min(lowest, x.z);
     for (Vec3& x : start.positions) x.z += 0.05f - lowest;
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(All, Agreement, every_pair, EveryPair::name);
 TEST(Backends, CpuAndCudaAgreeWithinATenthOfAMillimeterAfterASecond) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   for (const Solver solver : {Solver::force, Solver::xpbd})
-    for (const std::string_view environment : environment_names()) {
+    for (const std::string_view environment : tested_environments) {
       const std::array robots = {bodies::random_voxels({}, 6), bodies::with_half_waves(bodies::random_voxels({}, 7))};
       Configuration configuration{.solver = solver, .environment = environment_named(environment)};
       configuration.device.kind = DeviceKind::cpu;

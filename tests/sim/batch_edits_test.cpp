@@ -50,7 +50,8 @@ class BatchEdits : public testing::TestWithParam<Case> {
   static std::string name(const testing::TestParamInfo<Case>& info) {
     std::string text(std::get<Maker>(info.param).name);
     text.append(1, '_').append(name_of(std::get<Solver>(info.param))).append(1, '_');
-    for (const char letter : std::get<std::string_view>(info.param)) text += letter == '-' ? '_' : letter;
+    for (const char letter : std::get<std::string_view>(info.param))
+      text += letter == '-' || letter == '+' ? '_' : letter;
     return text;
   }
 };
@@ -60,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Maker{"cuda", [] { return make_cuda_backend({.kind = DeviceKind::cuda}); }},
                                      Maker{"split", split_over_three},
                                      Maker{"defaults", [] { return std::make_unique<test::PlainBackend>(); }}),
-                     testing::Values(Solver::force, Solver::xpbd), testing::ValuesIn(environment_names())),
+                     testing::Values(Solver::force, Solver::xpbd), testing::ValuesIn(tested_environments)),
     BatchEdits::name);
 
 // Some alike, some of their own, so that some step in lockstep and some alone.

@@ -64,6 +64,14 @@ TEST(Configuration, NamesAndParsingAreInverse) {
   for (const Environment& environment : {Environment(Ocean{}), Environment(OceanSimple{}), Environment(Land{})})
     EXPECT_EQ(environment_named(name_of(environment)), environment);
   EXPECT_EQ(name_of(Environment(OceanSimple{})), "ocean-simple");
+  for (const char* name : {"space", "space+ground", "space+contacts", "ocean+ground", "ocean+contacts",
+                           "ocean+ground+contacts", "ocean-simple+ground", "ocean-simple+ground+contacts"})
+    EXPECT_EQ(name_of(environment_named(name)), name);
+  EXPECT_EQ(environment_named("ocean+contacts+ground"), environment_named("ocean+ground+contacts"));
+  EXPECT_EQ(environment_named("land+ground"), Environment(Land{}));
+  EXPECT_EQ(name_of(environment_named("space+ground+contacts")), "land");
+  for (const char* name : {"", "+", "ocean+", "+ground", "ocean++ground", "ocean+lava", "ocean+land", "ground"})
+    EXPECT_FALSE(is_environment(name)) << name;
   EXPECT_EQ(device_named("auto").kind, DeviceKind::automatic);
   EXPECT_EQ(device_named("cpu").kind, DeviceKind::cpu);
   EXPECT_EQ(device_named("cuda"), (Device{DeviceKind::cuda, 0, 0}));
@@ -76,6 +84,9 @@ TEST(Configuration, ErrorsForUnknownNamesListTheAcceptedOnes) {
   EXPECT_EQ(message_of([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
   EXPECT_EQ(message_of([] { environment_named("lava"); }),
             "environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
+  EXPECT_EQ(message_of([] { environment_named("ocean+lava"); }),
+            "environment: \"ocean+lava\" is not an environment; give ocean, ocean-simple, land or space, followed by "
+            "+ground or +contacts or both");
   for (const char* name : {"gpu", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
     EXPECT_EQ(message_of([&] { device_named(name); }),
               "device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");

@@ -28,7 +28,7 @@ Reference::Reference(const Configuration& configuration, const Robot& robot)
   if (!robot.springs.empty()) contact_distance_ = shortest / 2;
   for (const Vec3 mass : robot.masses) x_.push_back(vector_of(mass));
   v_.assign(x_.size(), Vector::Zero());
-  if (std::holds_alternative<Land>(configuration.environment)) {
+  if (has_ground(configuration.environment)) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Vector& x : x_) lowest = std::min(lowest, x.z());
     for (Vector& x : x_) x.z() -= lowest;
@@ -43,7 +43,7 @@ void Reference::set_state(const State& state) {
 }
 
 double Reference::stiffness(const Spring& spring) const {
-  const double scale = std::visit([](const auto& kind) { return kind.stiffness_scale; }, configuration_.environment);
+  const double scale = configuration_.environment.stiffness_scale;
   return scale * materials_of(robot_)[spring.material].stiffness;
 }
 
@@ -99,14 +99,13 @@ void Reference::project_springs(Field& predicted) const {
 }
 
 Field Reference::environment_forces() const {
-  const auto& environment = configuration_.environment;
-  const Vec3 gravity = std::visit([](const auto& kind) { return kind.gravity; }, environment);
-  Field force(x_.size(), vector_of(gravity));
-  if (const auto* ocean = std::get_if<Ocean>(&environment)) add_surface_drag(*ocean, force);
-  if (const auto* simple = std::get_if<OceanSimple>(&environment))
+  const Environment& environment = configuration_.environment;
+  Field force(x_.size(), vector_of(environment.gravity));
+  if (const auto* water = std::get_if<FaceDrag>(&environment.water)) add_surface_drag(*water, force);
+  if (const auto* simple = std::get_if<PointDrag>(&environment.water))
     for (std::size_t i = 0; i < x_.size(); ++i)
       force[i] += double{simple->point_drag} * (vector_of(simple->flow) - v_[i]);
-  if (const auto* land = std::get_if<Land>(&environment); land && land->self_collision) add_repulsion(*land, force);
+  if (environment.contacts && environment.contacts->self_collision) add_repulsion(*environment.contacts, force);
   for (const Perturbation& perturbation : perturbations_)
     if (perturbation.robot == 0)
       force[perturbation.mass] +=
@@ -115,7 +114,7 @@ Field Reference::environment_forces() const {
 }
 
 // Paper, equation 1, of the flow relative to the face, and tangential drag; the normal points downstream.
-void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
+void Reference::add_surface_drag(const FaceDrag& ocean, Field& force) const {
   for (const Face& face : robot_.faces) {
     const Vector u = vector_of(ocean.flow) - (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
     const Vector twice_area = (x_[face.b] - x_[face.a]).cross(x_[face.c] - x_[face.a]);
@@ -132,8 +131,8 @@ void Reference::add_surface_drag(const Ocean& ocean, Field& force) const {
 }
 
 // Every pair is looked at: slow, but there is no grid to get wrong.
-void Reference::add_repulsion(const Land& land, Field& force) const {
-  double k = double{land.contact_stiffness} * double{land.stiffness_scale};
+void Reference::add_repulsion(const Contacts& contacts, Field& force) const {
+  double k = double{contacts.contact_stiffness} * double{configuration_.environment.stiffness_scale};
   const double dt = configuration_.dt;
   if (configuration_.solver == Solver::xpbd) k = std::min(k, 1 / (8 * dt * dt));  // docs/physics.md, Contact
   for (std::size_t i = 0; i < x_.size(); ++i)
@@ -149,14 +148,14 @@ void Reference::add_repulsion(const Land& land, Field& force) const {
 
 // The floor z = 0: out of it, and the step's tangential move shortened by at most friction times the depth.
 void Reference::resolve_contact(Field& next) const {
-  const auto* land = std::get_if<Land>(&configuration_.environment);
-  if (!land) return;
+  const auto* plane = std::get_if<Plane>(&configuration_.environment.ground);
+  if (!plane) return;
   for (std::size_t i = 0; i < next.size(); ++i) {
     if (next[i].z() >= 0) continue;
     const double depth = -next[i].z();
     Vector slide = next[i] - x_[i];
     slide.z() = 0;
-    const double kept = std::max(0.0, slide.norm() - double{land->friction} * depth);
+    const double kept = std::max(0.0, slide.norm() - double{plane->friction} * depth);
     if (slide.norm() > 0) slide *= kept / slide.norm();
     next[i] = {x_[i].x() + slide.x(), x_[i].y() + slide.y(), 0};
   }

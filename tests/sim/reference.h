@@ -27,7 +27,7 @@ double rest_length(const Material& material, double rest_length, double time);
 
 class Reference {
  public:
-  // Starts at time 0 in the rest pose; on land with the lowest mass at z = 0.
+  // Starts at time 0 in the rest pose; on the ground with the lowest mass at z = 0.
   Reference(const Configuration& configuration, const Robot& robot);
 
   void set_state(const State& state);
@@ -54,8 +54,8 @@ class Reference {
   double stiffness(const Spring& spring) const;
   double length_now(const Spring& spring) const;
   double strain(const Spring& spring) const;
-  void add_surface_drag(const Ocean& ocean, Field& force) const;
-  void add_repulsion(const Land& land, Field& force) const;
+  void add_surface_drag(const FaceDrag& ocean, Field& force) const;
+  void add_repulsion(const Contacts& contacts, Field& force) const;
 
   Configuration configuration_;
   Robot robot_;

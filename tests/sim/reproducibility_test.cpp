@@ -38,7 +38,8 @@ class Reproducibility : public EveryPair {
     Simulation simulation(configuration, robots);
     for (std::size_t i = 0; i < robots.size(); ++i) {
       State start = bodies::shaken(robots[i], 0.01f, 0.3f, 7);
-      for (Vec3& x : start.positions) x.z += 0.05f;
+      const float lowest = std::ranges::min(start.positions, {}, &Vec3::z).z;
+      for (Vec3& x : start.positions) x.z += 0.05f - lowest;
       simulation.set_state(i, start.positions, start.velocities);
     }
     for (std::int64_t done = 0; done < steps; done += steps_a_call)

@@ -26,7 +26,7 @@ SideDifference other_solver(const Configuration& configuration) {
 }
 SideDifference other_environment(const Configuration& configuration) {
   // On land, springs of swimmers are stiff: the force solver would need very small steps.
-  if (std::holds_alternative<Land>(configuration.environment)) return SideDifference("environment=ocean");
+  if (has_ground(configuration.environment)) return SideDifference("environment=ocean");
   return SideDifference(configuration.solver == Solver::xpbd ? "environment=land" : "environment=land,solver=xpbd");
 }
 
@@ -96,7 +96,7 @@ void ComparePanel::draw_views(PanelContext& context) {
   preset("solver", first.solver == Solver::force ? "force | XPBD" : "XPBD | force",
          "the same robots with the other solver", other_solver(first));
   ImGui::SameLine();
-  const bool land = std::holds_alternative<Land>(first.environment);
+  const bool land = has_ground(first.environment);
   preset("environment", land ? "land | ocean" : "ocean | land", "the same robots in another environment",
          other_environment(first));
   if (!now) {

@@ -22,6 +22,7 @@ class EnvironmentChoice {
   };
   void count(const LiveScene& scene);
   bool draw_list(PanelContext& context, Configuration& configuration) const;
+  static bool draw_parts(PanelContext& context, Environment& environment);
   bool draw_hint(PanelContext& context, Configuration& configuration) const;
 
   Made made_;

@@ -95,27 +95,19 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
                          context.scene.set_configuration(changed);
                          context.scene.end_edit();
                        }});
-  std::visit(
-      [&]<class Kind>(const Kind& environment) {
-        for_each_parameter(environment, [&]<class Value>(const auto& parameter, const Value& value) {
-          if constexpr (std::is_same_v<Value, float>) {
-            std::string label(parameter.name);
-            std::ranges::replace(label, '_', ' ');
-            add_number(context, entries, label, static_cast<double>(value), std::string(parameter.unit),
-                       [name = std::string(parameter.name)](Configuration& changed, double number) {
-                         std::visit(
-                             [&](auto& kind) {
-                               for_each_parameter(kind, [&]<class Other>(const auto& other, Other& target) {
-                                 if constexpr (std::is_same_v<Other, float>)
-                                   if (other.name == name) target = static_cast<float>(number);
-                               });
-                             },
-                             changed.environment);
-                       });
-          }
-        });
-      },
-      configuration.environment);
+  for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, const Value& value) {
+    if constexpr (std::is_same_v<Value, float>) {
+      std::string label(parameter.name);
+      std::ranges::replace(label, '_', ' ');
+      add_number(context, entries, label, static_cast<double>(value), std::string(parameter.unit),
+                 [name = std::string(parameter.name)](Configuration& changed, double number) {
+                   for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
+                     if constexpr (std::is_same_v<Other, float>)
+                       if (other.name == name) target = static_cast<float>(number);
+                   });
+                 });
+    }
+  });
 }
 
 }  // namespace

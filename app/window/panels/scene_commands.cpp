@@ -30,7 +30,7 @@ void toggle_drag_arrows(PanelContext& context) {
   ViewSettings view = context.scene.view();
   bool& drag = view.shown.arrows.drag;
   drag = !drag;
-  if (drag && !std::holds_alternative<Ocean>(context.scene.configuration().environment))
+  if (drag && !has_face_forces(context.scene.configuration().environment))
     context.toasts.show(Tone::info, "only the ocean environment has drag arrows");
   context.log.write("view", {{"drag", drag}});
   context.scene.set_view(view);

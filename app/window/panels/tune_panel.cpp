@@ -39,10 +39,12 @@ bool edit(const std::string& label, const std::string& hint, bool& value) {
 }
 
 // A slider per parameter of an environment, or a box for a switch.
-template <class Kind>
-bool edit_parameters(Kind& environment) {
+bool edit_parameters(Environment& environment) {
   bool changed = false;
-  for_each_parameter(environment, [&]<class Value>(const auto& parameter, Value& value) {
+  const Environment usual = environment_named(name_of(environment));
+  for_each_parameter_pair(environment, usual, [&](const auto& parameter, auto& part, const auto& usual_part) {
+    auto& value = part.*parameter.member;
+    using Value = std::remove_cvref_t<decltype(value)>;
     const std::string label = label_of(parameter.name), unit = unit_text(parameter.unit);
     std::string hint(parameter.help);
     if constexpr (std::is_same_v<Value, bool>) {
@@ -54,9 +56,9 @@ bool edit_parameters(Kind& environment) {
         hint += unit.empty() ? "" : " [" + unit + "]";
       else
         format += unit.empty() ? "" : " " + unit;
-      const bool is_disabled = parameter.enabled_by != nullptr && !(environment.*parameter.enabled_by);
+      const bool is_disabled = parameter.enabled_by != nullptr && !(part.*parameter.enabled_by);
       ImGui::BeginDisabled(is_disabled);
-      changed |= slider(label.c_str(), hint.c_str(), value, parameter.default_value(),
+      changed |= slider(label.c_str(), hint.c_str(), value, usual_part.*parameter.member,
                         {range.low, range.high, format.c_str(), range.logarithmic});
       ImGui::EndDisabled();
     }
@@ -97,7 +99,7 @@ bool solver_section(Configuration& configuration, EventLog& log) {
 bool environment_section(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
   heading("Environment");
   bool changed = choice.draw(context, configuration);
-  changed |= std::visit([](auto& environment) { return edit_parameters(environment); }, configuration.environment);
+  changed |= edit_parameters(configuration.environment);
   return changed;
 }
 

@@ -13,8 +13,6 @@
 namespace mercury::window {
 namespace {
 
-bool is_ocean(const Environment& environment) { return std::holds_alternative<Ocean>(environment); }
-bool is_land(const Environment& environment) { return std::holds_alternative<Land>(environment); }
 bool has_gravity(const Environment& environment) {
   const Vec3 g = gravity_of(environment);
   return g.x != 0 || g.y != 0 || g.z != 0;
@@ -55,7 +53,7 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, cons
   bool changed = false;
   heading("Arrows");
   if (ImGui::BeginTable("arrows", 2, ImGuiTableFlags_SizingStretchSame)) {
-    const bool ocean = is_ocean(environment);
+    const bool ocean = has_face_forces(environment);
     ImGui::TableNextColumn();
     ImGui::BeginDisabled(!ocean && !shown.arrows.drag);
     changed |= check(
@@ -71,8 +69,9 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, cons
     ImGui::BeginDisabled(!has_gravity(environment) && !shown.arrows.gravity);
     changed |= check("Gravity", "at each center of mass, if there is gravity", shown.arrows.gravity, "gravity", log);
     ImGui::EndDisabled();
-    ImGui::BeginDisabled(!is_land(environment) && !shown.arrows.contact);
-    changed |= check("Contact", "force of the floor on each mass; only on land", shown.arrows.contact, "contact", log);
+    ImGui::BeginDisabled(!has_ground(environment) && !shown.arrows.contact);
+    changed |=
+        check("Contact", "force of the ground on each mass, if there is ground", shown.arrows.contact, "contact", log);
     ImGui::EndDisabled();
     ImGui::EndTable();
   }

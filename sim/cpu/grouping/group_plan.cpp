@@ -12,7 +12,6 @@
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/merged_topology.h"
 #include "sim/cpu/grouping/partition.h"
-#include "sim/physics/environments.h"
 
 namespace mercury::cpu {
 namespace {
@@ -169,7 +168,7 @@ std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::
   Group left;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (fits_in_group(*bodies[i])) left.push_back(i);
-  const bool faces = has_faces(configuration.environment);
+  const bool faces = has_face_forces(configuration.environment);
   std::vector<Group> groups = groups_of_same_topology(bodies, left);
   const std::size_t same = groups.size();
   const Patterns patterns = patterns_of(bodies, left, faces);

@@ -11,7 +11,6 @@
 #include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/group_plan.h"
-#include "sim/physics/environments.h"
 
 namespace mercury::cpu {
 namespace {

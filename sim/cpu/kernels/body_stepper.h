@@ -83,12 +83,13 @@ class BodyStepper {
         add_contacts(body_, contact_stiffness_);
       }
     }
-    if constexpr (EnvironmentModel::has_faces) {
-      const FaceTiles<EnvironmentModel> faces(body_, model_);
-      if (faces.add_forces()) return true;
-      faces.for_each_bad_corner([&](std::size_t slot) { note_bad_mass(body_, slot); });
-      return false;
-    }
+    if constexpr (EnvironmentModel::has_faces)
+      if (model_.acts_on_faces()) {
+        const FaceTiles<EnvironmentModel> faces(body_, model_);
+        if (faces.add_forces()) return true;
+        faces.for_each_bad_corner([&](std::size_t slot) { note_bad_mass(body_, slot); });
+        return false;
+      }
     return true;
   }
 

@@ -5,8 +5,6 @@
 
 #include <vector>
 
-#include "sim/cpu/kernels/kernel_list.h"
-
 namespace mercury::cpu {
 namespace {
 

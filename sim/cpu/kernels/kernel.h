@@ -35,6 +35,9 @@ struct Kernel {
   bool (*advance_group)(LockstepGroup& group, const StepSetting& setting, Factors factors, std::int64_t steps);
 };
 
+// One per source file kernel_*.cpp.
+extern const Kernel portable_kernel, sse4_kernel, avx2_kernel, avx512_kernel, neon_kernel;
+
 // The kernels that this machine can run, fastest first. The last one is portable.
 std::span<const Kernel> kernels();
 

@@ -5,7 +5,7 @@
 
 #include "sim/cpu/kernels/kernel_target.h"
 
-#include "sim/cpu/kernels/kernel_list.h"
+#include "sim/cpu/kernels/kernel.h"
 
 namespace mercury::cpu {
 

@@ -54,7 +54,7 @@ class LockstepStepper {
     if constexpr (EnvironmentModel::has_contacts)
       if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) add_contact_forces();
     if constexpr (EnvironmentModel::has_faces)
-      if (!add_faces()) return false;
+      if (model_.acts_on_faces() && !add_faces()) return false;
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
   }
 

@@ -2,6 +2,8 @@
 // What a step of the CPU is given besides the robots.
 #pragma once
 
+#include <cmath>
+
 #include "sim/physics/environments.h"
 #include "sim/physics/integration.h"
 
@@ -9,12 +11,20 @@ namespace mercury::cpu {
 
 struct StepSetting {
   Solver solver = Solver::force;
-  AnyEnvironmentModel model = OceanModel(Ocean{});
-  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no self-collision
+  AnyEnvironmentModel model = solver_model_of(Ocean{});
+  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no contacts
   StepConstants constants;
 };
 
-StepSetting setting_of(const Configuration& configuration);
+inline StepSetting setting_of(const Configuration& configuration) {
+  StepSetting setting;
+  setting.solver = configuration.solver;
+  setting.model = solver_model_of(configuration.environment);
+  setting.contact_stiffness = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt);
+  setting.constants = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
+                       static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
+  return setting;
+}
 
 // L(t) / L0 of all muscles, for several steps: [step][muscle].
 struct Factors {

@@ -3,17 +3,16 @@
 #pragma once
 
 #include <cmath>
-#include <variant>
 
 #include "mercury/configuration.h"
 #include "mercury/vec3.h"
 
 namespace mercury {
 
-// From one place of the center of mass to another [m]; on land along the ground, so a fall counts for nothing.
+// From one place of the center of mass to another [m]; with ground along it, so a fall counts for nothing.
 inline double distance_between(Vec3 start, Vec3 end, const Environment& environment) {
   const Vec3 d = end - start;
-  const double x = d.x, y = d.y, z = std::holds_alternative<Land>(environment) ? 0 : d.z;
+  const double x = d.x, y = d.y, z = has_ground(environment) ? 0 : d.z;
   return std::sqrt(x * x + y * y + z * z);
 }
 

@@ -98,9 +98,6 @@ inline float muscle_power(const Spring& spring, const MaterialNow& material, flo
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
                                 std::span<const Vec3> positions);
 
-// Whether an environment acts on faces.
-bool has_face_forces(const Environment& environment);
-
 // The force of the water on a face, in two parts that add up to it.
 struct FaceForce {
   Vec3 center;     // of the face [m]

@@ -359,10 +359,10 @@ TEST(SideDifference, ParametersCountWhereTheEnvironmentHasThem) {
   const SideDifference difference("density=500,friction=0.1");
   Configuration first;
   first.damping = 0.3;
-  EXPECT_EQ(std::get<Ocean>(difference.over(first).environment).density, 500);
+  EXPECT_EQ(std::get<FaceDrag>(difference.over(first).environment.water).density, 500);
   EXPECT_EQ(difference.over(first).damping, 0.3);
   first.environment = Land{};
-  EXPECT_EQ(std::get<Land>(difference.over(first).environment).friction, 0.1f);
+  EXPECT_EQ(std::get<Plane>(difference.over(first).environment.ground).friction, 0.1f);
   EXPECT_EQ(differences(first, difference.over(first)),
             (std::pair<std::string, std::string>("friction 0.8", "friction 0.1")));
   EXPECT_EQ(SideDifference(difference.text()), difference);

@@ -53,6 +53,33 @@ void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) 
   EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
 }
 
+// A time step that no simulation takes, and with it all that a user may change at the same moment.
+TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
+  Messages messages;
+  Physics physics(on_cpu(), messages);
+  const auto robots = some_robots(2);
+  physics.set_scene(robots, on_cpu());
+  physics.set_speed(unlimited_speed);
+  physics.play();
+  while (physics.newest()->steps < 10) std::this_thread::yield();  // commands wait for the end of a slice of steps
+  Configuration impossible = on_cpu();
+  impossible.dt = -1;
+  physics.set_scene(robots, impossible);
+  physics.set_view({.color = &color_quantity("strain")});
+  physics.set_speed(3);
+  physics.wait_until_done();
+  const auto snapshot = physics.newest();
+  EXPECT_EQ(messages.take().size(), 1u);
+  EXPECT_FALSE(snapshot->playing);
+  EXPECT_EQ(snapshot->speed, 3);
+  EXPECT_EQ(snapshot->color->key, "strain");
+  physics.set_scene(robots, on_cpu());
+  physics.step(1);
+  physics.wait_until_done();
+  EXPECT_EQ(physics.newest()->robots->size(), 2u);
+  EXPECT_TRUE(messages.take().empty());
+}
+
 TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;

@@ -46,7 +46,12 @@ class SceneText : public test::FolderTest {
 TEST_F(SceneText, EveryParameterOfEveryEnvironmentComesBack) {
   const Environment environments[] = {Ocean{998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f},
                                       OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f},
-                                      Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150}};
+                                      Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150},
+                                      Environment{.water = FaceDrag{998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}},
+                                                  .ground = Plane{0.55f},
+                                                  .contacts = Contacts{false, 123},
+                                                  .gravity = {0.4f, 0.5f, -0.6f},
+                                                  .stiffness_scale = 1.7f}};
   for (const Environment& environment : environments) {
     const Configuration configuration{
         .dt = 1.25e-3, .damping = 0.3, .solver = Solver::xpbd, .environment = environment};

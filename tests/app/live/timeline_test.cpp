@@ -318,7 +318,7 @@ TEST_P(PlayedRecording, ShowsItsFramesAndStraightLinesBetween) {
   open(scene);
   EXPECT_TRUE(scene.snapshot().timeline.recording);
   EXPECT_NEAR(scene.snapshot().timeline.head, 0.1, 1e-12);
-  EXPECT_TRUE(std::holds_alternative<Land>(scene.configuration().environment));
+  EXPECT_TRUE(has_ground(scene.configuration().environment));
   TrajectoryReader reader(path("walk.h5"));
   for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
     scene.seek(reader.time(frame));

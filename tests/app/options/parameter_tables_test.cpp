@@ -32,17 +32,19 @@ bool other(const Parameter&, bool usual) {
 // Calls test(parameter, configuration in which that parameter differs from its default).
 template <class Test>
 void for_each_change(const Test& test) {
-  for_each_environment([&]<class Kind>(const Kind& usual) {
-    for_each_parameter(usual, [&](const auto& parameter, const auto& value) {
-      SCOPED_TRACE(std::string(Kind::name) + " " + std::string(parameter.name));
-      Kind changed = usual;
-      changed.*parameter.member = other(parameter, value);
-      EXPECT_NE(changed, usual) << "the default would pass for it";
-      Configuration configuration;
-      configuration.environment = changed;
-      test(parameter, configuration);
-    });
-  });
+  for (const char* name : {"ocean", "ocean-simple", "land", "ocean+ground+contacts", "space"}) {
+    const Environment usual = environment_named(name);
+    Configuration configuration{.environment = usual};
+    for_each_parameter_pair(configuration.environment, usual,
+                            [&](const auto& parameter, auto& part, const auto& usual_part) {
+                              SCOPED_TRACE(std::string(name) + " " + std::string(parameter.name));
+                              const auto& value = usual_part.*parameter.member;
+                              part.*parameter.member = other(parameter, value);
+                              EXPECT_NE(configuration.environment, usual) << "the default would pass for it";
+                              test(parameter, configuration);
+                              part.*parameter.member = value;
+                            });
+  }
 }
 
 Configuration parsed(const OptionValues& options) {
@@ -72,13 +74,12 @@ TEST(ParameterTables, AParameterIsAMemberOfTheJsonAndIsReadFromIt) {
 }
 
 TEST(ParameterTables, ANegativeValueIsRefusedByName) {
-  for_each_environment([](auto kind) {
-    for_each_parameter(kind, [&]<class Value>(const auto& parameter, Value& value) {
+  for (const char* name : {"ocean", "ocean-simple", "land", "ocean+ground+contacts", "space"}) {
+    Configuration configuration{.environment = environment_named(name)};
+    for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, Value& value) {
       if constexpr (std::is_same_v<Value, float>) {
         const float usual = std::exchange(value, -1.0f);
         try {
-          Configuration configuration;
-          configuration.environment = kind;
           validate(configuration);
           EXPECT_EQ(parameter.accepts, Accepts::any) << parameter.name;
         } catch (const ParameterError& error) {
@@ -87,7 +88,7 @@ TEST(ParameterTables, ANegativeValueIsRefusedByName) {
         value = usual;
       }
     });
-  });
+  }
 }
 
 TEST(ParameterTables, TheFileFormatsPageNamesEveryParameter) {
@@ -99,7 +100,7 @@ TEST(ParameterTables, TheFileFormatsPageNamesEveryParameter) {
   const Configuration configuration;
   for_each_parameter(configuration, expect_named);
   for_each_parameter(configuration.device, expect_named);
-  for_each_environment([&](const auto& kind) { for_each_parameter(kind, expect_named); });
+  for (const EnvironmentPreset& preset : environment_presets) for_each_parameter(preset.environment, expect_named);
 }
 
 TEST(OptionNames, AreDerivedFromParameters) {

@@ -135,11 +135,17 @@ TEST_P(RecordedConfiguration, IsReadBackWhole) {
 }
 
 // No value is a default, so that a value that is not read makes the test fail.
-INSTANTIATE_TEST_SUITE_P(EveryEnvironment, RecordedConfiguration,
-                         testing::Values(Environment(Ocean{
-                                             998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
-                                         Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
-                                         Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150})));
+INSTANTIATE_TEST_SUITE_P(
+    EveryEnvironment, RecordedConfiguration,
+    testing::Values(Environment(Ocean{998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                    Environment(OceanSimple{0.7f, {0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, -0.6f}, 1.7f}),
+                    Environment(Land{{0.1f, 0, -1.62f}, 0.55f, false, 123, 150}),
+                    Environment{.water = FaceDrag{998.2f, 1.1f, 0.3f, 0.4f, {0.1f, 0.2f, 0.3f}},
+                                .ground = Plane{0.55f},
+                                .contacts = Contacts{false, 123},
+                                .gravity = {0.4f, 0.5f, -0.6f},
+                                .stiffness_scale = 1.7f},
+                    Environment{.water = PointDrag{0.7f, {0.1f, 0.2f, 0.3f}}, .ground = Plane{0.55f}}));
 
 TEST_F(Recording, SimulatesAgainFromTheFileAlone) {
   Configuration configuration = on_cpu();

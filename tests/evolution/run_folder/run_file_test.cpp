@@ -86,6 +86,7 @@ TEST(RunFile, RandomNumbersReadBackBitForBit) {
     ocean.flow = {finite(), finite(), finite()};
     ocean.density = std::abs(finite());
     settings.evolution.configuration.environment = ocean;
+    settings.evolution.configuration.environment.ground = Plane{std::abs(finite())};
     double mutation;
     do mutation = std::abs(std::bit_cast<double>(random.bits()));
     while (!std::isfinite(mutation) || mutation == 0);
