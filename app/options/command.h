@@ -34,7 +34,7 @@ class Option {
   Option as_number(bool whole) const;
 
   bool is_positional() const;
-  std::string name() const;                     // without dashes; the long one if there is one
+  std::string name() const;                      // without dashes; the long one if there is one
   std::vector<std::string> short_names() const;  // "-o"
   std::vector<std::string> long_names() const;   // "--output"
   std::string help() const;
