@@ -67,7 +67,7 @@ struct Video {
 
 struct Made {
   double rate = 0;  // frames/s
-  bool on_card = false;
+  bool on_device = false;
 };
 
 Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer, bool interop) {
@@ -75,7 +75,7 @@ Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer,
   view.interop = interop;
   VideoPipeline pipeline(offscreen, Simulation(video.configuration, video.robots), view);
   const VideoResult result = pipeline.run(writer, render::PixelFormat::yuv420, video.timing, true);
-  return {static_cast<double>(result.frames) / result.wall_seconds, pipeline.positions_on_card()};
+  return {static_cast<double>(result.frames) / result.wall_seconds, pipeline.positions_on_device()};
 }
 
 double encode(const Video& video, const std::string& output, const std::vector<render::Image>& frames) {
@@ -124,19 +124,20 @@ int measure(const Options& options) {
   const auto bytes = static_cast<double>(std::filesystem::file_size(output));
   const char* limit = encoded < drawn.rate ? "the encoder" : "drawing and simulating";
   const char* format =
-      number("json") ? "{\"simulated_on\": \"%s\", \"drawn_with\": \"%s\", \"quality\": \"%s\", \"encoder\": \"%s\", "
-                       "\"robots\": %d, "
-                       "\"width\": %d, \"height\": %d, \"drawn\": %.1f, \"on_card\": %d, \"drawn_through_host\": %.1f, "
-                       "\"encoded\": %.1f, \"exported\": %.1f, \"limit\": \"%s\", \"megabytes\": %.2f}\n"
-                     : "simulated on %s, drawn with %s, %s quality, encoded as %s: %d robots, %dx%d\n"
-                       "  simulated and drawn  %8.1f frames/s (positions on the card: %d)\n"
-                       "  ... through the host %8.1f frames/s\n"
-                       "  encoded alone        %8.1f frames/s\n"
-                       "  the whole export     %8.1f frames/s, limited by %s; %.2f MB\n";
+      number("json")
+          ? "{\"simulated_on\": \"%s\", \"drawn_with\": \"%s\", \"quality\": \"%s\", \"encoder\": \"%s\", "
+            "\"robots\": %d, "
+            "\"width\": %d, \"height\": %d, \"drawn\": %.1f, \"on_device\": %d, \"drawn_through_host\": %.1f, "
+            "\"encoded\": %.1f, \"exported\": %.1f, \"limit\": \"%s\", \"megabytes\": %.2f}\n"
+          : "simulated on %s, drawn with %s, %s quality, encoded as %s: %d robots, %dx%d\n"
+            "  simulated and drawn  %8.1f frames/s (positions on the GPU: %d)\n"
+            "  ... through the host %8.1f frames/s\n"
+            "  encoded alone        %8.1f frames/s\n"
+            "  the whole export     %8.1f frames/s, limited by %s; %.2f MB\n";
   std::printf(format, Simulation(video.configuration, video.robots).device_name().c_str(),
               offscreen.context->describe().c_str(), std::string(name_of(offscreen.renderer.quality())).c_str(),
               writer->description().c_str(), number("robots"), video.settings.size.width, video.settings.size.height,
-              drawn.rate, drawn.on_card ? 1 : 0, through_host.rate, encoded, whole, limit, bytes * 1e-6);
+              drawn.rate, drawn.on_device ? 1 : 0, through_host.rate, encoded, whole, limit, bytes * 1e-6);
   return 0;
 }
 

@@ -17,7 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 # From the paper's figure 4 (RTX 2080 Ti): about 6e9 springs/s from 5e8 springs evaluated on, up to 1e11;
-# Titan about 1e9 on the same card.
+# Titan about 1e9 on the same GPU.
 PAPER = [("Mercury as published, 2080 Ti", [5e8, 1e11], [6e9, 6e9]), ("Titan, 2080 Ti", [5e8, 1e11], [1e9, 1e9])]
 
 

@@ -5,7 +5,7 @@
     bench/window_rates.py build/bin/mercury --robots 1 12 100 1000 --seconds 8 --csv rates.csv
 
 Robots are full lattices of 10x10x10 voxels (1,331 masses, 14,230 springs). Each count runs in real time, where pictures
-count, and as fast as possible, where steps count, with positions on the card and through the host. The window is
+count, and as fast as possible, where steps count, with positions on the GPU and through the host. The window is
 unpaced: it draws as often as it can. It needs a display; the device is --device.
 """
 import argparse
@@ -77,7 +77,7 @@ def window_rates(program, robots, arguments, seconds, extra, environment):
             "robots_drawn_per_second": (frames[-1]["drawn"] - frames[0]["drawn"]) / wall,
             **{f"{part}_ms": 1e3 * median(f["cost"][part] for f in frames) for part in frames[0]["cost"]},
             "steps_per_second": (frames[-1]["steps"] - frames[0]["steps"]) / wall,
-            "on_card": int(frames[-1]["on_card"])}
+            "on_device": int(frames[-1]["on_device"])}
 
 
 def main():
@@ -98,7 +98,7 @@ def main():
             subprocess.run([arguments.program, "new", "voxel", "-q", "--voxels", arguments.voxels, "--air", "0", "--count",
                             str(count), "--format", "cbor", "-o", robots + "/"], check=True)
             alone = steps_per_second(arguments.program, robots, arguments.device, arguments.seconds)
-            for bridge in ("card", "host"):
+            for bridge in ("GPU", "host"):
                 for speed in ("1", "max"):
                     extra = ["--speed", speed] + (["--no-interop"] if bridge == "host" else [])
                     rates = window_rates(arguments.program, robots, arguments, arguments.seconds, extra, environment)

@@ -38,7 +38,7 @@ if(why_no_cuda)
   message(STATUS "Mercury: without the CUDA backend (${why_no_cuda})")
 else()
   if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
-    # Machine code for Turing to Hopper, PTX for newer cards.
+    # Machine code for Turing to Hopper, PTX for newer GPUs.
     set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90 CACHE STRING "CUDA architectures")
   endif()
   enable_language(CUDA)

@@ -16,7 +16,7 @@ namespace mercury {
 namespace {
 
 constexpr int tries_for_a_new_genome = 16;
-constexpr double interim_quantile = 0.25;  // of the living: who is behind these at a check of racing is stopped
+constexpr double interim_quantile = 0.25;  // racing stops a robot whose score is below this quantile of the living
 
 std::uint64_t seed_of_generation(std::uint64_t run, int generation) {
   return seed_of(run, static_cast<std::uint64_t>(generation));

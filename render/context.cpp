@@ -40,7 +40,7 @@ std::string gl_string(GLenum name) {
 }
 
 // The name alone of "NVIDIA H100 80GB HBM3/PCIe/SSE2" and "llvmpipe (LLVM 15.0.6, 256 bits)".
-std::string card_name(const std::string& renderer) {
+std::string gpu_name(const std::string& renderer) {
   return renderer.substr(0, std::min(renderer.find('/'), renderer.find(" (")));
 }
 
@@ -115,9 +115,9 @@ void Context::inspect(ContextKind kind, bool debug) {
                        ", Mercury draws with 4.5 or newer");
   software_ = renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos ||
               renderer.find("SWR") != std::string::npos;
-  const std::string where = software_                     ? "Mesa " + card_name(renderer) + " (software)"
-                            : kind == ContextKind::window ? card_name(renderer)
-                                                          : "EGL on " + card_name(renderer);
+  const std::string where = software_                     ? "Mesa " + gpu_name(renderer) + " (software)"
+                            : kind == ContextKind::window ? gpu_name(renderer)
+                                                          : "EGL on " + gpu_name(renderer);
   description_ = where + (kind == ContextKind::osmesa ? " through OSMesa" : "") + ", OpenGL " + version.substr(0, 3);
   if (!debug) return;
   glEnable(GL_DEBUG_OUTPUT);
@@ -138,7 +138,7 @@ std::unique_ptr<Context> make_context(const ContextOptions& options) {
       return nullptr;
     }
   };
-  if (auto context = attempt(ContextKind::egl, "EGL on a card", [&] { return make_egl_card_context(options); }))
+  if (auto context = attempt(ContextKind::egl, "EGL on a GPU", [&] { return make_egl_gpu_context(options); }))
     return context;
   if (auto context = attempt(ContextKind::mesa, "Mesa through EGL", [&] { return make_egl_mesa_context(options); }))
     return context;

@@ -19,7 +19,7 @@ class ContextError : public std::runtime_error {
 
 enum class ContextKind {
   automatic,  // the first of the following that works
-  egl,        // EGL on a graphics card
+  egl,        // EGL on a GPU
   mesa,       // Mesa's software renderer through EGL
   osmesa,     // Mesa's software renderer through OSMesa, which needs no EGL
   window,     // of a window, adopted

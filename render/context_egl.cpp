@@ -147,10 +147,10 @@ std::unique_ptr<Context> first_that_works(bool software, ContextKind kind, const
 
 }  // namespace
 
-std::unique_ptr<Context> make_egl_card_context(const ContextOptions& options) {
+std::unique_ptr<Context> make_egl_gpu_context(const ContextOptions& options) {
   require_egl();
   auto context = first_that_works(false, ContextKind::egl, options);
-  if (context->is_software()) throw ContextError("the card's driver fell back to software");
+  if (context->is_software()) throw ContextError("the GPU's driver fell back to software");
   return context;
 }
 

@@ -8,7 +8,7 @@
 
 namespace mercury::render {
 
-std::unique_ptr<Context> make_egl_card_context(const ContextOptions& options);
+std::unique_ptr<Context> make_egl_gpu_context(const ContextOptions& options);
 std::unique_ptr<Context> make_egl_mesa_context(const ContextOptions& options);
 std::unique_ptr<Context> make_osmesa_context(const ContextOptions& options);
 

@@ -12,13 +12,12 @@ void throw_if_gl_failed() {
   bool out_of_memory = false;
   for (int i = 0; i < most_flags; ++i) {
     const GLenum error = glGetError();
-    if (error == GL_CONTEXT_LOST) throw ContextError("the graphics card was reset while it drew");
+    if (error == GL_CONTEXT_LOST) throw ContextError("the GPU was reset while it drew");
     if (error == GL_OUT_OF_MEMORY) out_of_memory = true;
     if (error == GL_NO_ERROR) break;
   }
   if (out_of_memory)
-    throw ContextError(
-        "the graphics card has no memory left to draw with: make the picture smaller or free some memory");
+    throw ContextError("the GPU has no memory left to draw with: make the picture smaller or free some memory");
 }
 
 }  // namespace mercury::render

@@ -4,7 +4,7 @@
 
 namespace mercury::render {
 
-// Throws ContextError, with one line, if the current context has run out of memory or has lost its card since the
+// Throws ContextError, with one line, if the current context has run out of memory or has lost its GPU since the
 // last call: what was drawn since then is wrong. Other errors are for Context::take_messages().
 void throw_if_gl_failed();
 

@@ -35,7 +35,7 @@ const std::uint8_t* HostBuffer::finish() {
   const GLenum outcome = glClientWaitSync(fence_, GL_SYNC_FLUSH_COMMANDS_BIT, patience);
   forget();
   if (outcome != GL_ALREADY_SIGNALED && outcome != GL_CONDITION_SATISFIED)
-    throw ContextError("the card did not finish a picture within 20 s");
+    throw ContextError("the GPU did not finish a picture within 20 s");
   throw_if_gl_failed();
   return mapped_;
 }

@@ -16,7 +16,7 @@ std::string shortest_text(Whole value) {
   return std::to_string(value);
 }
 
-// With that many digits behind the point: "3.14".
+// With that many digits after the point: "3.14".
 std::string fixed_text(double value, int digits);
 
 }  // namespace mercury

@@ -40,7 +40,7 @@ constexpr std::size_t most_parents = 16;
   throw InputError("/origin/ancestry" + place, what);
 }
 
-// The position behind a JSON string that begins at `begin`.
+// The position after a JSON string that begins at `begin`.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   for (std::size_t i = begin + 1; i < text.size(); ++i) {
     if (text[i] == '\\')

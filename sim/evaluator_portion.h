@@ -23,7 +23,7 @@ struct Candidate {
 struct Portion {
   std::size_t first = 0;  // index of the first candidate in the source
   std::vector<Candidate> candidates;
-  bool is_last = false;  // the source ends behind it
+  bool is_last = false;  // the source ends after it
 
   std::size_t bytes() const;
   std::vector<std::shared_ptr<const Robot>> robots() const;  // those that can be used

@@ -31,7 +31,7 @@ std::vector<std::string> lines_of(const std::string& path) {
   return lines;
 }
 
-// The number behind a word in one of the lines of a system file; with an empty word, the first number. None if there is
+// The number after a word in one of the lines of a system file; with an empty word, the first number. None if there is
 // no such line, or it has no number ("max").
 std::optional<std::size_t> number_in(const std::string& path, const std::string& word) {
   for (const std::string& line : lines_of(path)) {

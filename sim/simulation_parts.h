@@ -49,7 +49,7 @@ struct Simulation::Parts {
   void require(std::size_t robot) const;
   void require_material(std::size_t robot, MaterialId id) const;
 
-  // Checks robots and takes them behind the others, without the backend. Throws InputError, and has no effect then.
+  // Checks robots and takes them after the others, without the backend. Throws InputError, and has no effect then.
   void append(std::span<const std::shared_ptr<const Robot>> added, const WorkWatch& watch = {});
   // Forgets the robots from this index on, without the backend.
   void truncate(std::size_t size);

@@ -25,7 +25,7 @@ std::string name_of_option(const std::string& argument) {
   return argument.starts_with("--") ? argument.substr(0, argument.find('=')) : argument.substr(0, 2);
 }
 
-// Splits a command line into the words of its command, the options before them and the arguments behind them.
+// Splits a command line into the words of its command, the options before them and the arguments after them.
 class Reordering {
  public:
   Reordering(const Command& program, const std::vector<std::string>& given) : program_(program), given_(given) {}

@@ -17,9 +17,9 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t first_column = 28;  // names of options; their explanations begin behind it
+constexpr std::size_t first_column = 28;  // names of options; their explanations begin after it
 
-// Lines of text behind names, as in "  --dt S        Time step".
+// Lines of text after names, as in "  --dt S        Time step".
 std::string entry(const std::string& name, const std::string& text, std::size_t columns) {
   std::string result = "  " + name;
   const std::vector<std::string> lines = wrapped(text, columns - first_column);
@@ -51,7 +51,7 @@ std::string usage_of(const std::string& name, const std::vector<OptionDescriptio
   return text + " [OPTIONS]";
 }
 
-// A prose paragraph is wrapped; indented lines, which are examples, stay as they are. An explanation behind an example
+// A prose paragraph is wrapped; indented lines, which are examples, stay as they are. An explanation after an example
 // that is too wide moves to a line of its own.
 std::string footer_page(const std::string& footer, std::size_t columns) {
   std::string page, paragraph;
@@ -115,7 +115,7 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   std::vector<std::string> lines;
   for (std::size_t start = 0; start < text.size();) {
     std::size_t end = std::min(text.find(' ', start), text.size());
-    // Long lists break behind a comma.
+    // Long lists break after a comma.
     const std::size_t comma = end - start > columns ? text.rfind(',', start + columns - 1) : std::string::npos;
     if (comma != std::string::npos && comma > start) end = comma + 1;
     const std::string word = text.substr(start, end - start);

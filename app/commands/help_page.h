@@ -20,7 +20,7 @@ std::vector<std::string> groups_of(const std::vector<OptionDescription>& options
 // The width of the terminal that standard output is, else COLUMNS, else 80; from 40 to 100.
 int columns_of_standard_output();
 
-// The text in lines of at most `columns` letters, broken at spaces; words that are longer break behind commas.
+// The text in lines of at most `columns` letters, broken at spaces; words that are longer break after commas.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
 
 }  // namespace mercury

@@ -31,7 +31,7 @@ namespace mercury {
 namespace {
 
 constexpr const char* footer =
-    "Options may stand before or behind the name of the command, and in a file for --config.\n\n"
+    "Options may stand before or after the name of the command, and in a file for --config.\n\n"
     "Examples:\n"
     "  mercury view                                       the sample robots in a window\n"
     "  mercury render --random voxel:12 -o group.mp4      a video of twelve random robots\n"
@@ -119,7 +119,7 @@ class Program {
 
  private:
   void add_help_command(const Command& program) {
-    // command_line() puts --help behind the words instead.
+    // command_line() puts --help after the words instead.
     program.add_command("help", "Explain a command, as in mercury help new voxel")
         .add_list("COMMAND", words_of_help_, "A command, and the kind of robots of new")
         .offering(names_of_commands(program));

@@ -112,7 +112,7 @@ class Filming {
     }
     say(fmt::format("drawing with {}, {} quality{}", offscreen_->context->describe(),
                     name_of(offscreen_->renderer.quality()),
-                    pipeline.positions_on_card() ? ", positions stay on the card" : ""));
+                    pipeline.positions_on_device() ? ", positions stay on the GPU" : ""));
     if (!pipeline.bridge_note().empty()) say(pipeline.bridge_note());
     say(fmt::format("encoding {}", writer.description()));
   }

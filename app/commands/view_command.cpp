@@ -159,7 +159,7 @@ void add_view_command(const Command& program, const Choose& choose) {
   command.add_flag("--paused", options->paused, "Start paused").in_group("Window");
   command
       .add_flag("--no-interop", options->no_interop,
-                "Copy positions through the host even where CUDA and OpenGL can share them on the card")
+                "Copy positions through the host even where CUDA and OpenGL can share them on the GPU")
       .in_group("Window");
   command
       .add_flag("--unpaced", options->unpaced,

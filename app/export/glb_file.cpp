@@ -26,7 +26,7 @@ constexpr std::size_t largest_glb = std::size_t{64} << 20;  // of the frames [by
 
 ordered_json shortest_numbers(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 
-// The document, and the numbers behind it.
+// The document, and the numbers after it.
 class Document {
  public:
   ordered_json json;

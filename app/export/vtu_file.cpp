@@ -30,7 +30,7 @@ constexpr const char* vtk_type() {
   if constexpr (std::is_same_v<Value, std::int32_t>) return "Int32";
 }
 
-// Arrays behind the document, each compressed as one block.
+// Arrays after the document, each compressed as one block.
 class AppendedArrays {
  public:
   // The element that describes an array.

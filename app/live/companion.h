@@ -7,7 +7,7 @@
 //   companion    *------+------+---x----+--->
 //
 // The companion begins at a moment of the first batch, in the states that its robots have then. From there on it is
-// stepped behind each slice of the first batch's steps, on the same thread, so that both always show the same time.
+// stepped after each slice of the first batch's steps, on the same thread, so that both always show the same time.
 // Before that moment both were one: an earlier moment of the timeline shows copies. The keyframes of later moments hold
 // the states of both.
 #pragma once

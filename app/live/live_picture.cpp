@@ -167,11 +167,11 @@ std::span<const render::Bounds> LivePicture::bounds() const {
 }
 void LivePicture::set_bridge(std::shared_ptr<PositionBridge> bridge) { parts_->bridge = std::move(bridge); }
 void LivePicture::show_positions(render::Renderer& renderer) {
-  if (parts_->shown.card) parts_->bridge->show(*parts_->shown.card, renderer, scene());
+  if (parts_->shown.device) parts_->bridge->show(*parts_->shown.device, renderer, scene());
 }
-bool LivePicture::positions_on_card() const { return parts_->shown.card != nullptr; }
+bool LivePicture::positions_on_device() const { return parts_->shown.device != nullptr; }
 std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
-  if (parts_->shown.card) return parts_->snapshot->positions_of(robot);
+  if (parts_->shown.device) return parts_->snapshot->positions_of(robot);
   const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }

@@ -35,12 +35,12 @@ class LivePicture {
   // Changes when the bodies change. Then call set_bodies() before drawing.
   std::uint64_t bodies_revision() const;
   void set_bodies(render::Renderer& renderer) const;
-  // The bridge by which positions on the card get into the renderer. Its context must be current when it is replaced
+  // The bridge by which positions on the GPU get into the renderer. Its context must be current when it is replaced
   // and in the destructor.
   void set_bridge(std::shared_ptr<PositionBridge> bridge);
-  // Hands positions that are on the card to the renderer, which has these bodies. Call it before drawing.
+  // Hands positions that are on the GPU to the renderer, which has these bodies. Call it before drawing.
   void show_positions(render::Renderer& renderer);
-  bool positions_on_card() const;  // of the snapshot
+  bool positions_on_device() const;  // of the snapshot
   // The scene with positions. The caller may change texts such as caption, clock and labels until the next update.
   render::Scene& scene();
   // Bounds per robot of the snapshot, with offsets. Those of exploded robots are empty unless all robots have exploded.

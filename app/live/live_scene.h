@@ -101,7 +101,7 @@ class LiveScene {
   std::vector<Message> take_messages();
   std::string device_name() const;
   int cuda_device() const;  // of all robots; -1 = none, or several
-  // Positions stay on the card and reach the renderer by this bridge. The bridge's context must be current in the
+  // Positions stay on the GPU and reach the renderer by this bridge. The bridge's context must be current in the
   // destructor.
   void set_bridge(std::shared_ptr<PositionBridge> bridge);
 

@@ -124,7 +124,7 @@ class Physics {
   const Measurements& measurements() const;
   std::string device_name() const;
   int cuda_device() const;  // of all robots; -1 = none, or several
-  // Snapshots leave positions on the card, for this bridge. Until then, and if that fails, they are on the host.
+  // Snapshots leave positions on the GPU, for this bridge. Until then, and if that fails, they are on the host.
   void set_bridge(std::shared_ptr<PositionBridge> bridge);
 
   // Waits until all commands are carried out, steps included, and newest() shows the result.

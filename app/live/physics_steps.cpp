@@ -19,7 +19,7 @@ void Physics::Parts::begin_pace() {
   gauge.mark(wall_now(), simulation.time());
 }
 
-// A card that also draws switches to the steps and back in about 2 ms, so they come once per picture: when the window
+// A GPU that also draws switches to the steps and back in about 2 ms, so they come once per picture: when the window
 // wants a snapshot, else after this many.
 std::int64_t Physics::Parts::steps_at_once() const {
   constexpr double launch_period = 0.05;  // wall time [s]

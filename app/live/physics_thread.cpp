@@ -27,18 +27,18 @@ void Physics::Parts::run() {
   }
 }
 
-// Waits for commands or for the time of the next step; on a card that the window watches, for that of its next picture.
+// Waits for commands or for the time of the next step; on a GPU that the window watches, for that of its next picture.
 // Returns false when the thread must end.
 bool Physics::Parts::wait_for_commands(PendingCommands& taken) {
   std::unique_lock lock(mutex);
-  const bool runs_on_card = cuda_device >= 0 && is_running() && std::isfinite(speed), was_wanted = snapshot_wanted;
+  const bool runs_on_device = cuda_device >= 0 && is_running() && std::isfinite(speed), was_wanted = snapshot_wanted;
   const double next_due = pace.next_due(was_wanted ? 1 : steps_at_once());
   const auto due =
       std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
           std::chrono::duration<double>(playing && std::isfinite(speed) ? std::min(next_due, wall_now() + 1) : 0)));
   const auto ready = [&] {
     return pending.any() || (dirty && (snapshot_wanted || ticket > tickets_done)) ||
-           (runs_on_card && snapshot_wanted && !was_wanted);
+           (runs_on_device && snapshot_wanted && !was_wanted);
   };
   if (steps_left == 0 && !seek_target && !ready()) {
     tickets_done = ticket;
@@ -213,7 +213,7 @@ bool Physics::Parts::may_publish() const {
 void Physics::Parts::take_positions(SnapshotPositions& positions) {
   const std::size_t masses = simulation.mass_count();
   try {
-    if (bridge && masses > 0) return positions.set_on_card(bridge->take(simulation), masses);
+    if (bridge && masses > 0) return positions.set_on_device(bridge->take(simulation), masses);
   } catch (const DeviceError& error) {
     messages.add(Severity::note, std::string("positions are copied through the host: ") + error.what());
     bridge.reset();

@@ -126,7 +126,7 @@ void Population::start_over() {
   robots_ = listed({}, *robots_, true);
 }
 
-// Keeps the robots that stay, adds the new ones behind them, then sorts all into the wanted order.
+// Keeps the robots that stay, adds the new ones after them, then sorts all into the wanted order.
 void Population::arrange(const std::vector<LiveRobot>& wanted) {
   std::vector<std::size_t> staying, indices(wanted.size()), added;
   std::vector<std::shared_ptr<const Robot>> robots;

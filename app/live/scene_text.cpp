@@ -44,7 +44,7 @@ std::vector<Form> forms_of(const std::vector<SceneRobot>& robots) {
 // The options of a kind's generator are written once.
 void keep_one_shape_per_kind(const std::vector<SceneRobot>& robots, std::vector<Form>& forms) {
   std::map<std::string, OptionValues> shapes;
-  std::size_t last_other = 0;  // one behind the last random robot that needs a file
+  std::size_t last_other = 0;  // one past the last random robot that needs a file
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (forms[i] != Form::random) continue;
     const RandomRobots& generation = *robots[i].robot->source.generation;

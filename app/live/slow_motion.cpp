@@ -49,8 +49,8 @@ SlowMotion::Shown SlowMotion::at(double wall) {
   const Snapshot& newest = *snapshots_.back();
   if (snapshots_.size() < 2 || !is_slow(newest)) {
     shown_ = newest.time;
-    if (newest.positions.card())
-      return {.time = newest.time, .positions = {}, .card = newest.positions.card(), .telemetry = newest.telemetry};
+    if (newest.positions.device())
+      return {.time = newest.time, .positions = {}, .device = newest.positions.device(), .telemetry = newest.telemetry};
     return {.time = newest.time, .positions = newest.positions.host(), .telemetry = newest.telemetry};
   }
   shown_ = wanted(wall);

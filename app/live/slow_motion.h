@@ -28,8 +28,8 @@ class SlowMotion {
 
   struct Shown {
     double time = 0;                  // simulated [s]
-    std::span<const Vec3> positions;  // on the host; empty if they are on the card
-    const PositionSnapshot* card = nullptr;
+    std::span<const Vec3> positions;  // on the host; empty if they are on the GPU
+    const PositionSnapshot* device = nullptr;
     std::span<const Telemetry> telemetry;  // of the newest snapshot, with interpolated centers of mass
   };
   // The picture at a wall time [s]. The spans are valid until the next call of either member.

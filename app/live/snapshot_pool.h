@@ -27,7 +27,7 @@ class SnapshotPool {
     if (!snapshot) snapshot = std::make_unique<Snapshot>();
     return {snapshot.release(), [free = free_](Snapshot* done) {
               std::unique_ptr<Snapshot> owned(done);
-              owned->positions.release_card();
+              owned->positions.release_device();
               owned->second.reset();
               owned->ghosts.reset();
               const std::lock_guard lock(free->mutex);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The positions of a snapshot: on the host, or on the card until somebody on the host asks for them.
+// The positions of a snapshot: on the host, or on the GPU until somebody on the host asks for them.
 #pragma once
 
 #include <memory>
@@ -17,18 +17,18 @@ class SnapshotPositions {
   std::size_t size() const { return size_; }  // number of masses
   // Positions on the host, to be written [m].
   std::span<Vec3> set_on_host(std::size_t masses);
-  void set_on_card(std::unique_ptr<PositionSnapshot> positions, std::size_t masses);
-  // Gives back the memory of the card.
-  void release_card() { card_.reset(); }
+  void set_on_device(std::unique_ptr<PositionSnapshot> positions, std::size_t masses);
+  // Gives back the memory of the GPU.
+  void release_device() { device_.reset(); }
 
   // Null = they are on the host.
-  const PositionSnapshot* card() const { return card_.get(); }
-  // The first call copies them from the card and waits for that. Throws DeviceError.
+  const PositionSnapshot* device() const { return device_.get(); }
+  // The first call copies them from the GPU and waits for that. Throws DeviceError.
   std::span<const Vec3> host() const;
 
  private:
   std::size_t size_ = 0;
-  std::unique_ptr<PositionSnapshot> card_;
+  std::unique_ptr<PositionSnapshot> device_;
   mutable std::mutex mutex_;
   mutable bool on_host_ = true;
   mutable std::vector<Vec3> host_;

@@ -17,7 +17,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-// What stands behind the option in a help text, as in "--edge M".
+// What stands after the option in a help text, as in "--edge M".
 struct Form {
   const GeneratorParameter& parameter;
 

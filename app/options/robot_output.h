@@ -36,7 +36,7 @@ std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, st
 // work begins.
 using RobotNames = std::function<bool(std::string_view name)>;
 
-// The names of robots 0 .. count - 1, each of which ends with its number, behind something that is no digit.
+// The names of robots 0 .. count - 1, each of which ends with its number, after something that is no digit.
 RobotNames numbered_names(std::function<std::string(std::uint64_t index)> name_of, std::uint64_t count);
 
 // Where the robots of a command go, checked. Made by RobotOutput::open().

@@ -50,9 +50,9 @@ void VideoOptions::add_to(const Command& command) {
   add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
                  "Quality of the drawing (default auto: high on a GPU, low without)"));
   add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},
-                 "OpenGL: a card (egl) or the processor (mesa, osmesa); default auto, the first that works"));
+                 "OpenGL: a GPU (egl) or the processor (mesa, osmesa); default auto, the first that works"));
   add(command.add_flag("--no-interop", no_interop_,
-                       "Copy positions through the host even where CUDA and OpenGL can share them on the card"));
+                       "Copy positions through the host even where CUDA and OpenGL can share them on the GPU"));
   add(add_number(command, "--crf", crf_,
                  "Of the encoding: lower is better and larger, 0 is lossless (default 18 .mp4, 30 .webm)", "N"));
   add(add_text(command, "--ffmpeg", ffmpeg_, "The encoder (default: MERCURY_FFMPEG, else ffmpeg)", "PROGRAM"));

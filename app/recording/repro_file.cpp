@@ -38,7 +38,7 @@ Json json_of(std::span<const Perturbation> perturbations) {
   return list;
 }
 
-// The materials that changed, as [id, stiffness, amplitude, frequency, phase], and true behind it for half waves.
+// The materials that changed, as [id, stiffness, amplitude, frequency, phase], and true after it for half waves.
 Json changes_of(std::span<const Material> before, std::span<const Material> after) {
   Json list = Json::array();
   for (std::size_t id = 0; id < after.size(); ++id)

@@ -41,7 +41,7 @@ struct NumberType {
 template <class Number>
 NumberType number_type();
 
-// Materials as compounds of four floats, named as its members, and behind them half_wave as h5py writes a bool: an enum
+// Materials as compounds of four floats, named as its members, and after them half_wave as h5py writes a bool: an enum
 // of FALSE and TRUE. Tables that need no half_wave do not have it.
 Handle material_type(bool half_wave);         // in the file
 Handle material_memory_type(bool half_wave);  // of a Material

@@ -5,10 +5,10 @@
 //   drawing thread      wait for the mark; copy from the same     (OpenGL)
 //                       memory into the renderer's buffer; fence
 //
-// 1. The memory belongs to both interfaces all the time (card_memory.h). Mapping an OpenGL buffer in CUDA for each
+// 1. The memory belongs to both interfaces all the time (device_memory.h). Mapping an OpenGL buffer in CUDA for each
 //    picture would make each side wait until the other has nothing left to do.
 // 2. A store is written again only after its fence: OpenGL has read it.
-// 3. The copy belongs to the steps: work of its own would have to wait until the card has drawn something, and switches
+// 3. The copy belongs to the steps: work of its own would have to wait until the GPU has drawn something, and switches
 //    between drawing and computing cost more than the copy.
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/video/card_memory.h"
+#include "app/video/device_memory.h"
 #include "app/video/position_bridge.h"
 #include "mercury/error.h"
 
@@ -69,10 +69,10 @@ class Fence {
 
 // Room for the positions of one snapshot in memory that several stores share.
 struct Store {
-  Store(std::shared_ptr<const CardMemory> block, std::size_t begin, std::size_t bytes)
+  Store(std::shared_ptr<const DeviceMemory> block, std::size_t begin, std::size_t bytes)
       : memory(std::move(block)), offset(begin), size(bytes) {}
   float* data() const { return reinterpret_cast<float*>(static_cast<char*>(memory->data()) + offset); }
-  std::shared_ptr<const CardMemory> memory;
+  std::shared_ptr<const DeviceMemory> memory;
   std::size_t offset, size;  // [bytes]
   Mark taken;
 };
@@ -98,7 +98,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
     // Making memory that OpenGL can read takes milliseconds, so it is made for several stores at once.
     constexpr std::size_t stores = 8, alignment = 256;
     const std::size_t each = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-    const auto block = std::make_shared<const CardMemory>(device_, stores * each);
+    const auto block = std::make_shared<const DeviceMemory>(device_, stores * each);
     for (std::size_t i = 1; i < stores; ++i) free_.push_back(std::make_unique<Store>(block, i * each, each));
     return std::make_unique<Store>(block, 0, each);
   }
@@ -142,8 +142,8 @@ class CudaBridge final : public PositionBridge {
  public:
   explicit CudaBridge(int device) : device_(device), pool_(std::make_shared<Pool>(device)) {
     // Finds out now whether the two share memory.
-    const CardMemory memory(device, 1);
-    const CardBuffer buffer(memory);
+    const DeviceMemory memory(device, 1);
+    const DeviceBuffer buffer(memory);
   }
 
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
@@ -161,7 +161,7 @@ class CudaBridge final : public PositionBridge {
     const auto& shown = dynamic_cast<const CudaSnapshot&>(snapshot);
     check(cudaSetDevice(device_), "choosing the device");
     while (!in_use_.empty() && in_use_.front().fence.passed()) in_use_.pop_front();
-    const CardBuffer& buffer = buffer_of(shown.store()->memory);
+    const DeviceBuffer& buffer = buffer_of(shown.store()->memory);
     shown.store()->taken.wait();
     if (renderer.mass_count() != shown.masses())
       throw std::logic_error("the renderer's bodies are not those of the simulation");
@@ -173,19 +173,19 @@ class CudaBridge final : public PositionBridge {
 
  private:
   struct Import {
-    std::weak_ptr<const CardMemory> memory;
-    std::unique_ptr<CardBuffer> buffer;
+    std::weak_ptr<const DeviceMemory> memory;
+    std::unique_ptr<DeviceBuffer> buffer;
   };
   struct InUse {
     Fence fence;
     std::shared_ptr<Store> store;
   };
 
-  const CardBuffer& buffer_of(const std::shared_ptr<const CardMemory>& memory) {
+  const DeviceBuffer& buffer_of(const std::shared_ptr<const DeviceMemory>& memory) {
     std::erase_if(imports_, [](const Import& import) { return import.memory.expired(); });
     const auto known = std::ranges::find_if(imports_, [&](const Import& i) { return i.memory.lock() == memory; });
     if (known != imports_.end()) return *known->buffer;
-    imports_.push_back({memory, std::make_unique<CardBuffer>(*memory)});
+    imports_.push_back({memory, std::make_unique<DeviceBuffer>(*memory)});
     return *imports_.back().buffer;
   }
 
@@ -210,7 +210,7 @@ int cuda_device_of_current_context() {
 std::unique_ptr<PositionBridge> make_cuda_bridge(int simulating) {
   if (simulating < 0) throw NoInterop("the robots are not on one CUDA device");
   const int drawing = cuda_device_of_current_context();
-  if (drawing < 0) throw NoInterop("OpenGL does not draw on a card that CUDA knows");
+  if (drawing < 0) throw NoInterop("OpenGL does not draw on a GPU that CUDA knows");
   if (drawing != simulating)
     throw NoInterop("CUDA device " + std::to_string(simulating) + " simulates, device " + std::to_string(drawing) +
                     " draws");

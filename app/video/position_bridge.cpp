@@ -68,8 +68,8 @@ std::unique_ptr<PositionBridge> make_host_bridge() { return std::make_unique<Hos
 ChosenBridge choose_bridge(int cuda_device, bool interop) {
   if (!interop || cuda_device < 0) return {.bridge = make_host_bridge()};
   try {
-    return {.bridge = make_cuda_bridge(cuda_device), .on_card = true};
-  } catch (const std::runtime_error& error) {  // NoInterop, or the card has no memory left
+    return {.bridge = make_cuda_bridge(cuda_device), .on_device = true};
+  } catch (const std::runtime_error& error) {  // NoInterop, or the GPU has no memory left
     return {.bridge = make_host_bridge(),
             .note = std::string("positions are copied through the host: ") + error.what()};
   }

@@ -8,7 +8,7 @@
 //
 // 1. A snapshot is a copy, because the simulation has stepped on when it is drawn.
 // 2. The CUDA bridge copies twice, simulation -> snapshot -> the renderer's buffer, because there is one such buffer
-//    and several snapshots may be waiting. Both copies stay on the card.
+//    and several snapshots may be waiting. Both copies stay on the GPU.
 #pragma once
 
 #include <memory>
@@ -61,8 +61,8 @@ int cuda_device_of_current_context();
 
 struct ChosenBridge {
   std::unique_ptr<PositionBridge> bridge;
-  bool on_card = false;  // positions do not pass through the host
-  std::string note;      // why they do although a GPU simulates; empty = nothing to say
+  bool on_device = false;  // positions do not pass through the host
+  std::string note;        // why they do although a GPU simulates; empty = nothing to say
 };
 // The CUDA bridge if `interop` allows it and it works with the device that simulates (Simulation::cuda_device()), else
 // the host's. The rules of make_cuda_bridge() apply.

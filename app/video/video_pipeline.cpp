@@ -87,8 +87,8 @@ VideoPipeline::~VideoPipeline() = default;
 
 const Simulation& VideoPipeline::simulation() const { return sides_.front()->simulation; }
 
-bool VideoPipeline::positions_on_card() const {
-  return std::ranges::all_of(sides_, [](const auto& side) { return side->bridge.on_card; });
+bool VideoPipeline::positions_on_device() const {
+  return std::ranges::all_of(sides_, [](const auto& side) { return side->bridge.on_device; });
 }
 
 const std::string& VideoPipeline::bridge_note() const { return sides_.front()->bridge.note; }

@@ -40,7 +40,7 @@ class VideoPipeline {
 
   const Simulation& simulation() const;  // the first
   // Whether positions go from the simulation to the picture without leaving the GPU.
-  bool positions_on_card() const;
+  bool positions_on_device() const;
   // Why they pass through the host although a GPU simulates; empty if there is nothing to say.
   const std::string& bridge_note() const;
   // See run_video_stages().

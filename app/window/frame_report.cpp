@@ -109,7 +109,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"cut", scene.view().cut ? scene.view().cut->percent : -1},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
-                      {"on_card", scene.picture().positions_on_card()},
+                      {"on_device", scene.picture().positions_on_device()},
                       {"speed", scene.snapshot().achieved_speed},
                       {"drawn", picture.drawn},
                       {"clock", seconds()},

@@ -7,15 +7,15 @@ namespace mercury::window {
 namespace {
 
 constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
-constexpr double rare_frame_time = 1.0 / 20;  // while the card is left to the steps [s]
-constexpr double picture_share = 0.05;        // of the card's time, then
+constexpr double rare_frame_time = 1.0 / 20;  // while the GPU is left to the steps [s]
+constexpr double picture_share = 0.05;        // of the GPU's time, then
 // While input is waiting, frames are left out for this multiple of the time that the last one took.
 constexpr double backlog_factor = 4;
 
 }  // namespace
 
-double Pacing::wait(double spent, bool card_for_steps) const {
-  if (card_for_steps) return std::max(0.0, rare_frame_time - spent);
+double Pacing::wait(double spent, bool gpu_for_steps) const {
+  if (gpu_for_steps) return std::max(0.0, rare_frame_time - spent);
   return paced_ ? std::max(0.0, frame_time - spent) : 0;
 }
 
@@ -23,8 +23,8 @@ bool Pacing::leaves_out_frame(bool backlog) const {
   return backlog && since(shown_at_) < backlog_factor * frame_seconds_;
 }
 
-bool Pacing::keeps_picture(bool card_for_steps, double draw_seconds) const {
-  return card_for_steps && since(drawn_at_) < (1 / picture_share - 1) * draw_seconds;
+bool Pacing::keeps_picture(bool gpu_for_steps, double draw_seconds) const {
+  return gpu_for_steps && since(drawn_at_) < (1 / picture_share - 1) * draw_seconds;
 }
 
 void Pacing::showed_frame(double seconds) {

@@ -11,13 +11,13 @@ class Pacing {
   // `paced`: at most as often as displays show pictures; otherwise as often as possible.
   explicit Pacing(bool paced) : paced_(paced) {}
 
-  // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `card_for_steps`: the user
-  // only watches robots that step as fast as a card can, and what drawing takes of its time is missing there.
-  double wait(double spent, bool card_for_steps) const;
+  // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `gpu_for_steps`: the user
+  // only watches robots that step as fast as a GPU can, and what drawing takes of its time is missing there.
+  double wait(double spent, bool gpu_for_steps) const;
   // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
   bool leaves_out_frame(bool backlog) const;
-  // Whether the robots of the last picture stay: then pictures get a small share of the card's time.
-  bool keeps_picture(bool card_for_steps, double draw_seconds) const;
+  // Whether the robots of the last picture stay: then pictures get a small share of the GPU's time.
+  bool keeps_picture(bool gpu_for_steps, double draw_seconds) const;
 
   void drew_robots() { drawn_at_ = Clock::now(); }
   void showed_frame(double seconds);  // that drawing and showing it took

@@ -70,7 +70,7 @@ class Viewer {
   void present();
   void update_screenshot();
   bool anything_moves() const;
-  bool leaves_card_to_steps() const;
+  bool leaves_gpu_to_steps() const;
 
   FrameReport report_;  // first member, since it measures the time from the start
   ViewerOptions options_;
@@ -124,7 +124,7 @@ Viewer::Viewer(ViewerOptions options)
       imgui_(window_, folder_.empty() ? folder_ : folder_ / "window.ini"),
       viewport_(window_.gl_context(), preferences_.quality), second_(window_.gl_context()),
       scene_({.configuration = options_.configuration, .view = options_.view}), pacing_(options_.paced) {
-  if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_card)
+  if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_device)
     scene_.set_bridge(std::move(chosen.bridge));
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
                       .menu = [this](const Hit& hit) { open_robot_menu(context_, hit); }});
@@ -155,7 +155,7 @@ int Viewer::run() {
     }
     const double spent = since(last);
     window_.poll(window_.input().has_backlog() ? 0
-                 : anything_moves()            ? pacing_.wait(spent, leaves_card_to_steps())
+                 : anything_moves()            ? pacing_.wait(spent, leaves_gpu_to_steps())
                                                : idle_time);
     const double dt = since(last);
     last = Clock::now();
@@ -326,7 +326,7 @@ void Viewer::update_renderer() {
   }
 }
 
-bool Viewer::leaves_card_to_steps() const {
+bool Viewer::leaves_gpu_to_steps() const {
   if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
   return redraws_ == 0 && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
 }
@@ -343,7 +343,7 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
-  if (pacing_.keeps_picture(leaves_card_to_steps(), viewport_.draw_seconds())) return;
+  if (pacing_.keeps_picture(leaves_gpu_to_steps(), viewport_.draw_seconds())) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   times_.positions = since(begin);

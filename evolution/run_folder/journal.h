@@ -47,7 +47,7 @@ inline constexpr std::size_t journal_header_size = 40;  // bytes
 //
 // A record is appended by one write and is on the disk before the next one is begun, so only the last record can be cut
 // off (by kill -9, a power cut, a full disk). Readers ignore such a record, and the writer that goes on removes it. A
-// damaged record with a sound one behind it was not cut off: that is an error, and nothing is removed.
+// damaged record with a sound one after it was not cut off: that is an error, and nothing is removed.
 //
 // The writer holds a lock (flock) on the file; readers need none, because what they have read does not change.
 inline constexpr std::string_view journal_name = "genomes";  // in a run folder
@@ -88,7 +88,7 @@ class JournalWriter {
   // Locks the file. Throws InputError if another process has it locked.
   static JournalWriter open(const std::filesystem::path& path);
 
-  // Removes what is behind `end`: a record that was cut off.
+  // Removes what is after `end`: a record that was cut off.
   void cut(std::uint64_t end);
   // The record is on the disk when this returns. If it cannot be written, throws InputError, and the file is as it was.
   // Offsets in record.genomes do not matter.

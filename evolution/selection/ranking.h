@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders and draws that algorithms share.
+// Rankings and random choices that several algorithms use.
 #pragma once
 
 #include <cmath>

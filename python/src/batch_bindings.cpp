@@ -45,7 +45,7 @@ Raises InputError for a value or a robot that breaks a rule, DeviceError if the 
 constexpr const char* step_description =
     R"(Advances every robot that has not exploded by `n` time steps.
 
-On the CPU it returns when they are done. On CUDA it returns at once: the steps are queued in `stream`, behind what is
+On the CPU it returns when they are done. On CUDA it returns at once: the steps are queued in `stream`, after what is
 there, and what follows in the stream comes after them. stream: the handle of a CUDA stream, or an object with
 __cuda_stream__, cuda_stream (PyTorch) or ptr (CuPy); None = the legacy default stream, which PyTorch uses by default.
 

@@ -197,7 +197,7 @@ except mercurysim.DeviceError as error:
 print(robot._repr_png_())
 """
     nowhere = str(tmp_path / "none")
-    # Neither of Mesa's ways to OpenGL, nor a card's.
+    # Neither of Mesa's ways to OpenGL, nor a GPU's.
     done = run(code, tmp_path, MESA_GL_VERSION_OVERRIDE="3.3", __EGL_VENDOR_LIBRARY_FILENAMES=nowhere)
     lines = done.stdout.splitlines()
     if lines[:1] == ["draws"]:

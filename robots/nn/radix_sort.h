@@ -16,7 +16,7 @@ struct SortEntry {
   std::uint32_t index;
 };
 
-// The number rounded down to 44 bits, 32 of them behind the leading one: what radix_sort() looks at.
+// The number rounded down to 44 bits, 32 of them after the leading one: what radix_sort() looks at.
 inline double rounded_down(double number) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(number) & ~std::uint64_t{0xfffff});
 }

@@ -116,7 +116,7 @@ class SizeClass {
   void reserve_workspace(std::size_t bytes_per_robot);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
   void rename_materials(std::span<const MaterialId> ids);
-  // Those of a place that springs have, behind air; max_materials elements.
+  // Those of a place that springs have, after air; max_materials elements.
   std::vector<Material> driven_table(std::uint32_t place) const;
   template <class Visit>
   void for_each_array(const Visit& visit);

@@ -30,6 +30,17 @@ WORDS = [
     ("be it", "whether"),
     ("save (that|where|when|for)", "except"),
     ("nought|naught", "0"),
+    # British spelling
+    (r"colour\w*", "color"),
+    (r"grey\w*", "gray"),
+    (r"centre\w*|centring", "center"),
+    (r"(behavi|fav|hon|neighb|lab)our\w*", "behavior, favor, honor, neighbor, labor"),
+    (r"(centi|milli|kilo)?metres?", "meter"),
+    (r"licences?", "license"),
+    (r"(initial|normal|optim|minim|maxim|visual|serial|synchron|vector|random|organ|recogn|real|summar)is(e|ed|es|ing|ation|ations)", "-ize"),
+    (r"cancell(ed|ing)|travell(ed|ing|er)|modell(ed|ing)|labell(ed|ing)", "one l: canceled, traveled, modeled, labeled"),
+    # Hardware
+    (r"graphics cards?|NVIDIA cards?", "GPU"),
     # Simulator
     ("part(y|ies)", "lockstep group"),
     ("sitters?", "member"),
@@ -54,6 +65,7 @@ WORDS = [
     ("histories", "ReplayLog"),
     ("orders_", "PendingCommands"),
     ("remembered", "SessionSettings"),
+    ("nursery", "Breeding"),
 ]
 # Where an old word is the right one: (pattern of the path, pattern of the line).
 ALLOWED = [

@@ -41,13 +41,13 @@ TEST_F(ReadbackTest, RgbaIsRgbWithOpaqueAlpha) {
   }
 }
 
-// A card without room draws nothing and only sets a flag: the picture would be black.
+// A GPU without room draws nothing and only sets a flag: the picture would be black.
 TEST_F(ReadbackTest, PicturesDrawnWithoutMemoryAreRefused) {
   Renderer renderer = make_renderer();
   draw(renderer, 1);
   const Image good = read(renderer);
-  Buffer larger_than_any_card;
-  larger_than_any_card.reserve(std::size_t(1) << 46);
+  Buffer larger_than_any_gpu;
+  larger_than_any_gpu.reserve(std::size_t(1) << 46);
   try {
     (void)read(renderer);
     FAIL() << "the picture was accepted";

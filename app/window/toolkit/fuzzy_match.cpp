@@ -20,7 +20,7 @@ bool begins_word(std::string_view text, std::size_t i) {
 // best[i]: the best score of the query so far with its last letter at text[i].
 std::optional<int> fuzzy_match(std::string_view query, std::string_view text) {
   constexpr int none = std::numeric_limits<int>::min();
-  constexpr std::size_t most = 256;  // letters; what lies behind is not searched
+  constexpr std::size_t most = 256;  // letters; what lies after is not searched
   text = text.substr(0, most);
   std::vector<int> best, next(text.size());
   for (const char letter : query.substr(0, most)) {

@@ -108,10 +108,10 @@ std::span<const KeyBinding> key_bindings();
 
 // A key with its modifiers. Keys that type a character are identified by it, others by GLFW's number.
 struct KeyChord {
-  char32_t character = 0;  // in lower case; 0 = the key types none
+  char32_t character = 0;  // in lower case; 0 = the key types no character
   int key = 0;             // GLFW_KEY_*; 0 for a character
   bool control = false;
-  bool shift = false;  // only with Ctrl, or with a key that types none: a typed character contains it
+  bool shift = false;  // only with Ctrl, or if there is no character: a typed character already contains Shift
   friend bool operator==(const KeyChord&, const KeyChord&) = default;
 
   // Whether this press gives the chord. Without Ctrl, a chord without Shift is given with Shift as well.

@@ -77,7 +77,8 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
 }
 
-// The parts of the way from a to b, from 0 to 1, between which x is in the frame; none = the second is not larger.
+// The line from a to b is inside the frame, along x, between these two shares of its length, from 0 to 1. It is outside
+// everywhere if the second is not larger.
 std::pair<float, float> shares_within(const Frame& frame, ImVec2 a, ImVec2 b) {
   if (a.x == b.x) return {0.0f, a.x < frame.low.x || a.x > frame.high.x ? 0.0f : 1.0f};
   const auto [enter, leave] = std::minmax({(frame.low.x - a.x) / (b.x - a.x), (frame.high.x - a.x) / (b.x - a.x)});
@@ -89,7 +90,7 @@ std::pair<float, float> shares_within(const Frame& frame, ImVec2 a, ImVec2 b) {
 void draw_pieces(const Frame& frame, const std::vector<ImVec2>& points, ImU32 color, float thickness, float on,
                  float off) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  float along = 0;  // of the present piece and the gap behind it
+  float along = 0;  // of the present piece and the gap after it
   for (std::size_t i = 1; i < points.size(); ++i) {
     const ImVec2 from = points[i - 1], to = points[i];
     const auto [enter, leave] = shares_within(frame, from, to);

@@ -45,7 +45,7 @@ struct TrialSettings {
           .with_form("0..1"),
       Parameter("strain_limit", &TrialSettings::strain_limit, "",
                 Accepts{.lowest = 0, .above_lowest = true, .or_infinite = true}, {0.1f, 4},
-                "Robots with a spring strained more are overstretched: they rank behind all sound ones")
+                "Robots with a spring strained more are overstretched: they rank after all sound ones")
           .with_default_note("default 2; inf = no limit"),
       Parameter("racing", &TrialSettings::racing, "Stop robots early that are clearly behind")};
 };

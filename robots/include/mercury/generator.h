@@ -132,7 +132,7 @@ const Generator* generator_of(const Robot& robot);
 // Throws ParameterError("kind", "\"fish\" is not a kind of robot; give voxel or nn").
 const Generator& generator_named(std::string_view kind);
 
-// "voxel, nn or shell": all kinds, with something behind each, as in "voxel:N or nn:N".
+// "voxel, nn or shell": all kinds, with something after each, as in "voxel:N or nn:N".
 std::string generator_kinds(std::string_view behind = {});
 
 // The parameter's value, its default if it is missing.

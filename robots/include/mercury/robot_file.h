@@ -32,7 +32,7 @@ class RobotDocuments {
  public:
   explicit RobotDocuments(std::string_view text);
   // The next robot; none at the end. Throws InputError as parse_robot, with the number of the document before the
-  // message ("document 3: /springs/7: ..."). The next call goes on behind a document that cannot be used; where its end
+  // message ("document 3: /springs/7: ..."). The next call goes on after a document that cannot be used; where its end
   // cannot be found either, there is no next one.
   std::optional<Robot> next();
 

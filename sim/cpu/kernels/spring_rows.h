@@ -37,7 +37,7 @@ struct SpringRow {
 // Adds all springs' contributions to the sums. If `checked`, returns false if a spring is beyond the stretch limit.
 //
 // Calls finish(first slot) once for each tile whose sums are complete and whose positions no spring reads any more.
-// That is one tile behind the springs, so that the sums have left the store buffer when they are read. With gathered
+// That is one tile after the springs, so that the sums have left the store buffer when they are read. With gathered
 // rows, whose partners are in any tile, it is after all springs; so it is if `checked`, since no mass may move before
 // all springs have passed.
 template <bool checked, bool gathered_springs, class Finish>

@@ -41,7 +41,7 @@ struct NearPairs::Grid {
 
   Grid(std::span<const std::uint32_t> masses, const std::array<std::span<const float>, 3>& x, float radius) {
     std::array<float, 3> low, inverse;
-    float edge = 1.001f * radius;  // more than one radius by more than rounding
+    float edge = 1.001f * radius;  // pairs within one radius lie in neighboring cells, also after rounding
     std::array<float, 3> extent;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       float high = low[axis] = x[axis][masses[0]];

@@ -97,7 +97,7 @@ class Simulation {
   // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
   std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
 
-  // The same as step(), queued in a CUDA stream (a cudaStream_t) of cuda_device(), behind what is there. What follows
+  // The same as step(), queued in a CUDA stream (a cudaStream_t) of cuda_device(), after what is there. What follows
   // in the stream comes after the steps. Returns at once. Robots that no CUDA device holds, or several, are stepped at
   // once, and the stream has no effect.
   void step_in_stream(std::int64_t steps, void* cuda_stream);

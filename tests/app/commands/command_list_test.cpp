@@ -38,7 +38,7 @@ nlohmann::json option_named(const std::string& of, const std::string& name) {
   return {};
 }
 
-// Options in the help of a command: words that begin with a dash, at the beginning of a line or behind ", ".
+// Options in the help of a command: words that begin with a dash, at the beginning of a line or after ", ".
 std::set<std::string> options_in_help(const std::vector<std::string>& words) {
   std::vector<std::string> arguments(words);
   arguments.emplace_back("--help");

@@ -98,7 +98,7 @@ def commands(page):
             text = text[:-1] + lines[number].strip()
             number += 1
         if re.match(r"(build/bin/)?mercury\s", text):
-            # What stands two columns or more behind a command explains it.
+            # What stands two columns or more after a command explains it.
             yield first, re.split(r"\s{2,}(?![\s-])|\s+#\s", text)[0]
 
 

@@ -291,7 +291,7 @@ TEST_F(RefusedVideo, FolderThatHoldsSomethingIsFilledOnlyWithForce) {
             "mercury: -o: " + path("frames") + " is not empty; use --force to write into it, or give another folder\n");
   EXPECT_EQ(read("frames/frame-00002.png"), last);
   for (const char* name : {"frames/note", "frames/frame-1.png", "frames/frame-00007.jpg"}) write(name, "mine");
-  write("frames/frame-00005.png", "of an earlier film, behind a gap");
+  write("frames/frame-00005.png", "of an earlier film, after a gap");
   std::vector<std::string> forced = shorter;
   forced.push_back("--force");
   ASSERT_EQ(mercury(command("frames", forced)).status, 0);

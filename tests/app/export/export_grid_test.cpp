@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK grids: the arrays behind the document, unpacked here, against values computed in double precision.
+// VTK grids: the arrays after the document, unpacked here, against values computed in double precision.
 #include <gmock/gmock.h>
 #include <zlib.h>
 

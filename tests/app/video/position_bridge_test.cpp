@@ -71,7 +71,7 @@ TEST_F(PositionBridgeTest, CpuSimulationsUseTheHostBridgeWithoutANote) {
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
   if (IsSkipped()) return;
   const ChosenBridge chosen = choose_bridge(simulation_->cuda_device(), true);
-  EXPECT_FALSE(chosen.on_card);
+  EXPECT_FALSE(chosen.on_device);
   EXPECT_EQ(chosen.note, "");
   EXPECT_THROW(make_cuda_bridge(simulation_->cuda_device()), NoInterop);
 }
@@ -80,16 +80,16 @@ TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
   if (IsSkipped()) return;
-  const ChosenBridge card = choose_bridge(simulation_->cuda_device(), true);
-  if (!card.on_card) GTEST_SKIP() << card.note;
+  const ChosenBridge device = choose_bridge(simulation_->cuda_device(), true);
+  if (!device.on_device) GTEST_SKIP() << device.note;
   const ChosenBridge host = choose_bridge(simulation_->cuda_device(), false);
-  EXPECT_FALSE(host.on_card);
+  EXPECT_FALSE(host.on_device);
   EXPECT_EQ(host.note, "");
   for (int moment = 0; moment < 4; ++moment) {
     simulation_->step(250);
-    const auto on_card = card.bridge->take(*simulation_), on_host = host.bridge->take(*simulation_);
+    const auto on_device = device.bridge->take(*simulation_), on_host = host.bridge->take(*simulation_);
     simulation_->step(50);  // changes neither snapshot
-    const render::Image drawn = picture(*card.bridge, *on_card);
+    const render::Image drawn = picture(*device.bridge, *on_device);
     EXPECT_EQ(drawn.bytes, picture(*host.bridge, *on_host).bytes) << moment;
   }
 }
@@ -98,19 +98,19 @@ TEST_F(PositionBridgeTest, SnapshotsFromAnotherThreadAreShownInOrder) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cuda));
   if (IsSkipped()) return;
-  const ChosenBridge card = choose_bridge(simulation_->cuda_device(), true);
-  if (!card.on_card) GTEST_SKIP() << card.note;
+  const ChosenBridge device = choose_bridge(simulation_->cuda_device(), true);
+  if (!device.on_device) GTEST_SKIP() << device.note;
   const auto host = make_host_bridge();
-  std::vector<std::unique_ptr<PositionSnapshot>> on_card, on_host;
+  std::vector<std::unique_ptr<PositionSnapshot>> on_device, on_host;
   std::thread([&] {
     for (int moment = 0; moment < 6; ++moment) {
       simulation_->step(100);
-      on_card.push_back(card.bridge->take(*simulation_));
+      on_device.push_back(device.bridge->take(*simulation_));
       on_host.push_back(host->take(*simulation_));
     }
   }).join();
-  for (std::size_t moment = 0; moment < on_card.size(); ++moment) {
-    const render::Image drawn = picture(*card.bridge, *on_card[moment]);
+  for (std::size_t moment = 0; moment < on_device.size(); ++moment) {
+    const render::Image drawn = picture(*device.bridge, *on_device[moment]);
     EXPECT_EQ(drawn.bytes, picture(*host, *on_host[moment]).bytes) << moment;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/video/card_memory.h"
+#include "app/video/device_memory.h"
 
 #include <epoxy/gl.h>  // before CUDA's header, which would bring another OpenGL header
 
@@ -66,7 +66,7 @@ bool done(CUresult result, const char* what) {
 
 }  // namespace
 
-CardMemory::CardMemory(int cuda_device, std::size_t bytes) {
+DeviceMemory::DeviceMemory(int cuda_device, std::size_t bytes) {
   const Driver& cuda = driver();
   CUmemAllocationProp wanted{};
   wanted.type = CU_MEM_ALLOCATION_TYPE_PINNED;
@@ -74,11 +74,11 @@ CardMemory::CardMemory(int cuda_device, std::size_t bytes) {
   wanted.requestedHandleTypes = CU_MEM_HANDLE_TYPE_POSIX_FILE_DESCRIPTOR;
   std::size_t unit = 0;
   if (!done(cuda.granularity(&unit, &wanted, CU_MEM_ALLOC_GRANULARITY_MINIMUM), "asking for page sizes") || unit == 0)
-    throw NoInterop("CUDA cannot share memory on this card");
+    throw NoInterop("CUDA cannot share memory on this GPU");
   size_ = (std::max<std::size_t>(bytes, 1) + unit - 1) / unit * unit;
   const char* const what = "allocating memory to share with OpenGL";
   CUmemGenericAllocationHandle handle = 0;
-  if (!done(cuda.create(&handle, size_, &wanted, 0), what)) throw NoInterop("CUDA cannot share memory on this card");
+  if (!done(cuda.create(&handle, size_, &wanted, 0), what)) throw NoInterop("CUDA cannot share memory on this GPU");
   handle_ = handle;
   CUdeviceptr address = 0;
   const CUmemAccessDesc access{.location = wanted.location, .flags = CU_MEM_ACCESS_FLAGS_PROT_READWRITE};
@@ -94,21 +94,21 @@ CardMemory::CardMemory(int cuda_device, std::size_t bytes) {
   throw DeviceError(std::string("CUDA: ") + what + " failed");
 }
 
-CardMemory::~CardMemory() {
+DeviceMemory::~DeviceMemory() {
   const Driver& cuda = driver();
   cuda.unmap(address_, size_);
   cuda.free(address_, size_);
   cuda.release(handle_);
 }
 
-int CardMemory::file_descriptor() const {
+int DeviceMemory::file_descriptor() const {
   int descriptor = -1;
   if (driver().export_handle(&descriptor, handle_, CU_MEM_HANDLE_TYPE_POSIX_FILE_DESCRIPTOR, 0) != CUDA_SUCCESS)
-    throw NoInterop("CUDA cannot export memory on this card");
+    throw NoInterop("CUDA cannot export memory on this GPU");
   return descriptor;
 }
 
-CardBuffer::CardBuffer(const CardMemory& memory) {
+DeviceBuffer::DeviceBuffer(const DeviceMemory& memory) {
   if (!epoxy_has_gl_extension("GL_EXT_memory_object_fd")) throw NoInterop("OpenGL here has no GL_EXT_memory_object_fd");
   while (glGetError() != GL_NO_ERROR) {
   }
@@ -128,7 +128,7 @@ CardBuffer::CardBuffer(const CardMemory& memory) {
   throw NoInterop("OpenGL makes no buffer of CUDA's memory");
 }
 
-CardBuffer::~CardBuffer() {
+DeviceBuffer::~DeviceBuffer() {
   glDeleteBuffers(1, &buffer_);
   glDeleteMemoryObjectsEXT(1, &memory_);
 }

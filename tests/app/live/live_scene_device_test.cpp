@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions that stay on the card: the window's pictures, picks and figures are those of positions on the host. The
+// Positions that stay on the GPU: the window's pictures, picks and figures are those of positions on the host. The
 // cases of CUDA are skipped where no GPU both simulates and draws.
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@
 namespace mercury {
 namespace {
 
-// Keeps positions where only show() and read() reach them, as a card does, so that machines without a GPU test the
+// Keeps positions where only show() and read() reach them, as a GPU does, so that machines without a GPU test the
 // rest.
-class PretendedCard final : public PositionBridge {
+class PretendedDevice final : public PositionBridge {
  public:
   class Kept final : public PositionSnapshot {
    public:
@@ -40,39 +40,39 @@ class PretendedCard final : public PositionBridge {
   }
 };
 
-enum class Card { pretended, real };
+enum class Place { pretended, real };
 
-class LiveSceneOnCard : public testing::TestWithParam<Card> {
+class LiveSceneOnDevice : public testing::TestWithParam<Place> {
  protected:
   void SetUp() override {
-    if (GetParam() == Card::real && cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+    if (GetParam() == Place::real && cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
     try {
-      context_ = render::make_context({.cuda_device = GetParam() == Card::real ? 0 : -1});
+      context_ = render::make_context({.cuda_device = GetParam() == Place::real ? 0 : -1});
     } catch (const render::ContextError& error) {
       GTEST_SKIP() << "no OpenGL here: " << error.what();
     }
     on_host_ = std::make_unique<LiveScene>(options());
-    on_card_ = std::make_unique<LiveScene>(options());
-    std::shared_ptr<PositionBridge> bridge = std::make_shared<PretendedCard>();
-    if (GetParam() == Card::real) {
-      ChosenBridge chosen = choose_bridge(on_card_->cuda_device(), true);
-      if (!chosen.on_card) GTEST_SKIP() << chosen.note;
+    on_device_ = std::make_unique<LiveScene>(options());
+    std::shared_ptr<PositionBridge> bridge = std::make_shared<PretendedDevice>();
+    if (GetParam() == Place::real) {
+      ChosenBridge chosen = choose_bridge(on_device_->cuda_device(), true);
+      if (!chosen.on_device) GTEST_SKIP() << chosen.note;
       bridge = std::move(chosen.bridge);
     }
-    on_card_->set_bridge(std::move(bridge));
+    on_device_->set_bridge(std::move(bridge));
   }
 
   static LiveSceneOptions options() {
-    if (GetParam() == Card::pretended) return test::on_cpu();
+    if (GetParam() == Place::pretended) return test::on_cpu();
     return {.configuration = {.device = {.kind = DeviceKind::cuda}}};
   }
 
   template <class Change>
   void both(Change change) {
     change(*on_host_);
-    change(*on_card_);
+    change(*on_device_);
     on_host_->wait_until_done();
-    on_card_->wait_until_done();
+    on_device_->wait_until_done();
   }
 
   render::Image picture_of(LiveScene& scene) {
@@ -85,52 +85,52 @@ class LiveSceneOnCard : public testing::TestWithParam<Card> {
   }
 
   std::unique_ptr<render::Context> context_;
-  std::unique_ptr<LiveScene> on_host_, on_card_;
+  std::unique_ptr<LiveScene> on_host_, on_device_;
   render::Camera camera_ = render::Orbit{.target = {1, 0, 0}, .distance = 6}.camera();
 };
 
-INSTANTIATE_TEST_SUITE_P(All, LiveSceneOnCard, testing::Values(Card::pretended, Card::real),
-                         [](const auto& each) { return each.param == Card::real ? "cuda" : "pretended"; });
+INSTANTIATE_TEST_SUITE_P(All, LiveSceneOnDevice, testing::Values(Place::pretended, Place::real),
+                         [](const auto& each) { return each.param == Place::real ? "cuda" : "pretended"; });
 
-TEST_P(LiveSceneOnCard, GivesTheSamePicturesBitForBit) {
+TEST_P(LiveSceneOnDevice, GivesTheSamePicturesBitForBit) {
   both([](LiveScene& scene) { test::make_robots(scene, 4); });
   for (int moment = 0; moment < 5; ++moment) {
     both([](LiveScene& scene) { scene.step(300); });
-    ASSERT_TRUE(on_card_->picture().positions_on_card());
-    ASSERT_FALSE(on_host_->picture().positions_on_card());
-    EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes) << moment;
+    ASSERT_TRUE(on_device_->picture().positions_on_device());
+    ASSERT_FALSE(on_host_->picture().positions_on_device());
+    EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes) << moment;
   }
 }
 
-TEST_P(LiveSceneOnCard, FollowsRobotsThatComeAndGo) {
+TEST_P(LiveSceneOnDevice, FollowsRobotsThatComeAndGo) {
   for (int count = 1; count < 4; ++count) {
     both([&](LiveScene& scene) {
       test::make_robots(scene, static_cast<std::size_t>(count));
       scene.step(100);
     });
-    EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes) << count;
+    EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes) << count;
   }
   both([](LiveScene& scene) {
     scene.remove({test::ids_of(scene)[1]});
     scene.step(50);
   });
-  EXPECT_EQ(picture_of(*on_card_).bytes, picture_of(*on_host_).bytes);
+  EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes);
 }
 
-TEST_P(LiveSceneOnCard, GivesPositionsToTheHostWhenAsked) {
+TEST_P(LiveSceneOnDevice, GivesPositionsToTheHostWhenAsked) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 3);
     scene.step(500);
   });
-  const std::shared_ptr<const Snapshot> early = on_card_->hold_snapshot();
+  const std::shared_ptr<const Snapshot> early = on_device_->hold_snapshot();
   EXPECT_TRUE(std::ranges::equal(early->positions.host(), on_host_->snapshot().positions.host()));
   const auto expected = on_host_->hold_snapshot();
   both([](LiveScene& scene) { scene.step(500); });
   EXPECT_TRUE(std::ranges::equal(early->positions.host(), expected->positions.host()));
-  EXPECT_FALSE(std::ranges::equal(on_card_->snapshot().positions.host(), expected->positions.host()));
+  EXPECT_FALSE(std::ranges::equal(on_device_->snapshot().positions.host(), expected->positions.host()));
 }
 
-TEST_P(LiveSceneOnCard, PicksTheSameRobots) {
+TEST_P(LiveSceneOnDevice, PicksTheSameRobots) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 4);
     scene.step(200);
@@ -138,11 +138,11 @@ TEST_P(LiveSceneOnCard, PicksTheSameRobots) {
   const render::Bounds& target = on_host_->picture().bounds()[2];
   const render::Vector3 eye = target.center() + render::Vector3(0, -5, 0);
   const render::Ray ray{.origin = eye, .direction = {0, 1, 0}};
-  const auto from_card = on_card_->pick(ray), from_host = on_host_->pick(ray);
-  ASSERT_EQ(from_card.has_value(), from_host.has_value());
+  const auto from_device = on_device_->pick(ray), from_host = on_host_->pick(ray);
+  ASSERT_EQ(from_device.has_value(), from_host.has_value());
   ASSERT_TRUE(from_host);
-  EXPECT_EQ(from_card->index, from_host->index);
-  EXPECT_EQ(from_card->mass, from_host->mass);
+  EXPECT_EQ(from_device->index, from_host->index);
+  EXPECT_EQ(from_device->mass, from_host->mass);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory of a GPU that CUDA writes and OpenGL reads, without a copy and without mapping.
 //
-//   CUDA    CardMemory: an allocation that can be exported as a file descriptor
-//   OpenGL  CardBuffer: a buffer object over the same bytes (GL_EXT_memory_object_fd)
+//   CUDA    DeviceMemory: an allocation that can be exported as a file descriptor
+//   OpenGL  DeviceBuffer: a buffer object over the same bytes (GL_EXT_memory_object_fd)
 //
 // Neither side waits for the other: the user of both must order their work.
 #pragma once
@@ -11,13 +11,13 @@
 
 namespace mercury {
 
-class CardMemory {
+class DeviceMemory {
  public:
   // Throws NoInterop if the driver cannot export memory, and DeviceError if none is free.
-  CardMemory(int cuda_device, std::size_t bytes);
-  ~CardMemory();
-  CardMemory(const CardMemory&) = delete;
-  CardMemory& operator=(const CardMemory&) = delete;
+  DeviceMemory(int cuda_device, std::size_t bytes);
+  ~DeviceMemory();
+  DeviceMemory(const DeviceMemory&) = delete;
+  DeviceMemory& operator=(const DeviceMemory&) = delete;
 
   void* data() const { return reinterpret_cast<void*>(address_); }
   std::size_t size() const { return size_; }  // at least what was asked for
@@ -30,13 +30,13 @@ class CardMemory {
 };
 
 // The same memory as an OpenGL buffer object. The context must be current in all members.
-class CardBuffer {
+class DeviceBuffer {
  public:
   // Throws NoInterop if OpenGL does not take the memory.
-  explicit CardBuffer(const CardMemory& memory);
-  ~CardBuffer();
-  CardBuffer(const CardBuffer&) = delete;
-  CardBuffer& operator=(const CardBuffer&) = delete;
+  explicit DeviceBuffer(const DeviceMemory& memory);
+  ~DeviceBuffer();
+  DeviceBuffer(const DeviceBuffer&) = delete;
+  DeviceBuffer& operator=(const DeviceBuffer&) = delete;
 
   unsigned name() const { return buffer_; }
 
