@@ -21,6 +21,15 @@ BREACHES = [
     "// Any robot, be it large or small.",
     "// All robots, save when one explodes.",
     "// Nought is left.",
+    "// The colours of robots.",
+    "// A grey robot.",
+    "// The centre of mass.",
+    "// Its neighbour.",
+    "// A metre.",
+    "// A licence.",
+    "void initialise();",
+    "bool cancelled = false;",
+    "// A graphics card draws.",
     "std::vector<Party> parties;",
     "int sitter = 0;",
     "const Seat seat_;",
@@ -43,6 +52,7 @@ BREACHES = [
     "Histories histories;",
     "Orders orders_;",
     "Remembered remembered;",
+    "Nursery nursery;",
 ]
 
 
