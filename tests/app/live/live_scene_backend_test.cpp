@@ -25,7 +25,7 @@ class LiveOn : public BackendTest {
 INSTANTIATE_TEST_SUITE_P(All, LiveOn, every_device, BackendTest::name);
 
 TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
-  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+  for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
     LiveScene scene(options(environment));
     test::make_robots(scene, 3);
     scene.step(130);

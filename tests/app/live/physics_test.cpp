@@ -81,7 +81,7 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
 }
 
 TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
-  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+  for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;
     Physics physics(on_cpu(environment), messages);
     const auto robots = some_robots(3);

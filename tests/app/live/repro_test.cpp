@@ -71,7 +71,7 @@ class LiveRepro : public test::FolderTest {
 };
 
 TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
-  for (const Environment environment : {Environment(Ocean{}), Environment(Land{})}) {
+  for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
     LiveScene scene(test::on_cpu(environment));
     test::make_robots(scene, 1);
     scene.step(25);
