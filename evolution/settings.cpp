@@ -15,10 +15,10 @@ void require(bool holds, const char* parameter, const std::string& problem) {
 }  // namespace
 
 void validate(const TrialSettings& trials) {
-  check_parameters(trials);
-  require(trials.settle == 0 || trials.settle < trials.seconds, "settle",
+  require(trials.settle == 0 || (trials.settle > 0 && trials.settle < trials.seconds), "settle",
           shortest_text(trials.settle) + " is not accepted; give 0 s or more, and less than the " +
               shortest_text(trials.seconds) + " s of --seconds");
+  check_parameters(trials);
 }
 
 void validate(const EvolutionSettings& settings) {

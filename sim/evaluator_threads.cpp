@@ -43,7 +43,7 @@ Evaluator::Parts::~Parts() {
     notify_all();
   }
   if (starter.joinable()) starter.join();
-  maker.join();
+  if (maker.joinable()) maker.join();  // the constructor of a thread may have failed
   for (std::thread& worker : workers) worker.join();
 }
 

@@ -216,8 +216,16 @@ int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, s
     throw;
   }
   add_failed(report, std::move(failed));
+  // The recording first, so that it is kept whatever becomes of what is printed, and results are printed even if it
+  // fails.
+  std::exception_ptr problem;
+  try {
+    if (recorder) recorder->finish();
+  } catch (const std::exception&) {
+    problem = std::current_exception();
+  }
   const int status = report_results(options, report);
-  if (recorder) recorder->finish();  // it may fail, so it comes last
+  if (problem) std::rethrow_exception(problem);
   return checkpoints && checkpoints->failed() ? std::max(status, 1) : status;
 }
 

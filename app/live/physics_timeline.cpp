@@ -59,8 +59,10 @@ void Physics::Parts::clear_timeline() {
 }
 
 void Physics::Parts::keep_keyframe() {
-  timeline.note(simulation.clock());
-  keyframe_work = work;
+  if (!viewing) {  // an earlier moment has an earlier clock
+    timeline.note(simulation.clock());
+    keyframe_work = work;
+  }
   if (simulation.size() == 0 || 2 * sizeof(Vec3) * simulation.mass_count() > timeline.budget()) return;
   const double start = wall_now();
   double work_before = work;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "app/base/work_progress.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -23,7 +24,8 @@ TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions&
           .every = options.every,
           .expected_frames = options.last_step ? steps / options.every + 1 : 0,
           .time = simulation.clock(),
-          .deflate = options.deflate};
+          .deflate = options.deflate,
+          .watch = shown_work()};
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "app/base/version.h"
-#include "app/base/work_progress.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
@@ -128,10 +127,9 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   velocities_.resize(frames_per_block_ * offsets_.back());
   guarded([&] {
     write_header(header);
-    const WorkWatch watch = shown_work();
     for (std::size_t i = 0; i < robots.size(); ++i) {
       write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
-      watch("writing robots", i + 1, robots.size());
+      if (header.watch) header.watch("writing robots", i + 1, robots.size());
     }
     if (header.more) header.more(file_);
   });

@@ -182,16 +182,16 @@ void bind_preset(nb::module_& module) {
           nb::arg("parameters"), nb::sig(init.c_str()))
       .def(
           "__getstate__", [](const Kind& self) { return values_of(self.environment); },
-          nb::sig("def __getstate__(self) -> dict[str, typing.Any]"))
+          nb::sig("def __getstate__(self) -> typing.Any"))
       .def(
           "__setstate__",
           [](Kind& self, const nb::dict& values) {
             new (&self) Kind{changed(environment_presets[preset].environment, values)};
           },
-          nb::arg("state"), nb::sig("def __setstate__(self, state: dict[str, typing.Any], /) -> None"));
+          nb::arg("state"), nb::sig("def __setstate__(self, state: typing.Any, /) -> None"));
   for (const char* method : {"replace", "__replace__"}) {
-    const std::string signature =
-        "def " + std::string(method) + "(self, *" + parameter_list(defaults, false) + ") -> " + class_name(preset);
+    const std::string signature = "def " + std::string(method) + "(self, *" + parameter_list(defaults, false) +
+                                  ", **parameters: typing.Any) -> " + class_name(preset);
     kind.def(
         method, [](const Kind& self, const nb::kwargs& values) { return Kind{changed(self.environment, values)}; },
         nb::arg("parameters"), nb::sig(signature.c_str()), "A copy with other values.");
@@ -246,14 +246,14 @@ parameters: those of the parts, as Ocean, OceanSimple and Land have them.)");
           [](const Combination& self) {
             return nb::make_tuple(std::string(name_of(self.environment)), values_of(self.environment));
           },
-          nb::sig("def __getstate__(self) -> tuple[str, dict[str, typing.Any]]"))
+          nb::sig("def __getstate__(self) -> typing.Any"))
       .def(
           "__setstate__",
           [](Combination& self, const nb::tuple& state) {
             new (&self)
                 Combination{changed(environment_named(nb::cast<std::string>(state[0])), nb::cast<nb::dict>(state[1]))};
           },
-          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple[str, dict[str, typing.Any]], /) -> None"));
+          nb::arg("state"), nb::sig("def __setstate__(self, state: typing.Any, /) -> None"));
   for (const char* method : {"replace", "__replace__"}) {
     const std::string signature = "def " + std::string(method) + "(self, **parameters: typing.Any) -> Environment";
     kind.def(

@@ -60,7 +60,7 @@ def test_values_that_break_a_rule_are_refused(robots):
         ({"dt": float("nan")}, "dt"),
         ({"damping": -1}, "damping"),
         ({"solver": "verlet"}, "force"),
-        ({"environment": "space"}, "ocean"),
+        ({"environment": "swamp"}, "ocean"),
         ({"device": "tpu"}, "cpu"),
         ({"device": 3}, "cpu"),
         ({"threads": -1}, "threads"),

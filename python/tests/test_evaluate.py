@@ -237,7 +237,7 @@ def test_input_errors_of_a_function_are_failures(robots):
         ({"sample_every": -1}, "sample_every"),
         ({"dt": 0}, "dt"),
         ({"solver": "verlet"}, "force"),
-        ({"environment": "space"}, "ocean"),
+        ({"environment": "swamp"}, "ocean"),
         ({"device": "tpu"}, "cpu"),
     ],
 )

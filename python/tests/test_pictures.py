@@ -168,8 +168,8 @@ def test_wrong_types_are_type_errors(batch, robots):
     for nothing in (3, None, [3], ["robot.json"]):
         with pytest.raises(TypeError):
             mercurysim.picture(nothing)
-    with pytest.raises(TypeError, match='"color" is not an option of pictures; did you mean color'):
-        mercurysim.picture(batch, color="strain")
+    with pytest.raises(TypeError, match='"colr" is not an option of pictures; did you mean color'):
+        mercurysim.picture(batch, colr="strain")
     with pytest.raises(mercurysim.InputError, match="there is no robot to show"):
         mercurysim.picture([])
     with pytest.raises(mercurysim.InputError, match="environment: "):

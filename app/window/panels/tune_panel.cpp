@@ -105,11 +105,8 @@ bool environment_section(PanelContext& context, EnvironmentChoice& choice, Confi
 
 // Returns true when the configuration changed. It stays one that validate() accepts.
 bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
-  EventLog& log = context.log;
   Configuration edited = configuration;
-  bool changed = solver_section(edited, log);
-  changed |= environment_section(context, choice, edited);
-  ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
+  bool changed = false;
   if (ImGui::Button("Reset all")) {
     const Device device = edited.device;
     edited = Configuration{};
@@ -117,8 +114,14 @@ bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Conf
     edited.environment = environment_named(name_of(configuration.environment));  // robots stay where they are
     changed = true;
   }
-  log.item("tune.reset");
+  context.log.item("tune.reset");
   tooltip("solver and environment have their defaults again");
+  ImGui::SameLine();
+  if (ImGui::Button("Copy as command")) copy_as_command(context, "view");
+  context.log.item("tune.copy");
+  tooltip("copy the command line that makes this scene");
+  changed |= solver_section(edited, context.log);
+  changed |= environment_section(context, choice, edited);
   if (!changed) return false;
   try {
     validate(edited);
@@ -134,10 +137,6 @@ bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Conf
 void TunePanel::draw(PanelContext& context) {
   Configuration configuration = context.scene.configuration();
   if (draw_physics_sliders(context, environment_, configuration)) context.scene.set_configuration(configuration);
-  ImGui::SameLine();
-  if (ImGui::Button("Copy as command")) copy_as_command(context, "view");
-  context.log.item("tune.copy");
-  tooltip("copy the command line that makes this scene");
   materials_.draw(context);
   // All changes until the mouse button is released are one undo step.
   if (ImGui::IsMouseReleased(0)) context.scene.end_edit();

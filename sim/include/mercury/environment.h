@@ -168,6 +168,8 @@ struct Ocean {
 
   constexpr operator Environment() const {
     return {.water = FaceDrag{density, drag_coefficient, lift_coefficient, drag_tangential, flow},
+            .ground = {},
+            .contacts = {},
             .gravity = gravity,
             .stiffness_scale = stiffness_scale};
   }
@@ -182,7 +184,11 @@ struct OceanSimple {
   float stiffness_scale = 1;                  // [1]
 
   constexpr operator Environment() const {
-    return {.water = PointDrag{point_drag, flow}, .gravity = gravity, .stiffness_scale = stiffness_scale};
+    return {.water = PointDrag{point_drag, flow},
+            .ground = {},
+            .contacts = {},
+            .gravity = gravity,
+            .stiffness_scale = stiffness_scale};
   }
 };
 
@@ -196,7 +202,8 @@ struct Land {
   float stiffness_scale = 200;                             // [1]
 
   constexpr operator Environment() const {
-    return {.ground = Plane{friction},
+    return {.water = {},
+            .ground = Plane{friction},
             .contacts = Contacts{self_collision, contact_stiffness},
             .gravity = gravity,
             .stiffness_scale = stiffness_scale};

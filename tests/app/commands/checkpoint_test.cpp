@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <hdf5.h>
 
+#include <csignal>
 #include <thread>
 
 #include "app/recording/trajectory_reader.h"
@@ -14,6 +15,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 using Arguments = std::vector<std::string>;
@@ -85,6 +87,21 @@ TEST_F(Checkpoint, ItCanGoOnForLonger) {
   const json whole = robots_of(mercury(longer));
   ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
   EXPECT_EQ(robots_of(mercury(resume_ + Arguments{"--seconds", "1.5"})), whole);
+}
+
+TEST_F(Checkpoint, ASignalSavesTheLastStepAndTheRunGoesOnFromThere) {
+  const json whole = robots_of(mercury(run_));
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::filesystem::remove(path("c.h5"));
+    ChildProcess child(MERCURY_PROGRAM, run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
+    while (!std::filesystem::exists(path("c.h5")) && child.running()) std::this_thread::yield();
+    child.signal(signal);
+    const Outcome outcome = outcome_of(child);
+    ASSERT_EQ(outcome.status, 128 + signal) << outcome.messages;
+    EXPECT_THAT(outcome.messages, Not(HasSubstr("no checkpoint")));
+    EXPECT_EQ(TrajectoryReader(path("c.h5")).step(0), json::parse(outcome.output)["steps"]);
+    EXPECT_EQ(robots_of(mercury(resume_)), whole);
+  }
 }
 
 TEST_F(Checkpoint, ARunThatWasStoppedTwiceGoesOn) {

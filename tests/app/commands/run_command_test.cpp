@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/recording/trajectory_reader.h"
 #include "tests/app/program.h"
 
 namespace mercury::test {
@@ -321,6 +322,19 @@ TEST_F(RunCommand, CsvAndJsonDoNotShareStandardOutput) {
   const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--json", "--csv", "-"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.messages, "mercury: --csv: - and --json both mean standard output; give --csv a file\n");
+}
+
+TEST_F(RunCommand, ABrokenStandardOutputLosesNoRecording) {
+  for (const char* output : {">/dev/full", ">&-"}) {
+    const std::string command = std::string(MERCURY_PROGRAM) +
+                                " run --random voxel:2 --seconds 0.1 --every 10 --force" + " --record " + path("a.h5") +
+                                " " + output;
+    const Outcome outcome = run_program("sh", {"-c", command});
+    EXPECT_EQ(outcome.status, 1) << output;
+    EXPECT_THAT(outcome.messages, HasSubstr("standard output cannot be written")) << output;
+    EXPECT_EQ(TrajectoryReader(path("a.h5")).frames(), 11u) << output;
+    std::filesystem::remove(path("a.h5"));
+  }
 }
 
 // The results are worth more than where they go.
