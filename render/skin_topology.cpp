@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/skin_topology.h"
-#include "render/vector.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "render/vector.h"
 
 namespace mercury::render {
 namespace {
@@ -21,7 +24,7 @@ struct HalfEdge {
 struct Skin {
   std::span<const float> positions;
   std::span<const std::uint32_t> faces;
-  std::vector<HalfEdge> edges;  // sorted by key
+  std::vector<HalfEdge> edges;  // sorted by key, from and face
 
   std::uint32_t mass(std::uint32_t face, std::uint32_t corner) const {
     return faces[3 * std::size_t(face) + corner % 3];
@@ -44,18 +47,20 @@ std::vector<HalfEdge> half_edges(std::span<const std::uint32_t> faces) {
     const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
     edges.push_back({key_of(faces[i], faces[next]), std::uint32_t(i / 3), faces[i]});
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.face < b.face; });
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.key, a.from, a.face) < std::tie(b.key, b.from, b.face);
+  });
   return edges;
 }
 
-// The neighbor of `face` across its edge from a to b: it has the edge from b to a.
+// The neighbor of `face` across its edge from a to b: it has the edge from b to a. Of several, the first; many equal
+// faces cost no search through all of them.
 std::uint32_t across(const Skin& skin, std::uint32_t face, std::uint32_t a, std::uint32_t b) {
-  const std::uint64_t key = key_of(a, b);
-  auto edge = std::lower_bound(skin.edges.begin(), skin.edges.end(), key,
-                               [](const HalfEdge& e, std::uint64_t k) { return e.key < k; });
-  for (; edge != skin.edges.end() && edge->key == key; ++edge)
-    if (edge->face != face && edge->from == b) return edge->face;
+  const std::pair wanted{key_of(a, b), b};
+  auto edge = std::lower_bound(skin.edges.begin(), skin.edges.end(), wanted,
+                               [](const HalfEdge& e, const auto& w) { return std::pair(e.key, e.from) < w; });
+  for (; edge != skin.edges.end() && std::pair(edge->key, edge->from) == wanted; ++edge)
+    if (edge->face != face) return edge->face;
   return no_face;
 }
 

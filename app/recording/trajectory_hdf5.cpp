@@ -145,14 +145,33 @@ Extent extent_of(hid_t dataset) {
   return extent;
 }
 
+namespace {
+
+// Links may lead to other files, and opening those may wait for ever.
+void require_own_member(hid_t parent, const std::string& name, const char* kind) {
+  if (!has_member(parent, name)) throw Error("the " + std::string(kind) + " \"" + name + "\" is missing");
+  H5L_info_t link;
+  checked(H5Lget_info(parent, name.c_str(), &link, H5P_DEFAULT));
+  if (link.type != H5L_TYPE_HARD)
+    throw Error("the " + std::string(kind) + " \"" + name +
+                "\" is a link, which is not followed; put it into this file");
+}
+
+}  // namespace
+
 Handle open_group(hid_t parent, const std::string& name) {
-  if (!has_member(parent, name)) throw Error("the group \"" + name + "\" is missing");
+  require_own_member(parent, name, "group");
   return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT));
 }
 
 Handle open_dataset(hid_t parent, const std::string& name) {
-  if (!has_member(parent, name)) throw Error("the dataset \"" + name + "\" is missing");
-  return Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT));
+  require_own_member(parent, name, "dataset");
+  Handle dataset(H5Dopen2(parent, name.c_str(), H5P_DEFAULT));
+  const Handle creation(H5Dget_create_plist(dataset));
+  const bool is_elsewhere = H5Pget_layout(creation) == H5D_VIRTUAL ||
+                            (H5Pget_layout(creation) == H5D_CONTIGUOUS && checked(H5Pget_external_count(creation)) > 0);
+  if (is_elsewhere) throw Error("the dataset \"" + name + "\" has its values in other files; put them into this one");
+  return dataset;
 }
 
 bool has_member(hid_t group, const std::string& name) {

@@ -43,6 +43,15 @@ TEST(SkinTopology, NeighborsLieAcrossTheirEdge) {
   }
 }
 
+// A search through all equal faces for each of them would take hours.
+TEST(SkinTopology, AMillionEqualFacesHaveNoNeighbors) {
+  const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::vector<std::uint32_t> faces;
+  for (int face = 0; face < 1'000'000; ++face) faces.insert(faces.end(), {0, 1, 2});
+  const FaceRecord alone = skin_topology(corners, std::vector<std::uint32_t>{0, 1, 2}).front();
+  for (const FaceRecord& record : skin_topology(corners, faces)) ASSERT_EQ(record.shape, alone.shape);
+}
+
 TEST(SkinTopology, ATetrahedronHasOnlyTriangles) {
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0.5f, 1, 0, 0.5f, 0.4f, 1};
   const std::vector<FaceRecord> records =

@@ -6,6 +6,7 @@ run bit for bit; and the file holds enough to run it again.
 """
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -156,6 +157,46 @@ class Recording(unittest.TestCase):
                 self.assert_same_frames(first, second)
                 first.close()
                 second.close()
+
+    def test_nothing_outside_the_file_is_read(self):
+        """External links, external storage and virtual datasets lead to a pipe, which nobody writes to."""
+        self.record("whole.h5").close()
+        pipe = self.path("pipe.h5")
+        os.mkfifo(pipe)
+
+        def replaced(change):
+            with h5py.File(self.path("whole.h5")) as whole, h5py.File(self.path("changed.h5"), "w", libver="latest") as changed:
+                for name in whole:
+                    whole.copy(name, changed)
+                robot = changed["particles"][list(changed["particles"])[0]]
+                rest = robot["rest_position"][()]
+                del robot["rest_position"]
+                change(robot, rest)
+            result = subprocess.run([MERCURY, "info", str(self.path("changed.h5"))], capture_output=True, text=True, timeout=60)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+            return result.stderr
+
+        def link(robot, rest):
+            robot["rest_position"] = h5py.ExternalLink(str(pipe), "/a")
+
+        def soft_link(robot, rest):
+            robot["other"] = rest
+            robot["rest_position"] = h5py.SoftLink("/particles/pipe")
+            robot.file["particles/pipe"] = h5py.ExternalLink(str(pipe), "/a")
+
+        def storage(robot, rest):
+            robot.create_dataset("rest_position", rest.shape, rest.dtype, external=[(str(pipe), 0, rest.nbytes)])
+
+        def virtual(robot, rest):
+            layout = h5py.VirtualLayout(rest.shape, rest.dtype)
+            layout[:] = h5py.VirtualSource(str(pipe), "a", rest.shape)
+            robot.create_virtual_dataset("rest_position", layout)
+
+        self.assertIn("is a link", replaced(link))
+        self.assertIn("is a link", replaced(soft_link))
+        self.assertIn("has its values in other files", replaced(storage))
+        self.assertIn("has its values in other files", replaced(virtual))
 
     def test_a_recording_that_was_killed_opens_with_the_frames_so_far(self):
         options = ["--random", "voxel:2", "--seed", "3", "--device", "cpu", "--threads", "1", "--every", "1"]
