@@ -54,13 +54,13 @@ bool EnvironmentChoice::draw(PanelContext& context, Configuration& configuration
 // What may be added to any preset.
 bool EnvironmentChoice::draw_parts(PanelContext& context, Environment& environment) {
   bool ground = has_ground(environment), contacts = environment.contacts.has_value(), changed = false;
-  row("parts", "what there is besides the water");
   if (ImGui::Checkbox("ground", &ground)) {
     environment.ground = {};
     if (ground) environment.ground = Plane{};
     changed = true;
   }
   context.log.item("tune.ground");
+  tooltip("a floor at z = 0 with friction");
   ImGui::SameLine();
   if (ImGui::Checkbox("contacts", &contacts)) {
     environment.contacts.reset();
