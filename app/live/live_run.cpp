@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "app/live/background.h"
-#include "app/live/pace.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
+#include "app/live/stepping.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {

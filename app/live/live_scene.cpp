@@ -8,7 +8,7 @@
 #include <unordered_set>
 
 #include "app/live/live_scene_parts.h"
-#include "app/live/pace.h"
+#include "app/live/stepping.h"
 
 namespace mercury {
 namespace {

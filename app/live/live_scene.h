@@ -223,8 +223,8 @@ class LiveScene {
   // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
   void attach_opened(std::vector<AttachedMass> attached);
 
-  // Comparison (companion.h). The second side shows the same robots under other settings, from the moment shown on; all
-  // that changes robots or time acts on both. nullopt ends it.
+  // Comparison (comparison.h). The second side shows the same robots under other settings, from the moment shown on;
+  // all that changes robots or time acts on both. nullopt ends it.
   void set_second(const std::optional<SideDifference>& difference);
   const std::optional<SideDifference>& second() const;
   // The second side's picture; null if there is none, as while a recording is played.

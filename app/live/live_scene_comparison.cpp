@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/live/live_scene_parts.h"
-#include "app/live/pace.h"
+#include "app/live/stepping.h"
 
 namespace mercury {
 

@@ -23,7 +23,7 @@ std::size_t Keyframe::bytes() const {
            all.explosions.capacity() * sizeof(BatchState::Explosion);
   };
   std::size_t sum = sizeof(Keyframe) + bytes_of(state);
-  for (const auto& companion : {second, ghosts})
+  for (const auto& companion : companions)
     if (companion) sum += sizeof(BatchState) + bytes_of(*companion);
   return sum;
 }

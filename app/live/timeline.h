@@ -13,6 +13,7 @@
 // first keyframe of an era is the state right after the change.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -31,8 +32,9 @@ struct Keyframe {
   std::uint64_t next_event = 0;  // number of the first event after it
   std::uint64_t era = 0;
   double work = 0;  // wall time that all steps before it took [s]
-  // Of the robots' companions (companion.h), if they had begun before.
-  std::shared_ptr<const BatchState> second, ghosts;
+  // States of the second side and of the ghosts (comparison.h), if they had begun before.
+  using Companions = std::array<std::shared_ptr<const BatchState>, 2>;
+  Companions companions;
 
   std::int64_t step() const { return state.clock.step; }
   std::size_t bytes() const;
